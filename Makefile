@@ -1,0 +1,48 @@
+.DEFAULT_GOAL := help
+.PHONY: help install demo test validate bench docs lock clean
+
+PYTHON ?= python3
+BIN := .venv/bin
+STAMP := .venv/.installed
+
+help: ## list the targets
+	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+
+install: $(STAMP) ## make .venv with the locked versions and beltdyn itself
+
+$(STAMP): requirements.lock pyproject.toml
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --requirement requirements.lock
+	$(BIN)/pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+demo: install ## run the two-pulley drive, with its summary and figures
+	$(BIN)/beltdyn demo
+
+test: install ## linters, types, layers, unit and verification tests
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -m "not slow" $(wildcard tests/unit tests/verification)
+
+validate: install ## slow verification tests and comparisons with the literature
+	$(BIN)/pytest -m slow $(wildcard tests/unit tests/verification)
+	$(if $(wildcard tests/validation),$(BIN)/pytest tests/validation)
+
+bench: install ## benchmarks
+	$(BIN)/pytest benchmarks --benchmark-enable --benchmark-only
+
+docs: install ## the documentation, in docs/_build/html
+	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
+
+lock: ## resolve the versions anew
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet uv
+	$(BIN)/uv pip compile --quiet --universal --upgrade --python-version 3.11 --all-extras --group dev \
+		--no-header --no-emit-index-url --no-emit-find-links pyproject.toml --output-file requirements.lock
+
+clean: ## remove everything that can be made again
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks \
+		dist docs/_build beltdyn-demo
+	find src tests -name __pycache__ -type d -exec rm -rf {} +

@@ -1,0 +1,346 @@
+"""Elastic force of the belt element and its exact tangent (Eq. 16).
+
+The energy depends on the centreline, through the four vectors r_i, r_x,i, r_j, r_x,j, and on the nodal shears s_i and s_j; beside
+them stands the thickness stretch of r_y.  Over the quadrature points the derivatives are gathered with respect to these vectors
+and shears.  The shears are carried to r_x and r_y once, by their own first and second derivatives.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.ancf.cross_section import NodalShear, add_shear_curvature, nodal_shear, shear_gradient
+from beltdyn.ancf.section import Section
+from beltdyn.ancf.shape_functions import Four, bends, slopes
+from beltdyn.ancf.strain_energy import energy_curvature, energy_density, energy_gradient, thickness_energy
+from beltdyn.kernel import kernel
+
+FloatArray = NDArray[np.float64]
+
+
+class ElasticWorkspace(NamedTuple):
+    """Scratch arrays of `element_force`, made once for many elements by `elastic_workspace`."""
+
+    xx: FloatArray
+    """d2U / d(x of vector a) d(x of vector b), shape (4, 4)."""
+    xy: FloatArray
+    yy: FloatArray
+    by_shear: FloatArray
+    """d2U / d(coordinate) d(s_k), shape (2, 12)."""
+
+
+class ShearSums(NamedTuple):
+    """Derivatives of the energy with respect to the nodal shears: dU/ds_k and d2U/ds_k ds_l."""
+
+    i: float
+    j: float
+    ii: float
+    ij: float
+    jj: float
+
+
+@kernel
+def elastic_workspace() -> ElasticWorkspace:
+    """Make the scratch arrays of `element_force`."""
+    return ElasticWorkspace(np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((2, 12)))
+
+
+@kernel
+def centreline(e: FloatArray, factors: Four) -> tuple[float, float]:
+    """Combine the four centreline vectors of an element with the given factors.
+
+    Parameters
+    ----------
+    e : ndarray, shape (12,)
+        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
+    factors
+        `slopes` for q = r_c,x, `bends` for w = r_c,xx.
+    """
+    return (
+        factors[2] * (e[6] - e[0]) + factors[1] * e[2] + factors[3] * e[8],
+        factors[2] * (e[7] - e[1]) + factors[1] * e[3] + factors[3] * e[9],
+    )
+
+
+@kernel
+def element_energy(e: FloatArray, section: Section, length: float, points: FloatArray, weights: FloatArray) -> float:
+    """Strain energy U of one element (Eqs. 8, 14 and 15).
+
+    Parameters
+    ----------
+    e : ndarray, shape (12,)
+        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
+    section
+        Stiffnesses of the section.
+    length
+        Reference length L, m.
+    points, weights : ndarray, shape (k,)
+        Quadrature on [0, 1] along the element.
+
+    Returns
+    -------
+    float
+        U, J.
+    """
+    shear_i = nodal_shear(e[2], e[3], e[4], e[5])
+    shear_j = nodal_shear(e[8], e[9], e[10], e[11])
+    rate = (shear_j.sine - shear_i.sine) / length
+    total = thickness_energy(_thickness_strain(e[4], e[5]), _thickness_strain(e[10], e[11]), section, length)
+    for point in range(points.size):
+        xi = points[point]
+        qx, qy = centreline(e, slopes(xi, length))
+        wx, wy = centreline(e, bends(xi, length))
+        metric = qx * qx + qy * qy
+        sine = (1.0 - xi) * shear_i.sine + xi * shear_j.sine
+        total += weights[point] * length * energy_density(metric, (qx * wy - qy * wx) / metric, sine, rate, section)
+    return total
+
+
+@kernel
+def element_force(
+    e: FloatArray,
+    section: Section,
+    length: float,
+    points: FloatArray,
+    weights: FloatArray,
+    work: ElasticWorkspace,
+    gradient: FloatArray,
+    tangent: FloatArray,
+) -> None:
+    """Gradient dU/de of the strain energy (the elastic force with the opposite sign, Eq. 16) and its exact tangent.
+
+    Parameters
+    ----------
+    e, section, length, points, weights
+        As for `element_energy`.
+    work
+        Scratch arrays.
+    gradient : ndarray, shape (12,)
+        Overwritten by dU/de; N for the rows of r, N m for those of the gradients.
+    tangent : ndarray, shape (12, 12)
+        Overwritten by d2U/de2.
+    """
+    shear_i = nodal_shear(e[2], e[3], e[4], e[5])
+    shear_j = nodal_shear(e[8], e[9], e[10], e[11])
+    gradient[:] = 0.0
+    work.xx[:] = 0.0
+    work.xy[:] = 0.0
+    work.yy[:] = 0.0
+    work.by_shear[:] = 0.0
+    sums = ShearSums(0.0, 0.0, 0.0, 0.0, 0.0)
+    for point in range(points.size):
+        sums = _add_point(
+            e, shear_i.sine, shear_j.sine, points[point], weights[point] * length, section, length, work, gradient, sums
+        )
+    _fill_centreline(work, tangent)
+    _carry_shear(shear_i, shear_j, sums, work, gradient, tangent)
+    _add_thickness(e, section, length, gradient, tangent)
+
+
+@kernel
+def _add_point(
+    e: FloatArray,
+    sine_i: float,
+    sine_j: float,
+    xi: float,
+    weight: float,
+    section: Section,
+    length: float,
+    work: ElasticWorkspace,
+    gradient: FloatArray,
+    sums: ShearSums,
+) -> ShearSums:
+    """Add one quadrature point.
+
+    The energy density is a function of G = q . q, theta = (q x w) / G, s and p.  With g = dG/dq = 2 q and the derivatives
+    a = dtheta/dq, b = dtheta/dw, its second derivatives in q and w are tensors made of g, a, b, the identity (from d2G) and the
+    cross product (from d2(q x w)).
+    """
+    slope, bend = slopes(xi, length), bends(xi, length)
+    qx, qy = centreline(e, slope)
+    wx, wy = centreline(e, bend)
+    metric = qx * qx + qy * qy
+    inverse = 1.0 / metric
+    turning = (qx * wy - qy * wx) * inverse
+    sine, rate = (1.0 - xi) * sine_i + xi * sine_j, (sine_j - sine_i) / length
+    first = energy_gradient(metric, turning, sine, rate, section)
+    second = energy_curvature(metric, turning, sine, rate, section)
+
+    gx, gy = 2.0 * qx, 2.0 * qy
+    ax, ay = (wy - turning * gx) * inverse, -(wx + turning * gy) * inverse
+    bx, by = -qy * inverse, qx * inverse
+    fx, fy = weight * (first.metric * gx + first.turning * ax), weight * (first.metric * gy + first.turning * ay)
+    mx, my = weight * first.turning * bx, weight * first.turning * by
+    gradient[0] += slope[0] * fx + bend[0] * mx
+    gradient[1] += slope[0] * fy + bend[0] * my
+    gradient[2] += slope[1] * fx + bend[1] * mx
+    gradient[3] += slope[1] * fy + bend[1] * my
+    gradient[6] += slope[2] * fx + bend[2] * mx
+    gradient[7] += slope[2] * fy + bend[2] * my
+    gradient[8] += slope[3] * fx + bend[3] * mx
+    gradient[9] += slope[3] * fy + bend[3] * my
+
+    gg, tt = weight * second.gg, weight * second.tt
+    gt = weight * (second.gt - first.turning * inverse)
+    direct = 2.0 * weight * (first.metric - first.turning * turning * inverse)
+    cross = weight * first.turning * inverse
+    ux, uy = gg * gx + gt * ax, gg * gy + gt * ay
+    vx, vy = gt * gx + tt * ax, gt * gy + tt * ay
+    _add_block(work.xx, slope, bend, ux * gx + vx * ax + direct, vx * bx, vx * bx, tt * bx * bx)
+    _add_block(work.xy, slope, bend, ux * gy + vx * ay, vx * by + cross, vy * bx - cross, tt * bx * by)
+    _add_block(work.yy, slope, bend, uy * gy + vy * ay + direct, vy * by, vy * by, tt * by * by)
+
+    at_i, at_j, by_rate = 1.0 - xi, xi, 1.0 / length
+    gs, gp = weight * second.gs, weight * second.gp
+    ts, tp = weight * second.ts, weight * second.tp
+    _add_shear_row(work.by_shear, 0, slope, bend, at_i, -by_rate, gs, ts, gp, tp, gx, gy, ax, ay, bx, by)
+    _add_shear_row(work.by_shear, 1, slope, bend, at_j, by_rate, gs, ts, gp, tp, gx, gy, ax, ay, bx, by)
+    ss, sp, pp = weight * second.ss, weight * second.sp * by_rate, weight * second.pp * by_rate * by_rate
+    by_sine, by_sine_rate = weight * first.sine, weight * first.sine_rate * by_rate
+    return ShearSums(
+        sums.i + at_i * by_sine - by_sine_rate,
+        sums.j + at_j * by_sine + by_sine_rate,
+        sums.ii + at_i * at_i * ss - 2.0 * at_i * sp + pp,
+        sums.ij + at_i * at_j * ss + (at_i - at_j) * sp - pp,
+        sums.jj + at_j * at_j * ss + 2.0 * at_j * sp + pp,
+    )
+
+
+@kernel
+def _add_block(block: FloatArray, slope: Four, bend: Four, qq: float, qw: float, wq: float, ww: float) -> None:
+    """Add the pairs of vectors (a, b): slope_a qq slope_b + slope_a qw bend_b + bend_a wq slope_b + bend_a ww bend_b."""
+    _add_row(block, 0, slope, bend, slope[0] * qq + bend[0] * wq, slope[0] * qw + bend[0] * ww)
+    _add_row(block, 1, slope, bend, slope[1] * qq + bend[1] * wq, slope[1] * qw + bend[1] * ww)
+    _add_row(block, 2, slope, bend, slope[2] * qq + bend[2] * wq, slope[2] * qw + bend[2] * ww)
+    _add_row(block, 3, slope, bend, slope[3] * qq + bend[3] * wq, slope[3] * qw + bend[3] * ww)
+
+
+@kernel
+def _add_row(block: FloatArray, a: int, slope: Four, bend: Four, q: float, w: float) -> None:
+    """Add q slope_b + w bend_b to row a."""
+    block[a, 0] += q * slope[0] + w * bend[0]
+    block[a, 1] += q * slope[1] + w * bend[1]
+    block[a, 2] += q * slope[2] + w * bend[2]
+    block[a, 3] += q * slope[3] + w * bend[3]
+
+
+@kernel
+def _add_shear_row(
+    by_shear: FloatArray,
+    k: int,
+    slope: Four,
+    bend: Four,
+    at_node: float,
+    by_rate: float,
+    gs: float,
+    ts: float,
+    gp: float,
+    tp: float,
+    gx: float,
+    gy: float,
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+) -> None:
+    """Mixed derivatives with respect to the centreline vectors and s_k, where ds/ds_k = at_node and dp/ds_k = by_rate."""
+    g, t = at_node * gs + by_rate * gp, at_node * ts + by_rate * tp
+    qx, qy, wx, wy = g * gx + t * ax, g * gy + t * ay, t * bx, t * by
+    by_shear[k, 0] += slope[0] * qx + bend[0] * wx
+    by_shear[k, 1] += slope[0] * qy + bend[0] * wy
+    by_shear[k, 2] += slope[1] * qx + bend[1] * wx
+    by_shear[k, 3] += slope[1] * qy + bend[1] * wy
+    by_shear[k, 6] += slope[2] * qx + bend[2] * wx
+    by_shear[k, 7] += slope[2] * qy + bend[2] * wy
+    by_shear[k, 8] += slope[3] * qx + bend[3] * wx
+    by_shear[k, 9] += slope[3] * qy + bend[3] * wy
+
+
+@kernel
+def _fill_centreline(work: ElasticWorkspace, tangent: FloatArray) -> None:
+    """Overwrite the tangent by the centreline's part."""
+    tangent[:] = 0.0
+    for a in range(4):
+        row = 6 * (a // 2) + 2 * (a % 2)
+        for b in range(4):
+            column = 6 * (b // 2) + 2 * (b % 2)
+            tangent[row, column] = work.xx[a, b]
+            tangent[row, column + 1] = work.xy[a, b]
+            tangent[row + 1, column] = work.xy[b, a]
+            tangent[row + 1, column + 1] = work.yy[a, b]
+
+
+@kernel
+def _carry_shear(
+    shear_i: NodalShear,
+    shear_j: NodalShear,
+    sums: ShearSums,
+    work: ElasticWorkspace,
+    gradient: FloatArray,
+    tangent: FloatArray,
+) -> None:
+    """Chain rule from the nodal shears to r_x and r_y of their nodes.
+
+    With h_k = ds_k/de, the mixed derivatives m_k and the second derivatives c_kl of the energy in the shears, the tangent gains
+    sum_k (m_k h_k^T + h_k m_k^T) + sum_kl c_kl h_k h_l^T + sum_k dU/ds_k d2s_k/de2; the second sum is folded into the m_k.
+    """
+    hi, hj = shear_gradient(shear_i), shear_gradient(shear_j)
+    _add_four(work.by_shear, 0, 2, 0.5 * sums.ii, hi)
+    _add_four(work.by_shear, 0, 8, sums.ij, hj)
+    _add_four(work.by_shear, 1, 8, 0.5 * sums.jj, hj)
+    _add_shear(0, 2, sums.i, hi, work.by_shear, gradient, tangent)
+    _add_shear(1, 8, sums.j, hj, work.by_shear, gradient, tangent)
+    add_shear_curvature(shear_i, sums.i, tangent, 2)
+    add_shear_curvature(shear_j, sums.j, tangent, 8)
+
+
+@kernel
+def _add_shear(
+    k: int, first: int, force: float, h: Four, mixed: FloatArray, gradient: FloatArray, tangent: FloatArray
+) -> None:
+    """Add force h to the gradient and m_k h^T + h m_k^T to the tangent, h in the four columns that begin at first."""
+    gradient[first] += force * h[0]
+    gradient[first + 1] += force * h[1]
+    gradient[first + 2] += force * h[2]
+    gradient[first + 3] += force * h[3]
+    for row in range(12):
+        m = mixed[k, row]
+        _add_four(tangent, row, first, m, h)
+        tangent[first, row] += m * h[0]
+        tangent[first + 1, row] += m * h[1]
+        tangent[first + 2, row] += m * h[2]
+        tangent[first + 3, row] += m * h[3]
+
+
+@kernel
+def _add_four(matrix: FloatArray, row: int, first: int, factor: float, values: Four) -> None:
+    """Add factor times four values to a row, from column first on."""
+    matrix[row, first] += factor * values[0]
+    matrix[row, first + 1] += factor * values[1]
+    matrix[row, first + 2] += factor * values[2]
+    matrix[row, first + 3] += factor * values[3]
+
+
+@kernel
+def _thickness_strain(section_x: float, section_y: float) -> float:
+    """eps_yy = (r_y . r_y - 1) / 2 at a node."""
+    return 0.5 * (section_x * section_x + section_y * section_y - 1.0)
+
+
+@kernel
+def _add_thickness(e: FloatArray, section: Section, length: float, gradient: FloatArray, tangent: FloatArray) -> None:
+    """Add force and tangent of the thickness stretch, E A L / 6 (eps_i^2 + eps_i eps_j + eps_j^2), to the rows of r_y."""
+    stiffness = section.thickness * length / 6.0
+    strain_i, strain_j = _thickness_strain(e[4], e[5]), _thickness_strain(e[10], e[11])
+    pressure_i, pressure_j = stiffness * (2.0 * strain_i + strain_j), stiffness * (2.0 * strain_j + strain_i)
+    for row in range(2):
+        gradient[4 + row] += pressure_i * e[4 + row]
+        gradient[10 + row] += pressure_j * e[10 + row]
+        tangent[4 + row, 4 + row] += pressure_i
+        tangent[10 + row, 10 + row] += pressure_j
+        for column in range(2):
+            tangent[4 + row, 4 + column] += 2.0 * stiffness * e[4 + row] * e[4 + column]
+            tangent[4 + row, 10 + column] += stiffness * e[4 + row] * e[10 + column]
+            tangent[10 + row, 4 + column] += stiffness * e[10 + row] * e[4 + column]
+            tangent[10 + row, 10 + column] += 2.0 * stiffness * e[10 + row] * e[10 + column]

@@ -1,0 +1,24 @@
+"""Stiffness and inertia of the belt's section, integrated over the thickness (Eqs. 8, 14 and 15)."""
+
+from typing import NamedTuple
+
+
+class Section(NamedTuple):
+    """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia."""
+
+    axial: float
+    """E A alpha1, N."""
+    bending: float
+    """E I alpha2, N m^2."""
+    quartic: float
+    """E I4 alpha2 with I4 = b h^5 / 80, N m^4."""
+    shear: float
+    """k_s G A alpha2, N."""
+    shear_gradient: float
+    """k_s G I alpha2, N m^2."""
+    thickness: float
+    """E A of the thickness stretch, N; no alpha touches it."""
+    mass: float
+    """rho A, kg/m."""
+    rotary_inertia: float
+    """rho I, kg m."""

@@ -1,0 +1,64 @@
+"""The command `beltdyn`, and what it does with errors."""
+
+import sys
+from collections.abc import Callable, Sequence
+
+from cyclopts import App, CycloptsError
+
+from beltdyn import __version__
+from beltdyn.cli.check import check
+from beltdyn.cli.console import show_error
+from beltdyn.cli.demo import demo
+from beltdyn.cli.new import new
+from beltdyn.cli.plot import plot
+from beltdyn.cli.run import run
+from beltdyn.cli.schema import schema
+from beltdyn.cli.static import static
+from beltdyn.errors import BeltdynError
+
+_BAD_INPUT = 2
+_INTERRUPTED = 130
+
+app = App(
+    name="beltdyn",
+    version=__version__,
+    help="Simulate belt drives: speeds, torques, tensions, slip and contact forces from one drive file.",
+    help_epilogue="Start with `beltdyn demo`, or with `beltdyn new`, `beltdyn check drive.toml` and "
+    "`beltdyn run drive.toml`.",
+    suppress_keyboard_interrupt=False,
+)
+_COMMANDS: tuple[Callable[..., object], ...] = (new, check, run, static, plot, demo, schema)
+for position, command in enumerate(_COMMANDS):
+    app.command(command, sort_key=position)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit.
+
+    The exit code is 0 when all went well, 2 for bad input, 3 for a simulation that could not go on, and
+    130 for an interruption by the keyboard.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words after `beltdyn`; by default those of this process.
+
+    Raises
+    ------
+    SystemExit
+        Always.
+    """
+    sys.exit(_exit_code(arguments))
+
+
+def _exit_code(arguments: Sequence[str] | None) -> int:
+    try:
+        return app(arguments, exit_on_error=False, result_action="return_int_as_exit_code_else_zero") or 0
+    except CycloptsError:
+        return _BAD_INPUT
+    except BeltdynError as error:
+        show_error(str(error))
+        return error.exit_code
+    except KeyboardInterrupt:
+        show_error("interrupted")
+        return _INTERRUPTED

@@ -1,0 +1,43 @@
+"""Where the command line writes, and in which style."""
+
+from collections.abc import Iterable
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+
+def show(text: str = "") -> None:
+    """Write a line on standard output, as it is."""
+    Console().print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
+    """Write a table whose first column holds names and whose other columns hold numbers."""
+    table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+    for index, heading in enumerate(headings):
+        table.add_column(heading, justify="right" if index else "left", header_style="dim")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    Console().print(table)
+
+
+def show_facts(facts: Iterable[tuple[str, str]]) -> None:
+    """Write lines of a name and what it is."""
+    grid = Table.grid(padding=(0, 2))
+    for name, fact in facts:
+        grid.add_row(Text(name, style="dim"), Text(fact))
+    Console().print(grid)
+
+
+def show_warnings(warnings: Iterable[str]) -> None:
+    """Write warnings on standard output, where they belong to what was asked for."""
+    for warning in warnings:
+        line = Text.assemble(("warning: ", "bold yellow"), warning)
+        Console().print(line, soft_wrap=True)
+
+
+def show_error(message: str) -> None:
+    """Write the lines of an error on standard error."""
+    for line in message.splitlines():
+        Console(stderr=True).print(Text.assemble(("error: ", "bold red"), line), soft_wrap=True)

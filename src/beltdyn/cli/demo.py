@@ -1,0 +1,28 @@
+"""`beltdyn demo`."""
+
+from importlib.resources import files
+from pathlib import Path
+
+from beltdyn.cli.console import show
+from beltdyn.cli.new import write_text
+from beltdyn.cli.plot import draw
+from beltdyn.cli.run import exit_code, simulate_to
+
+
+def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
+    """Run the two-pulley drive of Kerkkänen, García-Vallejo and Mikkola (2006), and draw its figures.
+
+    Parameters
+    ----------
+    folder
+        The folder for the drive file, its results and its figures.
+    """
+    from beltdyn.model import load
+
+    file = folder / "two_pulley.toml"
+    write_text(file, files("beltdyn").joinpath("published", "two_pulley.toml").read_text(encoding="utf-8"))
+    show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
+    run = simulate_to(load(file), folder / "two_pulley.nc")
+    if run.status == "completed":
+        draw(run, folder, animate=False)
+    return exit_code(run)

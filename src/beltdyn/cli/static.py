@@ -1,0 +1,25 @@
+"""`beltdyn static`."""
+
+from pathlib import Path
+
+from beltdyn.cli.console import show
+from beltdyn.cli.progress import progress_bar
+from beltdyn.cli.summary import show_summary
+
+
+def static(file: Path, /) -> None:
+    """Find the static equilibrium of a drive at rest: tensions, wrap angles and hub loads.
+
+    Parameters
+    ----------
+    file
+        The drive file, TOML.
+    """
+    from beltdyn.model import load
+    from beltdyn.solve import equilibrium
+
+    drive = load(file)
+    with progress_bar() as report:
+        run = equilibrium(drive, report)
+    show("Static equilibrium")
+    show_summary(run)

@@ -1,0 +1,175 @@
+"""Where an element touches a pulley: the intervals of its centreline with d >= 0.
+
+The centreline of an element is a cubic Bezier curve given by its control points, whatever the discretisation.  The squared
+distance to a pulley's centre is then a polynomial of degree six, and R^2 minus it has the sign of the penetration.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.contact.law import Wheel
+from beltdyn.kernel import kernel
+
+FloatArray = NDArray[np.float64]
+
+MAX_INTERVALS = 6
+"""More touching intervals than a polynomial of degree six can have on one element."""
+
+_PIECES = 4
+_STEPS = 60
+_RESOLUTION = 1e-13
+
+
+@kernel
+def out_of_reach(control: FloatArray, wheel: Wheel) -> bool:
+    """Whether the convex hull of the control points lies beyond a line that the pulley does not cross.
+
+    Parameters
+    ----------
+    control : ndarray, shape (4, 2)
+        Control points, m.
+    wheel
+        The pulley.
+
+    Returns
+    -------
+    bool
+        True only if no point of the curve can touch.
+    """
+    dx = 0.25 * (control[0, 0] + control[1, 0] + control[2, 0] + control[3, 0]) - wheel.center_x
+    dy = 0.25 * (control[0, 1] + control[1, 1] + control[2, 1] + control[3, 1]) - wheel.center_y
+    reach = wheel.radius * (dx * dx + dy * dy) ** 0.5
+    for k in range(4):
+        if dx * (control[k, 0] - wheel.center_x) + dy * (control[k, 1] - wheel.center_y) <= reach:
+            return False
+    return True
+
+
+@kernel
+def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, intervals: FloatArray) -> int:
+    """Find the intervals of the element on which the centreline is inside the pulley.
+
+    Parameters
+    ----------
+    control : ndarray, shape (4, 2)
+        Control points, m.
+    wheel
+        The pulley.
+    overlap : ndarray, shape (7,)
+        Scratch for the polynomial R^2 - |r - O|^2.
+    intervals : ndarray, shape (MAX_INTERVALS, 2)
+        The first rows are overwritten by the ends of the intervals, in the element coordinate 0 to 1.
+
+    Returns
+    -------
+    int
+        Number of intervals.
+    """
+    _fill_overlap(control, wheel, overlap)
+    count = 0
+    left, value_left = 0.0, _value(overlap, 0.0)
+    slope_left = _slope(overlap, 0.0)
+    inside = value_left >= 0.0
+    start = 0.0
+    for piece in range(_PIECES):
+        right = (piece + 1.0) / _PIECES
+        value_right, slope_right = _value(overlap, right), _slope(overlap, right)
+        turn, value_turn = right, value_right
+        if (value_left >= 0.0) == (value_right >= 0.0) and slope_left * slope_right < 0.0:
+            turn = _slope_root(overlap, left, right, slope_left > 0.0)
+            value_turn = _value(overlap, turn)
+        for end, value_end in ((turn, value_turn), (right, value_right)):
+            if (value_end >= 0.0) != inside:
+                root = _value_root(overlap, left, end, inside)
+                if inside and count < MAX_INTERVALS:
+                    intervals[count, 0], intervals[count, 1] = start, root
+                    count += 1
+                start, inside = root, not inside
+            left = end
+        value_left, slope_left = value_right, slope_right
+    if inside and count < MAX_INTERVALS:
+        intervals[count, 0], intervals[count, 1] = start, 1.0
+        count += 1
+    return count
+
+
+@kernel
+def _fill_overlap(control: FloatArray, wheel: Wheel, overlap: FloatArray) -> None:
+    """Coefficients of R^2 - |r(xi) - O|^2 in powers of xi."""
+    overlap[:] = 0.0
+    overlap[0] = wheel.radius * wheel.radius
+    for axis in range(2):
+        center = wheel.center_x if axis == 0 else wheel.center_y
+        p0, p1 = control[0, axis] - center, control[1, axis] - center
+        p2, p3 = control[2, axis] - center, control[3, axis] - center
+        cubic = (p0, 3.0 * (p1 - p0), 3.0 * (p2 - 2.0 * p1 + p0), p3 - 3.0 * (p2 - p1) - p0)
+        for i in range(4):
+            for j in range(4):
+                overlap[i + j] -= cubic[i] * cubic[j]
+
+
+@kernel
+def _value(overlap: FloatArray, xi: float) -> float:
+    """The polynomial at xi."""
+    total = overlap[6]
+    for power in range(5, -1, -1):
+        total = total * xi + overlap[power]
+    return total
+
+
+@kernel
+def _slope(overlap: FloatArray, xi: float) -> float:
+    """Its derivative at xi."""
+    total = 6.0 * overlap[6]
+    for power in range(5, 0, -1):
+        total = total * xi + power * overlap[power]
+    return total
+
+
+@kernel
+def _slope_rate(overlap: FloatArray, xi: float) -> float:
+    """Its second derivative at xi."""
+    total = 30.0 * overlap[6]
+    for power in range(5, 1, -1):
+        total = total * xi + power * (power - 1) * overlap[power]
+    return total
+
+
+@kernel
+def _value_root(overlap: FloatArray, left: float, right: float, falling: bool) -> float:
+    """The root between two points of opposite sign; Newton, and halving where Newton would leave the bracket."""
+    xi = 0.5 * (left + right)
+    for _ in range(_STEPS):
+        value = _value(overlap, xi)
+        if (value >= 0.0) == falling:
+            left = xi
+        else:
+            right = xi
+        slope = _slope(overlap, xi)
+        trial = xi - value / slope if slope != 0.0 else left
+        if not left < trial < right:
+            trial = 0.5 * (left + right)
+        if abs(trial - xi) < _RESOLUTION:
+            return trial
+        xi = trial
+    return xi
+
+
+@kernel
+def _slope_root(overlap: FloatArray, left: float, right: float, falling: bool) -> float:
+    """The extremum between two points whose slopes have opposite sign, found as `_value_root` finds a root."""
+    xi = 0.5 * (left + right)
+    for _ in range(_STEPS):
+        slope = _slope(overlap, xi)
+        if (slope >= 0.0) == falling:
+            left = xi
+        else:
+            right = xi
+        rate = _slope_rate(overlap, xi)
+        trial = xi - slope / rate if rate != 0.0 else left
+        if not left < trial < right:
+            trial = 0.5 * (left + right)
+        if abs(trial - xi) < _RESOLUTION:
+            return trial
+        xi = trial
+    return xi

@@ -1,0 +1,55 @@
+"""Penetration, normal and tangent of a centreline point against a pulley (Eqs. 18, 19, 21 and 22)."""
+
+from math import sqrt
+from typing import NamedTuple
+
+from beltdyn.contact.law import Wheel
+from beltdyn.kernel import kernel
+
+
+class Approach(NamedTuple):
+    """How a belt point stands and moves against a pulley."""
+
+    distance: float
+    """rho = |r - O|, m."""
+    penetration: float
+    """d = R - rho, m; positive when the point is inside the pulley (Eq. 18)."""
+    normal_x: float
+    """Outward unit normal n (Eq. 19)."""
+    normal_y: float
+    radial: float
+    """n . dr/dt, m/s; the penetration grows at the opposite rate."""
+    circumferential: float
+    """t . dr/dt with t = (-n_y, n_x) (Eq. 21), m/s."""
+
+
+@kernel
+def approach(x: float, y: float, velocity_x: float, velocity_y: float, wheel: Wheel) -> Approach:
+    """Place a centreline point against a pulley (Eqs. 18, 19 and 21).
+
+    Parameters
+    ----------
+    x, y
+        Position r of the point, m.
+    velocity_x, velocity_y
+        Its velocity, m/s.
+    wheel
+        The pulley.
+    """
+    dx, dy = x - wheel.center_x, y - wheel.center_y
+    distance = sqrt(dx * dx + dy * dy)
+    nx, ny = dx / distance, dy / distance
+    return Approach(
+        distance,
+        wheel.radius - distance,
+        nx,
+        ny,
+        nx * velocity_x + ny * velocity_y,
+        nx * velocity_y - ny * velocity_x,
+    )
+
+
+@kernel
+def slip_velocity(point: Approach, wheel: Wheel) -> float:
+    """Slip velocity v_t = t . dr/dt - omega R (Eq. 22), m/s; published with R, not with the radius of the point."""
+    return point.circumferential - wheel.speed * wheel.radius

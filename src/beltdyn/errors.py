@@ -1,0 +1,22 @@
+"""What can go wrong, each with the exit code of the command line."""
+
+
+class BeltdynError(Exception):
+    """Base of every error that beltdyn raises on purpose.
+
+    The message says the value, the rule and the remedy, and is meant to be shown as it is.
+    """
+
+    exit_code = 2
+
+
+class ModelError(BeltdynError, ValueError):
+    """The input cannot be used: a drive file, a result file or an output path."""
+
+    exit_code = 2
+
+
+class ConvergenceError(BeltdynError, RuntimeError):
+    """A simulation cannot go on: the message says when, where and what to try."""
+
+    exit_code = 3

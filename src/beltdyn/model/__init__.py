@@ -1,0 +1,35 @@
+"""What a user describes: the drive, validated and immutable, and its file."""
+
+from beltdyn.model.advice import advise
+from beltdyn.model.belt import Belt
+from beltdyn.model.contact import Contact
+from beltdyn.model.drive import Drive
+from beltdyn.model.installation import Installation, install
+from beltdyn.model.path import Path
+from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Table
+from beltdyn.model.pulley import Pulley
+from beltdyn.model.simulation import Simulation
+from beltdyn.model.toml_reader import json_schema, load, loads
+from beltdyn.model.toml_writer import dumps
+
+__all__ = [
+    "Belt",
+    "Constant",
+    "Contact",
+    "CosineRamp",
+    "CosineRampPublished",
+    "Drive",
+    "Installation",
+    "Path",
+    "Profile",
+    "Pulley",
+    "Ramp",
+    "Simulation",
+    "Table",
+    "advise",
+    "dumps",
+    "install",
+    "json_schema",
+    "load",
+    "loads",
+]

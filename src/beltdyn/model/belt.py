@@ -1,0 +1,79 @@
+"""The belt: a closed loop of rectangular section."""
+
+from pydantic import Field
+
+from beltdyn.model.part import Part
+from beltdyn.model.quantity import Count, Density, Length, Ratio, Stress
+
+
+class Belt(Part):
+    """A closed belt of rectangular section, made of equal elements.
+
+    The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
+    or text such as ``"25 mm"``.
+    """
+
+    length: Length = Field(gt=0, description="the unstretched length of the closed belt, in m")
+    width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
+    thickness: Length = Field(gt=0, description="the thickness of the belt, in the plane of the drive, in m")
+    density: Density = Field(gt=0, description="the density of the belt, in kg/m^3")
+    youngs_modulus: Stress = Field(gt=0, description="Young's modulus of the belt, in Pa")
+    poissons_ratio: Ratio = Field(gt=-1, lt=0.5, description="Poisson's ratio of the belt")
+    axial_factor: Ratio = Field(1.0, gt=0, description="the factor α₁ on the axial stiffness")
+    bending_factor: Ratio = Field(1.0, gt=0, description="the factor α₂ on the bending and shear stiffness")
+    shear_correction: Ratio | None = Field(
+        None,
+        gt=0,
+        description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
+    )
+    elements: Count = Field(20, ge=3, le=100_000, description="the number of belt elements")
+    quadrature_points: Count = Field(
+        4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces"
+    )
+
+    @property
+    def area(self) -> float:
+        """Area of the section, m²."""
+        return self.width * self.thickness
+
+    @property
+    def second_moment(self) -> float:
+        """Second moment of area of the section, b h³/12, m⁴."""
+        return self.width * self.thickness**3 / 12
+
+    @property
+    def fourth_moment(self) -> float:
+        """Fourth moment of area of the section, b h⁵/80, m⁶."""
+        return self.width * self.thickness**5 / 80
+
+    @property
+    def shear_modulus(self) -> float:
+        """Shear modulus E / 2(1 + ν), Pa."""
+        return self.youngs_modulus / (2 * (1 + self.poissons_ratio))
+
+    @property
+    def shear_coefficient(self) -> float:
+        """Shear correction factor as given, or 10(1 + ν) / (12 + 11ν) for a rectangle."""
+        if self.shear_correction is not None:
+            return self.shear_correction
+        return 10 * (1 + self.poissons_ratio) / (12 + 11 * self.poissons_ratio)
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Axial stiffness E A α₁, N."""
+        return self.youngs_modulus * self.area * self.axial_factor
+
+    @property
+    def bending_stiffness(self) -> float:
+        """Bending stiffness E I α₂, N m²."""
+        return self.youngs_modulus * self.second_moment * self.bending_factor
+
+    @property
+    def mass_per_length(self) -> float:
+        """Mass of a metre of unstretched belt, ρ A, kg/m."""
+        return self.density * self.area
+
+    @property
+    def rotary_inertia(self) -> float:
+        """Rotary inertia of a metre of unstretched belt, ρ I, kg m."""
+        return self.density * self.second_moment

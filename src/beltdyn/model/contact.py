@@ -1,0 +1,53 @@
+"""The contact between belt and pulleys: penalty normal force and creep-rate friction."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from beltdyn.model.part import Part
+from beltdyn.model.quantity import Count, CreepRate, LineDamping, LineStiffness, Ratio, Speed
+
+_SLOPE_OF_LAW = {"force_slope": "creep_rate_factor", "coefficient_slope": "creep_velocity"}
+
+
+class Contact(Part):
+    """Penalty contact with tri-linear friction, the same on every pulley.
+
+    The friction law ``"force_slope"`` (as published) takes `creep_rate_factor`, the slope of the friction
+    force over the slip velocity; ``"coefficient_slope"`` takes `creep_velocity`, the slip velocity at which
+    the coefficient of friction is reached.
+    """
+
+    stiffness: LineStiffness = Field(
+        gt=0, description="the normal force per metre of belt and metre of penetration, in N/m^2"
+    )
+    damping: LineDamping = Field(
+        0.0, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
+    )
+    friction: Ratio = Field(ge=0, description="the coefficient of friction")
+    friction_law: Literal["force_slope", "coefficient_slope"] = Field("force_slope", description="the friction law")
+    creep_rate_factor: CreepRate | None = Field(
+        None, gt=0, description="the slope of the friction force over the slip velocity, in kg/(m*s)"
+    )
+    creep_velocity: Speed | None = Field(
+        None, gt=0, description="the slip velocity at which friction is fully used, in m/s"
+    )
+    integration: Literal["zone", "fixed"] = Field(
+        "zone", description="the place where the contact forces are integrated: the touching zone, or the whole element"
+    )
+    quadrature_points: Count = Field(
+        5, ge=1, le=64, description="the number of Gauss points an element for the contact forces"
+    )
+
+    @model_validator(mode="after")
+    def _has_the_slope_of_its_law(self) -> Self:
+        for law, key in _SLOPE_OF_LAW.items():
+            given = getattr(self, key) is not None
+            if law == self.friction_law and not given:
+                raise ValueError(f'{key} is missing: the friction law "{law}" needs it. Give {key}')
+            if law != self.friction_law and given:
+                raise ValueError(
+                    f'{key} belongs to the friction law "{law}", not to "{self.friction_law}". '
+                    f'Remove it, or set friction_law = "{law}"'
+                )
+        return self

@@ -1,0 +1,57 @@
+"""The drive: a belt, its pulleys, their contact, and how to simulate them."""
+
+from functools import cached_property
+from typing import Self
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from beltdyn.model.belt import Belt
+from beltdyn.model.contact import Contact
+from beltdyn.model.layout import lay_path
+from beltdyn.model.part import Part
+from beltdyn.model.path import Path
+from beltdyn.model.pulley import Pulley
+from beltdyn.model.simulation import Simulation
+from beltdyn.model.toml_writer import dumps
+
+_LARGEST_STRAIN = 0.5
+
+
+class Drive(Part):
+    """A belt drive, complete and consistent.
+
+    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact` and
+    `simulation`, each a part or a mapping of its arguments.
+    """
+
+    belt: Belt = Field(description="the group [belt]")
+    pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
+    contact: Contact = Field(description="the group [contact]")
+    simulation: Simulation = Field(description="the group [simulation]")
+    _source: str | None = PrivateAttr(None)
+
+    @model_validator(mode="after")
+    def _belt_fits_its_path(self) -> Self:
+        length, path = self.belt.length, self.path.length
+        if length >= path:
+            raise ValueError(
+                f"belt.length = {length:.5g} m is longer than the path around the pulleys ({path:.5g} m): "
+                "the belt would hang slack. Shorten it, or move the pulleys apart."
+            )
+        if path / length - 1 > _LARGEST_STRAIN:
+            raise ValueError(
+                f"belt.length = {length:.5g} m is too short for the path around the pulleys ({path:.5g} m): "
+                f"it would be stretched by {path / length - 1:.0%}, and {_LARGEST_STRAIN:.0%} is the limit. "
+                "Lengthen it, or move the pulleys together."
+            )
+        return self
+
+    @cached_property
+    def path(self) -> Path:
+        """The path of the belt around its pulleys."""
+        return lay_path(self.pulleys)
+
+    @property
+    def text(self) -> str:
+        """The TOML text that the drive came from, or one that gives the same drive."""
+        return self._source or dumps(self)

@@ -1,0 +1,69 @@
+"""What to expect of a belt at rest on its pulleys, before anything is simulated."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.model.drive import Drive
+
+
+@dataclass(frozen=True)
+class Installation:
+    """Estimates for the belt at rest, without friction and bending stiffness.
+
+    Attributes
+    ----------
+    strain : float
+        Strain of the belt laid on its path, path / length - 1.
+    laid_tension : float
+        Tension of the laid belt, N.
+    tension : float
+        Tension once the belt has sunk into the pulleys, N.
+    penetrations : ndarray, shape (n,), m
+        How deep it sinks into each pulley.
+    arc_errors : ndarray, shape (n,), m
+        How far a cubic element misses the circle of each pulley.
+    """
+
+    strain: float
+    laid_tension: float
+    tension: float
+    penetrations: NDArray[np.float64]
+    arc_errors: NDArray[np.float64]
+
+
+def install(drive: Drive) -> Installation:
+    """Estimate tension and penetration of the belt at rest.
+
+    At the stretch g the tension is T = E A alpha1 (g^2 - 1) g / 2 (the axial term of the strain energy). On a
+    pulley of radius R it presses with T g / R per unstretched metre, so the belt sinks by d = T g / (R k_p),
+    which shortens the path by the wrap angle times d. An element over the angle phi of a circle, a cubic
+    Hermite curve, misses it by R phi^4 / 384.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    Installation
+    """
+    from scipy.optimize import brentq
+
+    length, path = drive.belt.length, drive.path
+    radii = np.array([pulley.radius for pulley in drive.pulleys])
+
+    def tension(stretch: float) -> float:
+        return drive.belt.axial_stiffness * (stretch**2 - 1) * stretch / 2
+
+    def penetrations(stretch: float) -> NDArray[np.float64]:
+        return np.asarray(tension(stretch) * stretch / (radii * drive.contact.stiffness))
+
+    def excess(stretch: float) -> float:
+        return stretch * length + float(path.wrap_angles @ penetrations(stretch)) - path.length
+
+    laid = path.length / length
+    stretch = float(brentq(excess, 1.0, laid * (1 + 1e-9), xtol=1e-14))
+    angles = path.length / (drive.belt.elements * radii)
+    return Installation(laid - 1, tension(laid), tension(stretch), penetrations(stretch), radii * angles**4 / 384)

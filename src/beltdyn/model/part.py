@@ -1,0 +1,52 @@
+"""The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
+
+from typing import Any, Self
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from beltdyn.errors import ModelError
+from beltdyn.model.messages import explain
+
+
+class Part(BaseModel):
+    """A validated, immutable piece of a drive; its constructor's arguments are the keys of the file."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True)
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise ModelError(explain(error, type(self), data)) from None
+
+    # Tells pydantic that parts inside parts need not go through this constructor, so that it reports
+    # all errors of a drive at once, each with its path.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Part) and type(self) is type(other) and self.arguments == other.arguments
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """The constructor's arguments that make this part."""
+        return {field.alias or name: getattr(self, name) for name, field in type(self).model_fields.items()}
+
+    def replace(self, **changes: Any) -> Self:
+        """Make a copy with some values changed, and validate it.
+
+        Parameters
+        ----------
+        **changes
+            The constructor's arguments that differ.
+
+        Returns
+        -------
+        Part
+            A part of the same kind.
+
+        Raises
+        ------
+        ModelError
+            If the changed part is not valid.
+        """
+        return type(self)(**self.arguments | changes)

@@ -1,0 +1,46 @@
+"""How a drive is simulated: duration, outputs, start and integrator."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from beltdyn.model.part import Part
+from beltdyn.model.quantity import Ratio, Time
+
+_MOST_OUTPUTS = 1_000_000
+
+
+class Simulation(Part):
+    """Settings of a transient simulation from time zero."""
+
+    duration: Time = Field(gt=0, description="the simulated time, in s")
+    output_interval: Time = Field(gt=0, description="the time between two outputs, in s")
+    start: Literal["equilibrium", "laid"] = Field(
+        "equilibrium", description="the state at time zero: static equilibrium, or the belt laid on its path"
+    )
+    integrator: Literal["generalized_alpha", "cvode", "ida", "bdf", "radau"] = Field(
+        "generalized_alpha", description="the time integrator"
+    )
+    spectral_radius: Ratio = Field(
+        0.8, ge=0, le=1, description="the spectral radius of generalized_alpha at infinite frequency, 0 to 1"
+    )
+    rtol: Ratio = Field(1e-3, gt=0, lt=1, description="the relative tolerance of a time step, below 1")
+    max_step: Time | None = Field(None, gt=0, description="the longest time step, in s")
+    joint: Literal["shared_node", "multipliers"] = Field(
+        "shared_node",
+        description="the joint of the belt's ends: by one shared node, or by Lagrange multipliers",
+    )
+
+    @model_validator(mode="after")
+    def _outputs_fit_the_duration(self) -> Self:
+        if self.output_interval > self.duration:
+            raise ValueError(
+                f"output_interval = {self.output_interval:g} s is longer than duration = {self.duration:g} s. "
+                "Shorten the interval, or simulate longer"
+            )
+        if self.duration / self.output_interval > _MOST_OUTPUTS:
+            raise ValueError(
+                f"output_interval = {self.output_interval:g} s asks for {self.duration / self.output_interval:.3g} "
+                f"outputs, and {_MOST_OUTPUTS:,} is the limit. Lengthen the interval"
+            )
+        return self

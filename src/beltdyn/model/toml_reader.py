@@ -1,0 +1,94 @@
+"""Drives from TOML."""
+
+import pathlib
+import tomllib
+from typing import Any
+
+from pydantic import ValidationError
+
+from beltdyn.errors import ModelError
+from beltdyn.model.drive import Drive
+from beltdyn.model.messages import explain, reason
+
+
+def load(path: str | pathlib.Path) -> Drive:
+    """Read a drive file.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        A TOML file.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, or does not describe a drive.
+    """
+    path = pathlib.Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ModelError(f"{path} is not a text in UTF-8. A drive file is TOML: `beltdyn new` writes one.") from error
+    except (OSError, ValueError) as error:
+        raise ModelError(f"{path} cannot be read: {reason(error)}. Check its name.") from error
+    return loads(text, base=path.parent)
+
+
+def loads(text: str, base: pathlib.Path | None = None) -> Drive:
+    """Make a drive from the text of a drive file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    base : pathlib.Path, optional
+        The folder that relative paths in the text start from; by default the working directory.
+
+    Returns
+    -------
+    Drive
+
+    Raises
+    ------
+    ModelError
+        If the text is not TOML, or does not describe a drive.
+    """
+    data = _parse(text)
+    try:
+        drive = Drive.model_validate(data, context={"base": base})
+    except ValidationError as error:
+        raise ModelError(explain(error, Drive, data)) from None
+    if not _refers_to_files(data):
+        drive._source = text
+    return drive
+
+
+def _parse(text: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ModelError(f"the drive file is not valid TOML: {error}. Correct the file there.") from error
+    except (ValueError, RecursionError) as error:
+        raise ModelError(
+            "the drive file is not valid TOML: it nests too deeply, or holds too long a number."
+        ) from error
+
+
+def _refers_to_files(data: dict[str, Any]) -> bool:
+    """Tell whether a text is of no use without the CSV files it names."""
+    profiles = [pulley.get(key) for pulley in data["pulley"] for key in ("speed", "torque")]
+    return any(isinstance(profile, dict) and "file" in profile for profile in profiles)
+
+
+def json_schema() -> dict[str, Any]:
+    """Make the JSON schema of drive files, with which editors check and complete them.
+
+    Returns
+    -------
+    dict
+    """
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Drive.model_json_schema()}

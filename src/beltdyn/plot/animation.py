@@ -1,0 +1,70 @@
+"""A run as a moving picture."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.colors import Normalize
+
+from beltdyn.errors import ModelError
+from beltdyn.plot.drive import DrivePicture
+from beltdyn.plot.style import new_figure, styled
+from beltdyn.results import Run
+from beltdyn.results.atomic import atomic_path
+
+_DPI = 100
+
+
+@styled
+def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25) -> Path:
+    """Write an animation of belt and pulleys, the belt's tension in color.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    path : Path or str
+        The file: a GIF, or an MP4 where the program ffmpeg is installed.
+    frames : int
+        Largest number of pictures; they are spread evenly over the outputs.
+    frame_rate : float
+        Pictures shown per second.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output, the format is unknown or needs a program that is missing, or the file
+        cannot be written.
+    """
+    path = Path(path)
+    run.require_output()
+    writer = _writer(path, frame_rate)
+    figure = new_figure()
+    tension = run.dataset["belt_tension"]
+    picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
+    outputs = np.unique(np.linspace(0, run.dataset.sizes["time"] - 1, frames).round().astype(int))
+    with atomic_path(path) as temporary, writer.saving(figure, str(temporary), _DPI):
+        for output in outputs:
+            picture.show(run.dataset.isel(time=output))
+            writer.grab_frame()
+            figure.set_layout_engine("none")
+    return path
+
+
+def _writer(path: Path, frame_rate: int) -> AbstractMovieWriter:
+    match path.suffix.lower():
+        case ".gif":
+            return PillowWriter(fps=frame_rate)
+        case ".mp4" if FFMpegWriter.isAvailable():
+            return FFMpegWriter(fps=frame_rate)
+        case ".mp4":
+            raise ModelError(f"{path} cannot be written: MP4 needs the program ffmpeg. Install it, or write a .gif.")
+        case suffix:
+            raise ModelError(
+                f"{path} cannot be written: {suffix or 'no suffix'} is not a format for animations. Use .gif or .mp4."
+            )

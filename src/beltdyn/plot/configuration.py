@@ -1,0 +1,41 @@
+"""The drive as it stands at one instant."""
+
+from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
+
+from beltdyn.plot.drive import DrivePicture, draw_rotation
+from beltdyn.plot.instant import at
+from beltdyn.plot.style import axes_or_new, styled
+from beltdyn.results import Run
+
+
+@styled
+def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -> Axes:
+    """Draw belt and pulleys at one instant, the belt's tension in color.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    time : float, optional
+        The instant, s; the output nearest to it is drawn. The last one by default.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    instant = at(run, time)
+    ax = axes_or_new(ax)
+    tension = instant["belt_tension"].values
+    DrivePicture(run, ax, Normalize(tension.min(), tension.max())).show(instant)
+    for pulley, speed in zip(run.drive.pulleys, instant["pulley_speed"].values, strict=True):
+        draw_rotation(ax, pulley, float(speed))
+    return ax

@@ -1,0 +1,122 @@
+"""Figures over time."""
+
+import xarray as xr
+from matplotlib.axes import Axes
+
+from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, styled, unit
+from beltdyn.results import Run
+
+_ENERGIES = (
+    "driver_work",
+    "torque_work",
+    "kinetic_energy",
+    "strain_energy",
+    "penalty_energy",
+    "friction_loss",
+    "damping_loss",
+)
+
+
+@styled
+def speeds(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the speeds of the pulleys over time.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    return _lines(run.dataset["pulley_speed"], axes_or_new(ax))
+
+
+@styled
+def torques(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the torques of the belt on the pulleys over time.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    return _lines(run.dataset["pulley_torque"], axes_or_new(ax))
+
+
+@styled
+def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the tensions of the spans over time.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    return _lines(run.dataset["span_tension"], axes_or_new(ax))
+
+
+@styled
+def energy(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the energy account over time: work put in, energy stored, energy lost.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    run.require_output()
+    ax = axes_or_new(ax)
+    for number, name in enumerate(_ENERGIES):
+        variable = run.dataset[name]
+        style = "-" if name.endswith("energy") else dash(1 if name.endswith("work") else 2)
+        _line(ax, variable, str(variable.attrs["long_name"]), number, style)
+    closure = float(run.dataset["energy_closure"][-1])
+    ax.set(xlabel=label(run.dataset["time"]), ylabel=f"Energy [{unit(run.dataset[_ENERGIES[0]])}]")
+    ax.set_title(f"Closure error {closure:.1e} of the energy put in")
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return ax
+
+
+def _lines(variable: xr.DataArray, ax: Axes) -> Axes:
+    """Draw one line for each name along the second dimension."""
+    for number, name in enumerate(variable[variable.dims[1]].values):
+        _line(ax, variable[:, number], str(name), number, dash(number))
+    ax.set(xlabel=label(variable["time"]), ylabel=label(variable))
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2)
+    return ax
+
+
+def _line(ax: Axes, values: xr.DataArray, name: str, number: int, style: Dash) -> None:
+    marker = "o" if values.size == 1 else ""
+    ax.plot(values["time"], values, label=name, color=color(number), linestyle=style, marker=marker)

@@ -1,0 +1,164 @@
+"""How every figure looks, and how axes are labelled from the dataset."""
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, ParamSpec, TypeVar
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from cycler import cycler
+from matplotlib.axes import Axes
+from matplotlib.colors import Colormap, ListedColormap
+from matplotlib.figure import Figure
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Dash = str | tuple[int, tuple[float, ...]]
+
+INK = "#2b2f36"
+"""Color of text and outlines."""
+
+PALE = "#e9ecf1"
+"""Color of surfaces."""
+
+COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#5d5d5d")
+"""Colors of lines (Okabe and Ito 2008), which all can tell apart."""
+
+DASHES: tuple[Dash, ...] = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (6, 1.4, 1.2, 1.4)))
+"""Line styles, so that lines that lie on each other can both be seen."""
+
+SIZE = (7.0, 3.8)
+"""Width and height of a figure, inches."""
+
+_RULES: dict[Any, Any] = {
+    "figure.dpi": 110,
+    "savefig.dpi": 160,
+    "font.size": 10,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 10,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": INK,
+    "axes.linewidth": 0.8,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.prop_cycle": cycler(color=COLORS),
+    "axes.formatter.useoffset": False,
+    "axes.xmargin": 0.02,
+    "grid.color": "#dfe3e8",
+    "grid.linewidth": 0.7,
+    "lines.linewidth": 1.7,
+    "lines.solid_capstyle": "round",
+    "legend.frameon": False,
+    "legend.fontsize": 9,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
+}
+
+
+def styled(function: Callable[P, R]) -> Callable[P, R]:
+    """Make a function draw in the style of this package.
+
+    Parameters
+    ----------
+    function : callable
+        A function that draws.
+
+    Returns
+    -------
+    callable
+        The same function, with the style in force while it runs.
+    """
+
+    @wraps(function)
+    def draw(*args: P.args, **kwargs: P.kwargs) -> R:
+        with mpl.rc_context(_RULES):
+            return function(*args, **kwargs)
+
+    return draw
+
+
+def new_figure(size: tuple[float, float] = SIZE) -> Figure:
+    """Make a figure that belongs to no window, for files.
+
+    Parameters
+    ----------
+    size : tuple of float
+        Width and height, inches.
+
+    Returns
+    -------
+    Figure
+        An empty figure.
+    """
+    return Figure(figsize=size, layout="constrained")
+
+
+def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
+    """Give the axes to draw on.
+
+    Parameters
+    ----------
+    ax : Axes or None
+        The caller's axes, or None for a new figure.
+    size : tuple of float
+        Width and height of a new figure, inches.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    return plt.subplots(figsize=size, layout="constrained")[1] if ax is None else ax
+
+
+def unit(variable: xr.DataArray) -> str:
+    """Give the unit of a variable as it is printed.
+
+    Parameters
+    ----------
+    variable : DataArray
+        A variable of a result.
+
+    Returns
+    -------
+    str
+        Such as "N·m".
+    """
+    return str(variable.attrs["units"]).replace(" ", "·")
+
+
+def label(variable: xr.DataArray) -> str:
+    """Give the label of an axis.
+
+    Parameters
+    ----------
+    variable : DataArray
+        A variable of a result.
+
+    Returns
+    -------
+    str
+        Such as "Span tension [N]".
+    """
+    return f"{variable.attrs['long_name']} [{unit(variable)}]"
+
+
+def dash(number: int) -> Dash:
+    """Give the line style of the line of this number, counted from 0."""
+    return DASHES[number % len(DASHES)]
+
+
+def color(number: int) -> str:
+    """Give the color of the line of this number, counted from 0."""
+    return COLORS[number % len(COLORS)]
+
+
+def tension_colors() -> Colormap:
+    """Give the color map of the tension: from dark blue to yellow, without tones too pale for white paper."""
+    return ListedColormap(mpl.colormaps["plasma"](np.linspace(0.0, 0.88, 256)), "tension")

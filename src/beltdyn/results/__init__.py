@@ -1,0 +1,28 @@
+"""The results of a run: one labelled dataset, its file, and what is derived from it."""
+
+from beltdyn.results.layout import Layout
+from beltdyn.results.provenance import provenance
+from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder
+from beltdyn.results.run import Run, open_run
+from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
+from beltdyn.results.summary import PulleySummary, SpanSummary, Summary, summarize
+from beltdyn.results.tables import write_csv
+
+__all__ = [
+    "COORDINATES",
+    "RECORDED",
+    "VARIABLES",
+    "FileRecorder",
+    "Layout",
+    "MemoryRecorder",
+    "PulleySummary",
+    "Recorder",
+    "Run",
+    "SpanSummary",
+    "Summary",
+    "Variable",
+    "open_run",
+    "provenance",
+    "summarize",
+    "write_csv",
+]

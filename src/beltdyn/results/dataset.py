@@ -1,0 +1,105 @@
+"""The labelled dataset of a run, from arrays in memory or lazily from its file."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from beltdyn.errors import ModelError
+from beltdyn.results.layout import Layout
+from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES
+
+
+def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> xr.Dataset:
+    """Label arrays with their dimensions, coordinates and units.
+
+    Parameters
+    ----------
+    layout : Layout
+        Names and reference coordinates.
+    arrays : mapping
+        An array for every name in `RECORDED`, each with one row for each instant.
+    attributes : mapping
+        Global attributes.
+
+    Returns
+    -------
+    xarray.Dataset
+        The dataset.
+    """
+    coordinates = layout.coordinates | {"time": arrays["time"]}
+    return xr.Dataset(
+        {name: (variable.dims, arrays[name], variable.attributes) for name, variable in VARIABLES.items()},
+        {name: (variable.dims, coordinates[name], variable.attributes) for name, variable in COORDINATES.items()},
+        dict(attributes),
+    )
+
+
+def open_dataset(path: Path) -> xr.Dataset:
+    """Open a result file; values are read when they are used.
+
+    Parameters
+    ----------
+    path : Path
+        A file written by `FileRecorder`, finished or not.
+
+    Returns
+    -------
+    xarray.Dataset
+        Its complete outputs.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read or is not a result of beltdyn.
+    """
+    try:
+        dataset = xr.open_dataset(path, engine="h5netcdf", decode_times=False)
+    except (OSError, ValueError, KeyError) as error:
+        raise ModelError(f"{path} cannot be read as a result file: {error}.") from error
+    missing = [name for name in (*COORDINATES, *VARIABLES) if name not in dataset.variables]
+    missing += [name for name in ("drive", "status") if name not in dataset.attrs]
+    if missing:
+        dataset.close()
+        raise ModelError(
+            f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
+        )
+    complete = int(np.count_nonzero(np.isfinite(dataset["time"].values)))
+    result = dataset.isel(time=slice(complete))
+    result.set_close(dataset.close)
+    return result
+
+
+def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Check names and shapes of a chunk of outputs.
+
+    Parameters
+    ----------
+    layout : Layout
+        Sizes of the dimensions.
+    chunk : mapping
+        An array for every name in `RECORDED`, each with one row for each new output.
+
+    Returns
+    -------
+    dict
+        The same arrays in the schema's types and order.
+
+    Raises
+    ------
+    ValueError
+        If a name is missing or unknown, or a shape is wrong.
+    """
+    if chunk.keys() != RECORDED.keys():
+        names = sorted(chunk.keys() ^ RECORDED.keys())
+        raise ValueError(f"missing or unknown variables in a chunk of outputs: {', '.join(names)}")
+    outputs = len(chunk["time"])
+    arrays = {name: np.asarray(chunk[name], dtype=variable.dtype) for name, variable in RECORDED.items()}
+    for name, array in arrays.items():
+        expected = layout.shape(RECORDED[name], outputs)
+        if array.shape != expected:
+            raise ValueError(f"{name} has shape {array.shape}, expected {expected}")
+    return arrays

@@ -1,0 +1,97 @@
+"""What is recorded: the names and reference coordinates along every dimension but time."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, COORDINATES, Variable
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """Names and reference coordinates of what is recorded.
+
+    Attributes
+    ----------
+    pulleys : tuple of str
+        Names of the pulleys.
+    spans : tuple of str
+        Names of the spans, "driver-driven" for the one from driver to driven.
+    node_coordinate : ndarray, shape (nodes,)
+        Belt coordinate of the nodes in the unstretched belt, m.
+    element_coordinate : ndarray, shape (elements,)
+        Belt coordinate of the elements' middles in the unstretched belt, m.
+    belt_coordinate : ndarray, shape (contact_points,)
+        Belt coordinate of the contact points in the unstretched belt, m.
+    """
+
+    pulleys: tuple[str, ...]
+    spans: tuple[str, ...]
+    node_coordinate: FloatArray
+    element_coordinate: FloatArray
+    belt_coordinate: FloatArray
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes."""
+        return len(self.node_coordinate)
+
+    @property
+    def elements(self) -> int:
+        """Number of elements."""
+        return len(self.element_coordinate)
+
+    @property
+    def contact_points(self) -> int:
+        """Number of points at which contact is recorded."""
+        return len(self.belt_coordinate)
+
+    @property
+    def coordinates(self) -> dict[str, NDArray[Any]]:
+        """Every coordinate of the dataset but time, by name."""
+        values: Mapping[str, Any] = {
+            "pulley": self.pulleys,
+            "span": self.spans,
+            "axis": AXIS_NAMES,
+            "coordinate": COORDINATE_NAMES,
+            "node_coordinate": self.node_coordinate,
+            "element_coordinate": self.element_coordinate,
+            "belt_coordinate": self.belt_coordinate,
+        }
+        return {name: np.asarray(value, dtype=COORDINATES[name].dtype) for name, value in values.items()}
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Size of every dimension but time."""
+        return {
+            "pulley": len(self.pulleys),
+            "span": len(self.spans),
+            "axis": len(AXIS_NAMES),
+            "coordinate": len(COORDINATE_NAMES),
+            "node": self.nodes,
+            "element": self.elements,
+            "contact_point": self.contact_points,
+        }
+
+    def shape(self, variable: Variable, outputs: int) -> tuple[int, ...]:
+        """Shape of a variable.
+
+        Parameters
+        ----------
+        variable : Variable
+            A variable over time.
+        outputs : int
+            Number of instants.
+
+        Returns
+        -------
+        tuple of int
+            ``(outputs, ...)``.
+        """
+        sizes = self.sizes
+        return (outputs, *(sizes[dim] for dim in variable.dims[1:]))

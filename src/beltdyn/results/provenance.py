@@ -1,0 +1,33 @@
+"""Where a result comes from: the drive, the versions and the hour."""
+
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+_PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
+
+
+def provenance(drive_text: str, title: str) -> dict[str, str]:
+    """Global attributes that are known before anything is computed.
+
+    Parameters
+    ----------
+    drive_text : str
+        The drive file's text.
+    title : str
+        What the dataset is, in a few words.
+
+    Returns
+    -------
+    dict
+        ``title``, ``drive``, ``beltdyn_version``, ``numba_version``, ``numpy_version``,
+        ``scipy_version``, ``python_version`` and ``created`` (ISO 8601, UTC).
+    """
+    versions = {f"{package}_version": version(package) for package in _PACKAGES}
+    return {
+        "title": title,
+        "drive": drive_text,
+        **versions,
+        "python_version": platform.python_version(),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+    }

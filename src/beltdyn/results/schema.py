@@ -1,0 +1,102 @@
+"""The variables of a result: their dimensions, units and meaning, in one table."""
+
+from dataclasses import dataclass
+from types import MappingProxyType
+
+COORDINATE_NAMES = ("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy")
+"""Order of the six nodal coordinates."""
+
+AXIS_NAMES = ("x", "y")
+"""Names of the two directions of the plane."""
+
+NO_PULLEY = -1
+"""Value of ``contact_pulley`` at a point that touches no pulley."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """What a reader needs to know about one variable.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Dimensions in order. ``time`` comes first where it occurs.
+    units : str
+        SI units, "1" for a pure number.
+    long_name : str
+        The meaning in words, fit for the label of a figure's axis.
+    dtype : str
+        NumPy data type; "str" for names.
+    """
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    dtype: str = "float64"
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Attributes of the variable in the dataset and its file."""
+        attributes = {"long_name": self.long_name}
+        return attributes if self.dtype == "str" else {"units": self.units, **attributes}
+
+
+_OVER_TIME = ("time",)
+_PULLEY = ("time", "pulley")
+_NODE = ("time", "node", "coordinate")
+_SPAN = ("time", "span")
+_POINT = ("time", "contact_point")
+
+COORDINATES = MappingProxyType(
+    {
+        "time": Variable(("time",), "s", "Time"),
+        "pulley": Variable(("pulley",), "1", "Pulley", "str"),
+        "span": Variable(("span",), "1", "Span, from pulley to pulley", "str"),
+        "axis": Variable(("axis",), "1", "Direction in the plane", "str"),
+        "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
+        "node_coordinate": Variable(("node",), "m", "Belt coordinate of the node, unstretched"),
+        "element_coordinate": Variable(("element",), "m", "Belt coordinate of the element's middle, unstretched"),
+        "belt_coordinate": Variable(("contact_point",), "m", "Belt coordinate of the contact point, unstretched"),
+    }
+)
+"""Coordinates of the dataset by name."""
+
+VARIABLES = MappingProxyType(
+    {
+        "pulley_speed": Variable(_PULLEY, "rad/s", "Pulley speed"),
+        "pulley_angle": Variable(_PULLEY, "rad", "Pulley angle"),
+        "pulley_torque": Variable(_PULLEY, "N m", "Torque of the belt on the pulley"),
+        "shaft_torque": Variable(_PULLEY, "N m", "Torque on the pulley's shaft"),
+        "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
+        "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
+        "node_position": Variable(("time", "node", "axis"), "m", "Node position"),
+        "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
+        "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities"),
+        "belt_tension": Variable(("time", "element"), "N", "Belt tension"),
+        "span_tension": Variable(_SPAN, "N", "Span tension"),
+        "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
+        "normal_force": Variable(_POINT, "N/m", "Normal force on the belt"),
+        "friction_force": Variable(_POINT, "N/m", "Friction force on the belt"),
+        "slip_velocity": Variable(_POINT, "m/s", "Slip velocity"),
+        "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point"),
+        "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8"),
+        "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
+        "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
+        "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy"),
+        "driver_work": Variable(_OVER_TIME, "J", "Work of the drivers"),
+        "torque_work": Variable(_OVER_TIME, "J", "Work of the applied torques"),
+        "friction_loss": Variable(_OVER_TIME, "J", "Loss in friction"),
+        "damping_loss": Variable(_OVER_TIME, "J", "Loss in contact damping"),
+        "energy_closure": Variable(_OVER_TIME, "1", "Closure error of the energy account"),
+        "step_size": Variable(_OVER_TIME, "s", "Time step"),
+    }
+)
+"""Data variables of the dataset by name."""
+
+RECORDED = MappingProxyType({**VARIABLES, "time": COORDINATES["time"]})
+"""What a recorder is given for every output; ``time`` comes last."""
+
+AUXILIARY_COORDINATES = MappingProxyType(
+    {variable.dims[0]: name for name, variable in COORDINATES.items() if name != variable.dims[0]}
+)
+"""Dimension -> the coordinate that is laid along it under another name."""

@@ -1,0 +1,119 @@
+"""What the kernels of the system work on: named tuples of arrays and scalars, nothing else.
+
+The state of a system with N nodes and P pulleys is the vector of 6 N nodal coordinates followed by P pulley angles; velocities
+and accelerations are ordered alike.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.ancf.section import Section
+from beltdyn.contact.law import ContactLaw
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+NODE = 6
+"""Coordinates of a node: r, r_x, r_y (Eq. 6)."""
+
+
+class Quadrature(NamedTuple):
+    """Points and weights on [0, 1]."""
+
+    points: FloatArray
+    weights: FloatArray
+
+
+class Pulleys(NamedTuple):
+    """The P pulleys as arrays."""
+
+    center: FloatArray
+    """m, shape (P, 2)."""
+    radius: FloatArray
+    """m, shape (P,)."""
+    inertia: FloatArray
+    """kg m^2, shape (P,)."""
+    unknown: IntArray
+    """Place among the free pulleys, -1 where the speed is prescribed; shape (P,)."""
+    profile_first: IntArray
+    """First segment of each pulley's profile (speed if prescribed, torque if free), shape (P + 1,)."""
+    profile_start: FloatArray
+    """Instants from which the segments hold, s, shape (S,)."""
+    profile: FloatArray
+    """c0, c1, amplitude, omega, phase of each segment, shape (S, 5)."""
+
+
+class Supports(NamedTuple):
+    """What holds and loads the nodes of a belt beside its pulleys."""
+
+    fixed: NDArray[np.bool_]
+    """Coordinates that do not move, shape (6 N,)."""
+    any_fixed: bool
+    force: FloatArray
+    """Constant generalised forces on the nodal coordinates, shape (6 N,)."""
+    moment: FloatArray
+    """Constant moments that turn the tangent r_x of a node, N m, shape (N,)."""
+
+
+class System(NamedTuple):
+    """A belt, its pulleys and what acts on them."""
+
+    nodes: int
+    closed: bool
+    """Whether the last element ends at the first node (Eq. 27)."""
+    joint: bool
+    """Whether the last node is tied to the first by Lagrange multipliers (Eq. 25)."""
+    length: FloatArray
+    """Reference lengths of the elements, m, shape (elements,)."""
+    mass: FloatArray
+    """Mass matrices of the elements, shape (elements, 12, 12)."""
+    control: FloatArray
+    """Control points of the centreline from the four vectors r_i, r_x,i, r_j, r_x,j, shape (elements, 4, 4)."""
+    section: Section
+    elastic: Quadrature
+    law: ContactLaw
+    contact: Quadrature
+    pulleys: Pulleys
+    supports: Supports
+
+
+class RingMatrix(NamedTuple):
+    """A block-tridiagonal matrix, cyclic if the belt is closed, with a border of m further unknowns, and a right-hand side."""
+
+    diagonal: FloatArray
+    """Shape (N, 6, 6)."""
+    upper: FloatArray
+    """Row k, column k + 1 (cyclic), shape (N, 6, 6)."""
+    lower: FloatArray
+    """Row k + 1 (cyclic), column k, shape (N, 6, 6)."""
+    column: FloatArray
+    """Rows of the nodes, columns of the border, shape (N, 6, m)."""
+    row: FloatArray
+    """Rows of the border, columns of the nodes, shape (N, m, 6)."""
+    corner: FloatArray
+    """Shape (m, m)."""
+    node_side: FloatArray
+    """Right-hand side of the nodes, shape (N, 6)."""
+    border_side: FloatArray
+    """Right-hand side of the border, shape (m,)."""
+
+
+class Loads(NamedTuple):
+    """What the pulleys feel and what the energy account needs, at one state."""
+
+    moment: FloatArray
+    """Moment of the belt on each pulley, N m, shape (P,)."""
+    hub: FloatArray
+    """Force of the belt on each pulley, N, shape (P, 2)."""
+    shaft: FloatArray
+    """Torque on each pulley from outside: the load, or the driver's reaction, N m, shape (P,)."""
+    power: FloatArray
+    """Powers in the order of `POWERS`, W, shape (4,)."""
+    penalty: FloatArray
+    """Energy in the penalty springs, J, shape (1,)."""
+
+
+POWERS = ("driver_work", "torque_work", "friction_loss", "damping_loss")
+"""Powers integrated over time by a run, by the name of their integral."""

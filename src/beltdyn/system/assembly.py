@@ -1,0 +1,318 @@
+"""Equations of motion of belt and pulleys: residual and exact tangent (Eqs. 23, 25 and 27).
+
+    M a + dU/de - Q_c(e, v, omega) - F + C^T lambda = 0        belt
+    I domega/dt - moment - T_a = 0                              free pulleys (Eq. 23)
+    C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.ancf.elastic_force import ElasticWorkspace, elastic_workspace, element_force
+from beltdyn.contact.contact_force import ContactWorkspace, contact_force, contact_workspace
+from beltdyn.contact.contact_zone import out_of_reach
+from beltdyn.contact.law import Wheel
+from beltdyn.kernel import kernel
+from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
+from beltdyn.system.excitation import profile_value
+from beltdyn.system.ring_matrix import clear
+from beltdyn.system.supports import add_nodal_loads, hold_fixed
+
+FloatArray = NDArray[np.float64]
+
+
+class AssemblyWorkspace(NamedTuple):
+    """Scratch arrays of `assemble`, made once by `assembly_workspace`."""
+
+    elastic: ElasticWorkspace
+    contact: ContactWorkspace
+    coordinates: FloatArray
+    """Position, velocity and acceleration of one element, shape (3, 12)."""
+    control: FloatArray
+    """Control points of the centreline, shape (4, 2)."""
+    control_velocity: FloatArray
+    gradient: FloatArray
+    """Residual of one element, shape (12,)."""
+    tangent: FloatArray
+    """Tangent of one element, shape (12, 12)."""
+
+
+@kernel
+def assembly_workspace() -> AssemblyWorkspace:
+    """Make the scratch arrays of `assemble`."""
+    return AssemblyWorkspace(
+        elastic_workspace(),
+        contact_workspace(),
+        np.zeros((3, 12)),
+        np.zeros((4, 2)),
+        np.zeros((4, 2)),
+        np.zeros(12),
+        np.zeros((12, 12)),
+    )
+
+
+@kernel
+def new_loads(pulleys: int) -> Loads:
+    """Make zero loads for a number of pulleys."""
+    return Loads(np.zeros(pulleys), np.zeros((pulleys, 2)), np.zeros(pulleys), np.zeros(4), np.zeros(1))
+
+
+@kernel
+def border_size(system: System) -> int:
+    """Unknowns beside the nodes: free pulleys, and the multipliers of the joint where there is one."""
+    free = 0
+    for p in range(system.pulleys.unknown.size):
+        if system.pulleys.unknown[p] >= 0:
+            free += 1
+    return free + (NODE if system.joint else 0)
+
+
+@kernel
+def assemble(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    multipliers: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    by_acceleration: float,
+    work: AssemblyWorkspace,
+    matrix: RingMatrix,
+    loads: Loads,
+) -> None:
+    """Residual of the equations of motion and its tangent at a state.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+    time
+        s; prescribed pulleys must already have their speed and acceleration in the state (`excitation.prescribe`).
+    position, velocity, acceleration : ndarray, shape (6 N + P,)
+        State: nodal coordinates, then pulley angles, and their rates.
+    multipliers : ndarray, shape (6,)
+        Lagrange multipliers of the joint; ignored without joint.
+    by_position, by_velocity, by_acceleration : float
+        The tangent is the sum of these times the derivatives with respect to position, velocity and acceleration, which is what an
+        integrator needs whose unknown moves all three.
+    work
+        Scratch arrays.
+    matrix
+        Overwritten: the tangent, and the residual as right-hand side.
+    loads
+        Overwritten: moments, hub forces, powers.
+    """
+    clear(matrix)
+    loads.moment[:] = 0.0
+    loads.hub[:] = 0.0
+    loads.power[:] = 0.0
+    loads.penalty[:] = 0.0
+    for element in range(system.length.size):
+        node_j = (element + 1) % system.nodes
+        _gather(element, node_j, position, velocity, acceleration, work)
+        _elastic_and_inertia(system, element, by_position, by_acceleration, work)
+        _contact(system, element, node_j, velocity, by_position, by_velocity, work, matrix, loads)
+        _scatter(element, node_j, work, matrix)
+    _pulleys(system, time, velocity, acceleration, by_acceleration, matrix, loads)
+    if system.joint:
+        _joint(system, acceleration, multipliers, by_acceleration, matrix)
+    add_nodal_loads(system, position, by_position, matrix)
+    if system.supports.any_fixed:
+        hold_fixed(system, matrix)
+
+
+@kernel
+def _gather(
+    i: int, j: int, position: FloatArray, velocity: FloatArray, acceleration: FloatArray, work: AssemblyWorkspace
+) -> None:
+    """Coordinates of the element between nodes i and j."""
+    for c in range(NODE):
+        work.coordinates[0, c] = position[NODE * i + c]
+        work.coordinates[0, NODE + c] = position[NODE * j + c]
+        work.coordinates[1, c] = velocity[NODE * i + c]
+        work.coordinates[1, NODE + c] = velocity[NODE * j + c]
+        work.coordinates[2, c] = acceleration[NODE * i + c]
+        work.coordinates[2, NODE + c] = acceleration[NODE * j + c]
+
+
+@kernel
+def _elastic_and_inertia(
+    system: System, element: int, by_position: float, by_acceleration: float, work: AssemblyWorkspace
+) -> None:
+    """Overwrite residual and tangent of the element by those of elasticity and inertia."""
+    element_force(
+        work.coordinates[0],
+        system.section,
+        system.length[element],
+        system.elastic.points,
+        system.elastic.weights,
+        work.elastic,
+        work.gradient,
+        work.tangent,
+    )
+    mass, acceleration = system.mass[element], work.coordinates[2]
+    for row in range(2 * NODE):
+        total = 0.0
+        for column in range(2 * NODE):
+            total += mass[row, column] * acceleration[column]
+            work.tangent[row, column] = (
+                by_position * work.tangent[row, column] + by_acceleration * mass[row, column]
+            )
+        work.gradient[row] += total
+
+
+@kernel
+def fill_control(control: FloatArray, coordinates: FloatArray, points: FloatArray) -> None:
+    """Control points of the centreline from the coordinates of an element.
+
+    Parameters
+    ----------
+    control : ndarray, shape (4, 4)
+        Control points from the vectors r_i, r_x,i, r_j, r_x,j.
+    coordinates : ndarray, shape (12,)
+        Nodal coordinates (or velocities) of the element.
+    points : ndarray, shape (4, 2)
+        Overwritten.
+    """
+    for a in range(4):
+        for axis in range(2):
+            points[a, axis] = (
+                control[a, 0] * coordinates[axis]
+                + control[a, 1] * coordinates[2 + axis]
+                + control[a, 2] * coordinates[6 + axis]
+                + control[a, 3] * coordinates[8 + axis]
+            )
+
+
+@kernel
+def _contact(
+    system: System,
+    element: int,
+    node_j: int,
+    velocity: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    work: AssemblyWorkspace,
+    matrix: RingMatrix,
+    loads: Loads,
+) -> None:
+    """Take the contact forces of the element off its residual, and couple it to the pulleys that it touches."""
+    pulleys, control = system.pulleys, system.control[element]
+    fill_control(control, work.coordinates[0], work.control)
+    fill_control(control, work.coordinates[1], work.control_velocity)
+    first = velocity.size - pulleys.radius.size
+    for p in range(pulleys.radius.size):
+        wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], velocity[first + p])
+        if out_of_reach(work.control, wheel):
+            continue
+        totals = contact_force(
+            work.control,
+            work.control_velocity,
+            control,
+            wheel,
+            system.law,
+            system.length[element],
+            system.contact.points,
+            system.contact.weights,
+            by_position,
+            by_velocity,
+            work.contact,
+        )
+        _take_contact(work)
+        loads.moment[p] += totals.moment
+        loads.hub[p, 0] += totals.hub_x
+        loads.hub[p, 1] += totals.hub_y
+        loads.penalty[0] += totals.penalty_energy
+        loads.power[2] += totals.friction_power
+        loads.power[3] += totals.damping_power
+        unknown = pulleys.unknown[p]
+        if unknown >= 0:
+            matrix.corner[unknown, unknown] -= by_velocity * totals.moment_by_speed
+            _couple(element, node_j, unknown, by_velocity, work.contact, matrix)
+
+
+@kernel
+def _take_contact(work: AssemblyWorkspace) -> None:
+    """Take contact force and tangent off the residual and tangent of the element."""
+    contact, tangent = work.contact, work.tangent
+    for a in range(4):
+        row = 6 * (a // 2) + 2 * (a % 2)
+        work.gradient[row] -= contact.force[2 * a]
+        work.gradient[row + 1] -= contact.force[2 * a + 1]
+        for b in range(4):
+            column = 6 * (b // 2) + 2 * (b % 2)
+            tangent[row, column] -= contact.xx[a, b]
+            tangent[row, column + 1] -= contact.xy[a, b]
+            tangent[row + 1, column] -= contact.yx[a, b]
+            tangent[row + 1, column + 1] -= contact.yy[a, b]
+
+
+@kernel
+def _couple(
+    node_i: int, node_j: int, unknown: int, by_velocity: float, contact: ContactWorkspace, matrix: RingMatrix
+) -> None:
+    """Coupling of the element with the speed of a free pulley."""
+    for c in range(4):
+        matrix.column[node_i, c, unknown] -= by_velocity * contact.by_speed[c]
+        matrix.column[node_j, c, unknown] -= by_velocity * contact.by_speed[4 + c]
+        matrix.row[node_i, unknown, c] -= contact.moment[c]
+        matrix.row[node_j, unknown, c] -= contact.moment[4 + c]
+
+
+@kernel
+def _scatter(i: int, j: int, work: AssemblyWorkspace, matrix: RingMatrix) -> None:
+    """Add residual and tangent of the element between nodes i and j."""
+    for row in range(NODE):
+        matrix.node_side[i, row] += work.gradient[row]
+        matrix.node_side[j, row] += work.gradient[NODE + row]
+        for column in range(NODE):
+            matrix.diagonal[i, row, column] += work.tangent[row, column]
+            matrix.upper[i, row, column] += work.tangent[row, NODE + column]
+            matrix.lower[i, row, column] += work.tangent[NODE + row, column]
+            matrix.diagonal[j, row, column] += work.tangent[NODE + row, NODE + column]
+
+
+@kernel
+def _pulleys(
+    system: System,
+    time: float,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    by_acceleration: float,
+    matrix: RingMatrix,
+    loads: Loads,
+) -> None:
+    """Rotation of the pulleys (Eq. 23): equation of the free ones, reaction torque of the prescribed ones, power of both."""
+    pulleys = system.pulleys
+    first = velocity.size - pulleys.radius.size
+    for p in range(pulleys.radius.size):
+        unknown, inertia = pulleys.unknown[p], pulleys.inertia[p] * acceleration[first + p]
+        if unknown < 0:
+            loads.shaft[p] = inertia - loads.moment[p]
+            loads.power[0] += loads.shaft[p] * velocity[first + p]
+        else:
+            loads.shaft[p] = profile_value(pulleys, p, time)[0]
+            loads.power[1] += loads.shaft[p] * velocity[first + p]
+            matrix.corner[unknown, unknown] += by_acceleration * pulleys.inertia[p]
+            matrix.border_side[unknown] = inertia - loads.moment[p] - loads.shaft[p]
+
+
+@kernel
+def _joint(
+    system: System, acceleration: FloatArray, multipliers: FloatArray, by_acceleration: float, matrix: RingMatrix
+) -> None:
+    """Tie the last node to the first (Eq. 25): forces +-lambda on them, and equal accelerations."""
+    last = system.nodes - 1
+    first_unknown = matrix.corner.shape[0] - NODE
+    for c in range(NODE):
+        matrix.node_side[0, c] += multipliers[c]
+        matrix.node_side[last, c] -= multipliers[c]
+        matrix.border_side[first_unknown + c] = acceleration[c] - acceleration[NODE * last + c]
+        matrix.column[0, c, first_unknown + c] = 1.0
+        matrix.column[last, c, first_unknown + c] = -1.0
+        matrix.row[0, first_unknown + c, c] = by_acceleration
+        matrix.row[last, first_unknown + c, c] = -by_acceleration

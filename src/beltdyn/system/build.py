@@ -1,0 +1,183 @@
+"""From the model, which a user describes, to the arrays, on which the kernels work."""
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from beltdyn.ancf.inertia import element_mass
+from beltdyn.ancf.section import Section
+from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
+from beltdyn.errors import ModelError
+from beltdyn.model import Belt, Contact, Drive, Pulley
+from beltdyn.quadrature import gauss_points
+from beltdyn.system.arrays import NODE, FloatArray, Pulleys, Quadrature, Supports, System
+
+Closure = Literal["shared_node", "multipliers", "open"]
+"""How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
+
+
+def drive_system(drive: Drive) -> System:
+    """Arrays of a drive.
+
+    Parameters
+    ----------
+    drive
+        A checked drive.
+
+    Returns
+    -------
+    System
+        Its belt, closed as ``drive.simulation.joint`` says, and its pulleys.
+    """
+    return belt_system(drive.belt, drive.pulleys, drive.contact, drive.simulation.joint)
+
+
+def belt_system(
+    belt: Belt,
+    pulleys: Sequence[Pulley] = (),
+    contact: Contact | None = None,
+    closure: Closure = "open",
+    *,
+    fixed: Sequence[tuple[int, int]] = (),
+    forces: Sequence[tuple[int, tuple[float, float]]] = (),
+    moments: Sequence[tuple[int, float]] = (),
+) -> System:
+    """Arrays of any belt: closed or open, on pulleys or not, with nodes fixed, loaded or free.
+
+    Parameters
+    ----------
+    belt
+        The belt; an open one has one node more than elements, and so has one closed by multipliers.
+    pulleys
+        Pulleys in the plane.
+    contact
+        Contact constants; needed where there are pulleys.
+    closure
+        How the ends meet.
+    fixed
+        Pairs (node, coordinate) that do not move; coordinates 0 to 5 are r, r_x, r_y (Eq. 6).
+    forces
+        Pairs (node, force), N.
+    moments
+        Pairs (node, moment), N m, counter-clockwise positive; a moment turns the tangent of its node.
+
+    Returns
+    -------
+    System
+        The arrays, with read-only content.
+
+    Raises
+    ------
+    ModelError
+        If there are pulleys but no contact.
+    """
+    if pulleys and contact is None:
+        raise ModelError("contact is missing: a belt on pulleys needs its constants. Give a Contact.")
+    elements = belt.elements
+    nodes = elements if closure == "shared_node" else elements + 1
+    section = belt_section(belt)
+    length = belt.length / elements
+    return System(
+        nodes=nodes,
+        closed=closure == "shared_node",
+        joint=closure == "multipliers",
+        length=np.full(elements, length),
+        mass=np.tile(element_mass(section, length), (elements, 1, 1)),
+        control=np.tile(_control_points(length), (elements, 1, 1)),
+        section=section,
+        elastic=Quadrature(*gauss_points(belt.quadrature_points)),
+        law=_contact_law(contact),
+        contact=Quadrature(*gauss_points(contact.quadrature_points if contact else 1)),
+        pulleys=_pulley_arrays(pulleys),
+        supports=_supports(nodes, fixed, forces, moments),
+    )
+
+
+def belt_section(belt: Belt) -> Section:
+    """Stiffness and inertia of a belt's section.
+
+    Parameters
+    ----------
+    belt
+        The belt.
+
+    Returns
+    -------
+    Section
+        Factors of Eqs. 14 and 15, integrated over the section.
+    """
+    shear = belt.shear_coefficient * belt.shear_modulus * belt.bending_factor
+    return Section(
+        axial=belt.axial_stiffness,
+        bending=belt.bending_stiffness,
+        quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
+        shear=shear * belt.area,
+        shear_gradient=shear * belt.second_moment,
+        thickness=belt.youngs_modulus * belt.area,
+        mass=belt.mass_per_length,
+        rotary_inertia=belt.rotary_inertia,
+    )
+
+
+def _control_points(length: float) -> FloatArray:
+    """Control points of a cubic Hermite curve from r_i, r_x,i, r_j, r_x,j, shape (4, 4)."""
+    third = length / 3.0
+    return np.array([[1, 0, 0, 0], [1, third, 0, 0], [0, 0, 1, -third], [0, 0, 1, 0]], dtype=float)
+
+
+def _contact_law(contact: Contact | None) -> ContactLaw:
+    """Constants of contact; a law that is never used where there is none."""
+    if contact is None:
+        return ContactLaw(1.0, 0.0, 0.0, FORCE_SLOPE, 1.0, True)
+    by_force = contact.friction_law == "force_slope"
+    creep = contact.creep_rate_factor if by_force else contact.creep_velocity
+    assert creep is not None
+    return ContactLaw(
+        stiffness=contact.stiffness,
+        damping=contact.damping,
+        friction=contact.friction,
+        friction_law=FORCE_SLOPE if by_force else COEFFICIENT_SLOPE,
+        creep=creep,
+        follow_zone=contact.integration == "zone",
+    )
+
+
+def _pulley_arrays(pulleys: Sequence[Pulley]) -> Pulleys:
+    """Pulleys with their profiles laid end to end."""
+    first, starts, segments = [0], [np.empty(0)], [np.empty((0, 5))]
+    for pulley in pulleys:
+        profile = pulley.speed if pulley.prescribed else pulley.torque
+        start, coefficients = profile.segments() if profile else (np.array([-np.inf]), np.zeros((1, 5)))
+        first.append(first[-1] + len(start))
+        starts.append(start)
+        segments.append(coefficients)
+    free = np.array([not pulley.prescribed for pulley in pulleys], dtype=bool)
+    return Pulleys(
+        center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
+        radius=np.array([pulley.radius for pulley in pulleys], dtype=float),
+        inertia=np.array([pulley.inertia for pulley in pulleys], dtype=float),
+        unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
+        profile_first=np.array(first, dtype=np.int64),
+        profile_start=np.concatenate(starts),
+        profile=np.concatenate(segments),
+    )
+
+
+def _supports(
+    nodes: int,
+    fixed: Sequence[tuple[int, int]],
+    forces: Sequence[tuple[int, tuple[float, float]]],
+    moments: Sequence[tuple[int, float]],
+) -> Supports:
+    """Supports and nodal loads as full vectors; negative node numbers count from the end."""
+    held = np.zeros((nodes, NODE), dtype=bool)
+    force = np.zeros((nodes, NODE))
+    moment = np.zeros(nodes)
+    for node, coordinate in fixed:
+        held[node, coordinate] = True
+    for node, pair in forces:
+        force[node, :2] += pair
+    for node, value in moments:
+        moment[node] += value
+    return Supports(held.ravel(), bool(held.any()), force.ravel(), moment)

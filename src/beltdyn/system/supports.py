@@ -1,0 +1,71 @@
+"""Supports and loads of single nodes: what makes a cantilever of a belt."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.kernel import kernel
+from beltdyn.system.arrays import NODE, RingMatrix, System
+
+FloatArray = NDArray[np.float64]
+
+
+@kernel
+def add_nodal_loads(system: System, position: FloatArray, by_position: float, matrix: RingMatrix) -> None:
+    """Take constant forces and moments off the residual.
+
+    A moment m turns the tangent: its work is m dphi with phi the direction of r_x, so that it acts on r_x with
+    m n / |r_x|, n normal to r_x.
+
+    Parameters
+    ----------
+    system
+        With its supports.
+    position : ndarray, shape (6 N + P,)
+        Nodal coordinates first.
+    by_position
+        Factor of the derivative with respect to position in the tangent.
+    matrix
+        Right-hand side and tangent, changed in place.
+    """
+    supports = system.supports
+    for node in range(system.nodes):
+        for c in range(NODE):
+            matrix.node_side[node, c] -= supports.force[NODE * node + c]
+        moment = supports.moment[node]
+        if moment != 0.0:
+            x, y = position[NODE * node + 2], position[NODE * node + 3]
+            square = x * x + y * y
+            matrix.node_side[node, 2] += moment * y / square
+            matrix.node_side[node, 3] -= moment * x / square
+            factor = by_position * moment / (square * square)
+            matrix.diagonal[node, 2, 2] -= 2.0 * factor * x * y
+            matrix.diagonal[node, 2, 3] += factor * (x * x - y * y)
+            matrix.diagonal[node, 3, 2] += factor * (x * x - y * y)
+            matrix.diagonal[node, 3, 3] += 2.0 * factor * x * y
+
+
+@kernel
+def hold_fixed(system: System, matrix: RingMatrix) -> None:
+    """Replace the equations of fixed coordinates by "no change".
+
+    Parameters
+    ----------
+    system
+        With its supports.
+    matrix
+        Rows and columns of fixed coordinates become those of the identity, their right-hand side zero.
+    """
+    for node in range(system.nodes):
+        before = (node - 1) % system.nodes
+        for c in range(NODE):
+            if system.supports.fixed[NODE * node + c]:
+                matrix.diagonal[node, c, :] = 0.0
+                matrix.diagonal[node, :, c] = 0.0
+                matrix.diagonal[node, c, c] = 1.0
+                matrix.upper[node, c, :] = 0.0
+                matrix.lower[node, :, c] = 0.0
+                matrix.upper[before, :, c] = 0.0
+                matrix.lower[before, c, :] = 0.0
+                matrix.column[node, c, :] = 0.0
+                matrix.row[node, :, c] = 0.0
+                matrix.node_side[node, c] = 0.0

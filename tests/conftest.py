@@ -1,0 +1,132 @@
+"""A result made by formulas: the belt of a two-pulley drive runs at a steady creep, without vibration."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.model import Drive
+from beltdyn.results import Layout, MemoryRecorder, Run, provenance
+
+FloatArray = NDArray[np.float64]
+Arrays = dict[str, NDArray[Any]]
+
+CREEP = 0.005
+TIGHT, SLACK = 60.0, 30.0
+STATISTICS = {
+    "integrator": "generalized_alpha",
+    "steps": 1200,
+    "rejected_steps": 14,
+    "newton_iterations": 4900,
+    "wall_time": 0.5,
+    "compile_time": 2.5,
+    "real_time_factor": 2.0,
+}
+
+
+@pytest.fixture(scope="session")
+def layout(drive: Drive) -> Layout:
+    elements, length = drive.belt.elements, drive.belt.length
+    return Layout(
+        pulleys=("driver", "driven"),
+        spans=("driver-driven", "driven-driver"),
+        node_coordinate=np.arange(elements) * length / elements,
+        element_coordinate=(np.arange(elements) + 0.5) * length / elements,
+        belt_coordinate=(np.arange(5 * elements) + 0.5) * length / (5 * elements),
+    )
+
+
+@pytest.fixture(scope="session")
+def attributes(drive: Drive) -> dict[str, str]:
+    return provenance(drive.text, "Two pulleys")
+
+
+@pytest.fixture(scope="session")
+def statistics() -> dict[str, Any]:
+    return STATISTICS
+
+
+@pytest.fixture(scope="session")
+def make_chunk(drive: Drive, layout: Layout) -> Callable[[FloatArray], Arrays]:
+    return lambda time: _outputs(drive, layout, time)
+
+
+@pytest.fixture(scope="session")
+def make_run(
+    drive: Drive, layout: Layout, attributes: dict[str, str], make_chunk: Callable[[FloatArray], Arrays]
+) -> Callable[..., Run]:
+    def make(outputs: int = 101, status: Any = "completed", **changed: NDArray[Any]) -> Run:
+        recorder = MemoryRecorder(layout, attributes)
+        recorder.append(make_chunk(np.linspace(0.0, 1.0, outputs)) | changed)
+        recorder.close(status, STATISTICS)
+        return Run(recorder.dataset(), drive)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def run(make_run: Callable[..., Run]) -> Run:
+    return make_run()
+
+
+def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
+    """Outputs for instants, shape (k,): the load grows with the speed, tension is linear over the arcs."""
+    radius, path = drive.pulleys[0].radius, drive.path
+    ramp = np.clip((time - 0.05) / 0.55, 0.0, 1.0)
+    speed = 12.0 * ramp
+    angle = np.where(time < 0.6, 3.3 * ramp**2, 3.3 + 12.0 * (time - 0.6))
+    pulleys = np.array([1.0, 1.0 - CREEP])
+    stretch = path.length / drive.belt.length
+    pull = (TIGHT - SLACK) * ramp
+    span, arc = path.span_lengths[0], np.pi * radius
+    corners = np.cumsum([0.0, span, arc, span, arc])
+
+    def place(coordinate: FloatArray) -> FloatArray:
+        return np.asarray((stretch * coordinate + radius * angle[:, None]) % path.length)
+
+    def trace(follow: Callable[[Any], FloatArray], coordinate: FloatArray) -> FloatArray:
+        return follow(place(coordinate).ravel()).reshape(len(time), len(coordinate), 2)
+
+    def tension(coordinate: FloatArray) -> FloatArray:
+        return np.asarray(SLACK + pull[:, None] * np.interp(place(coordinate), corners, [0, 0, 1, 1, 0]))
+
+    position, tangent = (trace(follow, layout.node_coordinate) for follow in (path.position, path.tangent))
+    normal = np.stack([-tangent[..., 1], tangent[..., 0]], axis=-1)
+    coordinates = np.concatenate([position, stretch * tangent, normal], axis=-1)
+    velocities = np.concatenate([radius * speed[:, None, None] * tangent, 0 * tangent, 0 * normal], axis=-1)
+    piece = np.clip(np.searchsorted(corners, place(layout.belt_coordinate), side="right") - 1, 0, 3)
+    contact_pulley = np.array([-1, 1, -1, 0])[piece]
+    side = np.array([0.0, -1.0, 0.0, 1.0])[piece]
+    torque = radius * pull[:, None] * np.array([-1.0, 1.0])
+    kinetic, still = 0.05 * speed**2, np.zeros_like(time)
+    return {
+        "time": time,
+        "pulley_speed": speed[:, None] * pulleys,
+        "pulley_angle": angle[:, None] * pulleys,
+        "pulley_torque": torque,
+        "shaft_torque": -torque,
+        "hub_force": np.multiply.outer(2 * SLACK + pull, np.array([[1.0, 0.0], [-1.0, 0.0]])),
+        "wrap_angle": np.full((len(time), 2), np.pi),
+        "node_position": position,
+        "nodal_coordinates": coordinates,
+        "nodal_velocities": velocities,
+        "belt_tension": tension(layout.element_coordinate),
+        "span_tension": np.stack([still + SLACK, SLACK + pull], axis=1),
+        "belt_speed": np.repeat(radius * speed[:, None], 2, axis=1),
+        "normal_force": np.where(contact_pulley >= 0, tension(layout.belt_coordinate) / radius, 0.0),
+        "friction_force": side * pull[:, None] / arc,
+        "slip_velocity": -1e-3 * side * ramp[:, None],
+        "contact_position": trace(path.position, layout.belt_coordinate),
+        "contact_pulley": contact_pulley,
+        "kinetic_energy": kinetic,
+        "strain_energy": still + 0.5,
+        "penalty_energy": still + 0.01,
+        "driver_work": kinetic + 0.6 * angle,
+        "torque_work": -0.5 * angle,
+        "friction_loss": 0.09 * angle,
+        "damping_loss": 0.01 * angle,
+        "energy_closure": still + 1e-4,
+        "step_size": still + 1e-3,
+    }

@@ -1,0 +1,84 @@
+import json
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from beltdyn import __version__
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import advise, install, load
+
+RunMain = Callable[[list[str]], tuple[int, str, str]]
+
+
+def test_version(run_main: RunMain) -> None:
+    assert run_main(["--version"]) == (0, f"{__version__}\n", "")
+
+
+def test_help_names_every_command(run_main: RunMain) -> None:
+    code, output, _ = run_main(["--help"])
+    assert code == 0
+    for command in ("new", "check", "run", "static", "plot", "demo", "schema"):
+        assert f" {command} " in output
+
+
+def test_help_imports_nothing_heavy() -> None:
+    script = (
+        "import sys\nfrom beltdyn.cli import main\ntry: main(['--help'])\nexcept SystemExit: pass\n"
+        "sys.exit(len({'numpy', 'scipy', 'numba', 'xarray', 'matplotlib', 'pint', 'pydantic'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, check=False).returncode == 0
+
+
+def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
+    code, output, message = run_main(["check", str(drive_file)])
+    assert (code, message) == (0, "")
+    for part in ("1.2763 m", "0.2807%", "28.19 N", "26.56 N", "5.8%", "180.0°", "0.38288 m", "driver to driven"):
+        assert part in output
+    assert "warning: an element covers 45°" in output
+
+
+def test_new_writes_a_drive_that_needs_no_warning(run_main: RunMain, tmp_path: Path) -> None:
+    file = tmp_path / "folder" / "mine.toml"
+    code, output, _ = run_main(["new", str(file)])
+    assert code == 0
+    assert str(file) in output
+    drive = load(file)
+    assert advise(drive, install(drive)) == []
+
+
+def test_schema_is_json(run_main: RunMain) -> None:
+    code, output, _ = run_main(["schema"])
+    assert code == 0
+    assert "belt" in json.loads(output)["properties"]
+
+
+def test_a_simulation_that_cannot_go_on(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def simulate(*_: object) -> None:
+        raise ConvergenceError("no convergence at t = 0.1 s. Lower simulation.max_step.")
+
+    monkeypatch.setattr("beltdyn.solve.simulate", simulate)
+    code, output, message = run_main(["run", str(drive_file)])
+    assert code == 3
+    assert f"What was computed is in {drive_file.with_suffix('.nc')}" in output
+    assert "error: no convergence at t = 0.1 s. Lower simulation.max_step." in message
+
+
+def test_an_interrupted_simulation(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = SimpleNamespace(status="interrupted", dataset=SimpleNamespace(sizes={"time": 0}))
+    monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
+    code, output, _ = run_main(["run", str(drive_file), "-o", "out.nc"])
+    assert code == 130
+    assert "Interrupted: what was computed is kept." in output
+    assert "Results: out.nc" in output
+
+
+def test_an_interruption_elsewhere(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(_: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("beltdyn.model.load", interrupt)
+    assert run_main(["check", str(drive_file)]) == (130, "", "error: interrupted\n")

@@ -1,0 +1,62 @@
+"""What a run shows on the screen."""
+
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+from beltdyn.solve.progress import Progress
+
+from beltdyn.cli.progress import progress_bar
+from beltdyn.cli.summary import show_summary
+from beltdyn.results import Run
+
+RunMain = Callable[[list[str]], tuple[int, str, str]]
+
+
+def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    show_summary(run)
+    output = capsys.readouterr().out
+    for part in (
+        "12.0000 rad/s",
+        "0.500%",
+        "180.0°",
+        "driver-driven",
+        "60 N",
+        "0.01% of the energy",
+        "1200, 14 rejected",
+    ):
+        assert part in output
+    assert "2 times real time" in output
+
+
+def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
+    """A single output at rest has no mean and no slip."""
+    show_summary(make_run(outputs=1))
+    output = capsys.readouterr().out
+    assert "means" not in output
+    assert "nan" not in output
+
+
+def test_warnings_are_shown(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
+    show_summary(make_run(energy_closure=np.full(101, 0.02)))
+    assert "warning: " in capsys.readouterr().out
+
+
+def test_progress(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_bar() as report:
+        report(cast(Progress, SimpleNamespace(time=0.25, duration=1.0, step_size=1e-4, outputs_written=3)))
+    captured = capsys.readouterr()
+    assert "0.25 of 1 s, step 1.0e-04 s" in captured.err
+    assert captured.out == ""
+
+
+def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
+    code, output, _ = run_main(["run", str(drive_file), "--csv"])
+    assert code == 0
+    assert f"Results: {drive_file.with_suffix('.nc')}" in output
+    tables = drive_file.with_name("drive-tables")
+    assert {path.name for path in tables.iterdir()} == {"pulleys.csv", "spans.csv", "energy.csv", "contact.csv"}

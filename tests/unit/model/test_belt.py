@@ -1,0 +1,45 @@
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Belt, Drive
+
+
+def test_section_of_the_papers_belt(drive: Drive) -> None:
+    belt = drive.belt
+    assert belt.area == pytest.approx(1e-4)
+    assert belt.second_moment == pytest.approx(1e-8 / 12)
+    assert belt.fourth_moment == pytest.approx(1e-12 / 80)
+    assert belt.shear_modulus == pytest.approx(1e8 / 2.6)
+    assert belt.shear_coefficient == pytest.approx(13 / 15.3)
+    assert belt.axial_stiffness == pytest.approx(1e4)
+    assert belt.bending_stiffness == pytest.approx(1e8 * 1e-8 / 12 * 0.01)
+    assert belt.mass_per_length == pytest.approx(0.1036)
+    assert belt.rotary_inertia == pytest.approx(1036e-8 / 12)
+
+
+def test_the_thickness_lies_in_the_plane_of_bending(drive: Drive) -> None:
+    flat = drive.belt.replace(width=0.02, thickness=0.005)
+    assert flat.area == pytest.approx(drive.belt.area)
+    assert flat.second_moment == pytest.approx(drive.belt.second_moment / 4)
+
+
+def test_given_shear_correction_is_used(drive: Drive) -> None:
+    assert drive.belt.replace(shear_correction=0.85).shear_coefficient == 0.85
+
+
+def test_replace_validates(drive: Drive) -> None:
+    with pytest.raises(ModelError, match=r"belt\.width = -1"):
+        drive.belt.replace(width=-1)
+
+
+def test_parts_cannot_be_changed(drive: Drive) -> None:
+    with pytest.raises(ValueError, match="frozen"):
+        drive.belt.length = 1.0  # type: ignore[misc]
+
+
+def test_the_constructor_tells_all_that_is_wrong() -> None:
+    with pytest.raises(ModelError) as caught:
+        Belt(length=-1, width=0.01, thickness=0.01, density=1000, youngs_modulus=1e8)  # type: ignore[call-arg]
+    first, second = str(caught.value).splitlines()
+    assert first.startswith("belt.length = -1 must be greater than 0")
+    assert second.startswith("belt.poissons_ratio is missing")

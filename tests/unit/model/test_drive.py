@@ -1,0 +1,71 @@
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, advise, install
+
+
+def test_constructor_takes_parts_or_mappings(drive: Drive) -> None:
+    again = Drive(
+        belt=drive.belt,
+        pulley=[drive.pulleys[0], drive.pulleys[1].model_dump()],
+        contact=drive.contact,
+        simulation={"duration": 1.0, "output_interval": "1 ms", "start": "laid"},
+    )
+    assert again == drive
+    assert hash(again) == hash(drive)
+
+
+def test_replace_lays_the_path_anew(drive: Drive) -> None:
+    shifted = drive.pulleys[1].replace(center=(0.192, 0.0))
+    changed = drive.replace(pulley=[drive.pulleys[0], shifted])
+    assert changed.path.length == pytest.approx(drive.path.length + 2 * (0.192 - 0.191441))
+    assert "0.192" in changed.text
+
+
+def test_slack_belt(drive: Drive) -> None:
+    with pytest.raises(ModelError) as caught:
+        drive.replace(belt=drive.belt.replace(length=1.40))
+    assert str(caught.value) == (
+        "belt.length = 1.4 m is longer than the path around the pulleys (1.2763 m): the belt would hang slack. "
+        "Shorten it, or move the pulleys apart."
+    )
+
+
+def test_pulleys_know_their_motion(drive: Drive) -> None:
+    assert [pulley.prescribed for pulley in drive.pulleys] == [True, False]
+
+
+def test_installation_of_the_papers_drive(drive: Drive) -> None:
+    """The measured mean tension of this drive at rest is 26.6 N, its penetration 3e-5 m."""
+    installation = install(drive)
+    stretch = drive.path.length / 1.2727
+    assert installation.strain == pytest.approx(stretch - 1)
+    assert installation.laid_tension == pytest.approx(1e4 * (stretch**2 - 1) * stretch / 2)
+    assert installation.tension == pytest.approx(26.6, abs=0.1)
+    np.testing.assert_allclose(installation.penetrations, 3.3e-5, rtol=0.02)
+
+
+def test_installed_belt_balances(drive: Drive) -> None:
+    """The path shortened by the penetrations is as long as the belt at this tension."""
+    installation = install(drive)
+    shortened = drive.path.length - drive.path.wrap_angles @ installation.penetrations
+    stretch = shortened / drive.belt.length
+    assert installation.tension == pytest.approx(1e4 * (stretch**2 - 1) * stretch / 2)
+
+
+def test_advice_on_the_mesh(drive: Drive) -> None:
+    (warning,) = advise(drive, install(drive))
+    assert "45° of" in warning
+    assert "belt.elements = 45 or more" in warning
+    fine = drive.replace(belt=drive.belt.replace(elements=45))
+    assert advise(fine, install(fine)) == []
+
+
+def test_advice_on_soft_pulleys(drive: Drive) -> None:
+    belt = drive.belt.replace(length=1.1, elements=100)
+    soft = drive.replace(belt=belt, contact=drive.contact.replace(stiffness=1e5))
+    strain, tension, *penetration = advise(soft, install(soft))
+    assert "installed strain is 16%, more than 10%" in strain
+    assert "of the belt's tension, more than 10%: raise contact.stiffness" in tension
+    assert [name in warning for name, warning in zip(("driver", "driven"), penetration, strict=True)] == [True, True]

@@ -1,0 +1,106 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beltdyn.model import Path
+
+ANGLES = st.floats(-math.pi, math.pi)
+SHIFTS = st.floats(-10, 10)
+
+
+def path(*circles: tuple[float, float, float]) -> Path:
+    table = np.array(circles)
+    return Path(table[:, :2], table[:, 2])
+
+
+THREE = ((0.0, 0.0, 0.1), (0.5, 0.05, 0.07), (0.2, 0.4, 0.05))
+
+
+def test_equal_radii() -> None:
+    laid = path((-0.191441, 0, 0.08125), (0.191441, 0, 0.08125))
+    np.testing.assert_allclose(laid.span_lengths, 0.382882)
+    np.testing.assert_allclose(laid.wrap_angles, math.pi)
+    np.testing.assert_allclose(laid.span_directions, [[1, 0], [-1, 0]], atol=1e-15)
+    np.testing.assert_allclose(laid.span_points[0], [[-0.191441, -0.08125], [0.191441, -0.08125]], atol=1e-15)
+    np.testing.assert_allclose(laid.span_points[1], [[0.191441, 0.08125], [-0.191441, 0.08125]], atol=1e-15)
+    assert laid.length == pytest.approx(2 * 0.382882 + 2 * math.pi * 0.08125)
+
+
+def test_unequal_radii() -> None:
+    distance, large, small = 0.382882, 0.1218, 0.08125
+    laid = path((0, 0, large), (distance, 0, small))
+    beta = math.asin((large - small) / distance)
+    np.testing.assert_allclose(laid.wrap_angles, [math.pi + 2 * beta, math.pi - 2 * beta])
+    np.testing.assert_allclose(laid.span_lengths, distance * math.cos(beta))
+    np.testing.assert_allclose(laid.span_directions[0], [math.cos(beta), math.sin(beta)])
+    expected = 2 * distance * math.cos(beta) + large * (math.pi + 2 * beta) + small * (math.pi - 2 * beta)
+    assert laid.length == pytest.approx(expected)
+
+
+def test_three_equal_pulleys() -> None:
+    """Around equal circles, the belt is the triangle of the centers and one full circle."""
+    laid = path((0, 0, 0.1), (0.3, 0, 0.1), (0, 0.4, 0.1))
+    np.testing.assert_allclose(laid.span_lengths, [0.3, 0.5, 0.4])
+    np.testing.assert_allclose(laid.wrap_angles, [math.pi / 2, math.pi - math.atan(4 / 3), math.pi - math.atan(3 / 4)])
+    assert laid.length == pytest.approx(1.2 + 2 * math.pi * 0.1)
+
+
+def test_crossed_belt() -> None:
+    """A pulley of negative radius turns clockwise: here the spans cross between the pulleys."""
+    laid = path((0, 0, 0.1), (0.5, 0, -0.1))
+    beta = math.asin(0.2 / 0.5)
+    np.testing.assert_allclose(laid.wrap_angles, math.pi + 2 * beta)
+    np.testing.assert_allclose(laid.span_lengths, 0.5 * math.cos(beta))
+    assert laid.total_turning == pytest.approx(0)
+
+
+def test_order_along_the_path() -> None:
+    """Span 0, the arc of pulley 1, span 1, the arc of pulley 2, span 2, the arc of pulley 0."""
+    laid = path(*THREE)
+    radii = np.array([circle[2] for circle in THREE])
+    ends = np.cumsum(np.stack([laid.span_lengths, np.roll(laid.wrap_angles * radii, -1)], axis=1))
+    points = laid.position(np.concatenate([[0.0], ends]))
+    np.testing.assert_allclose(points[:-1].reshape(3, 2, 2), laid.span_points, atol=1e-14)
+    np.testing.assert_allclose(points[-1], points[0], atol=1e-14)
+    assert ends[-1] == pytest.approx(laid.length)
+
+
+def test_points_lie_on_the_pulleys_or_between() -> None:
+    laid = path(*THREE)
+    points = laid.position(np.linspace(0, laid.length, 500))
+    distance = np.linalg.norm(points[:, None] - laid.centers, axis=2) - laid.radii
+    assert np.all(distance > -1e-12)
+
+
+@given(st.floats(-3, 3))
+def test_tangent_is_the_derivative_of_position(s: float) -> None:
+    laid = path(*THREE)
+    step = 1e-6
+    slope = (laid.position([s + step]) - laid.position([s - step])) / (2 * step)
+    np.testing.assert_allclose(laid.tangent([s]), slope, atol=3 * step / laid.radii.min())
+
+
+@given(st.floats(-3, 3))
+def test_arc_length_is_periodic(s: float) -> None:
+    laid = path(*THREE)
+    np.testing.assert_allclose(laid.position([s]), laid.position([s + laid.length]), atol=1e-12)
+
+
+@given(angle=ANGLES, x=SHIFTS, y=SHIFTS)
+def test_the_path_moves_with_its_pulleys(angle: float, x: float, y: float) -> None:
+    laid = path(*THREE)
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    moved = Path(laid.centers @ turn.T + [x, y], laid.radii)
+    s = np.linspace(0.01, laid.length - 0.01, 50)
+    assert moved.length == pytest.approx(laid.length)
+    np.testing.assert_allclose(moved.wrap_angles, laid.wrap_angles, atol=1e-12)
+    np.testing.assert_allclose(moved.position(s), laid.position(s) @ turn.T + [x, y], atol=1e-12)
+    np.testing.assert_allclose(moved.tangent(s), laid.tangent(s) @ turn.T, atol=1e-10)
+
+
+def test_no_tangent() -> None:
+    with pytest.raises(ValueError, match="no common tangent"):
+        path((0, 0, 0.5), (0.1, 0, 0.1))

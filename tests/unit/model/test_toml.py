@@ -1,0 +1,110 @@
+import contextlib
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import tomli_w
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, advise, dumps, install, json_schema, load, loads
+
+
+def test_the_papers_drive(drive: Drive) -> None:
+    assert [pulley.name for pulley in drive.pulleys] == ["driver", "driven"]
+    assert drive.belt.elements == 20
+    assert drive.simulation.start == "laid"
+    assert drive.path.length == pytest.approx(1.27627, abs=1e-5)
+
+
+def test_text_is_kept(drive: Drive, drive_text: str) -> None:
+    assert drive.text == drive_text
+
+
+def test_round_trip(drive: Drive) -> None:
+    assert loads(dumps(drive)) == drive
+
+
+def test_units_in_the_file(drive: Drive, drive_text: str) -> None:
+    metric = drive_text.replace("width = 0.01", 'width = "10 mm"').replace("1e-3", '"1 ms"')
+    assert loads(metric) == drive
+
+
+def test_tables_are_read_beside_the_drive_file(drive_file: Path) -> None:
+    """The text of such a drive holds the points, so that it needs no other file."""
+    (drive_file.parent / "load.csv").write_text("0,0\n1,-2\n")
+    text = drive_file.read_text(encoding="utf-8")
+    profile = '{ kind = "cosine_ramp", start = 0.05, end = 0.6, value = 0.0 }'
+    drive_file.write_text(text.replace(profile, '{ kind = "table", file = "load.csv" }'), encoding="utf-8")
+    drive = load(drive_file)
+    assert drive.pulleys[1].torque
+    assert drive.pulleys[1].torque.at(0.5) == pytest.approx(-1)
+    assert loads(drive.text, base=Path("elsewhere")) == drive
+
+
+def test_schema_knows_every_group() -> None:
+    schema = json_schema()
+    assert set(schema["properties"]) == {"belt", "pulley", "contact", "simulation"}
+    assert {"Belt", "Pulley", "Contact", "Simulation"} <= set(schema["$defs"])
+    assert "in m" in json.dumps(schema["$defs"]["Belt"]["properties"]["length"])
+
+
+KEYS = st.sampled_from(
+    [
+        *("belt", "pulley", "contact", "simulation", "length", "width", "name", "center", "radius", "speed", "torque"),
+        *("inertia", "kind", "start", "end", "value", "file", "times", "values", "friction", "elements", "duration"),
+    ]
+)
+NUMBERS = st.integers() | st.floats() | st.floats(1e-15, 1e15)
+SCALARS = (
+    NUMBERS
+    | st.booleans()
+    | st.dates()
+    | st.text()
+    | st.sampled_from(["ramp", "table", "constant", "12 mm", "3 rpm", "laid", "driver", "1e999 m"])
+)
+VALUES = st.recursive(
+    SCALARS,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(KEYS | st.text(), inner, max_size=5),
+    max_leaves=15,
+)
+
+
+def read(text: str) -> None:
+    """Make a drive of a text and look at it, which may only fail with an explained error."""
+    with contextlib.suppress(ModelError):
+        drive = loads(text)
+        advise(drive, install(drive))
+
+
+@given(st.dictionaries(KEYS, VALUES))
+def test_arbitrary_toml(data: dict[str, Any]) -> None:
+    read(tomli_w.dumps(data))
+
+
+@given(st.data())
+@settings(max_examples=300)
+def test_the_papers_drive_with_an_arbitrary_value(drive: Drive, data: st.DataObject) -> None:
+    content = drive.model_dump(by_alias=True, exclude_none=True)
+    group = data.draw(st.sampled_from(sorted(content)))
+    target = data.draw(st.sampled_from(content["pulley"])) if group == "pulley" else content[group]
+    target[data.draw(st.sampled_from(sorted(target)) | KEYS)] = data.draw(VALUES)
+    read(tomli_w.dumps(content))
+
+
+@given(st.data())
+@settings(max_examples=300)
+def test_the_papers_drive_with_arbitrary_numbers(drive: Drive, data: st.DataObject) -> None:
+    content = drive.model_dump(by_alias=True, exclude_none=True)
+    for group in (content["belt"], content["contact"], content["simulation"], *content["pulley"]):
+        key = data.draw(st.sampled_from([key for key, value in group.items() if isinstance(value, float)]))
+        group[key] *= data.draw(st.sampled_from([1.0, 1.0, 1e-13, 1e-3, 0.99, 1e3, 1e13]))
+    content["pulley"][0]["center"] = data.draw(st.sampled_from([(-0.191441, 0.0), (1e14, 1e14), (-0.191, 1e-300)]))
+    read(tomli_w.dumps(content))
+
+
+@given(st.text())
+def test_arbitrary_text(text: str) -> None:
+    read(text)

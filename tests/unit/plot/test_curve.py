@@ -1,0 +1,25 @@
+import numpy as np
+import pytest
+
+from beltdyn.plot.curve import centerline, element_lengths
+from beltdyn.results import Run
+
+
+def test_lengths_add_up_to_the_belt(run: Run) -> None:
+    lengths = element_lengths(run.dataset, run.drive.belt.length)
+    assert lengths.shape == (20,)
+    assert lengths.sum() == pytest.approx(run.drive.belt.length)
+
+
+def test_circle_is_missed_by_no_more_than_the_cubic_must() -> None:
+    nodes, radius = 8, 0.2
+    angle = 2 * np.pi * np.arange(nodes) / nodes
+    normal = np.column_stack([np.cos(angle), np.sin(angle)])
+    tangent = np.column_stack([-np.sin(angle), np.cos(angle)])
+    lengths = np.full(nodes, 2 * np.pi * radius / nodes)
+    points = centerline(np.hstack([radius * normal, tangent, normal]), lengths)
+    assert points.shape == (nodes, 17, 2)
+    np.testing.assert_allclose(points[:, 0], radius * normal, atol=1e-15)
+    np.testing.assert_allclose(points[:, -1], np.roll(points[:, 0], -1, axis=0), atol=1e-15)
+    miss = np.abs(np.linalg.norm(points, axis=-1) - radius).max()
+    assert miss == pytest.approx(radius * (np.pi / 4) ** 4 / 384, rel=0.1)

@@ -1,0 +1,138 @@
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from beltdyn import plot
+from beltdyn.errors import ModelError
+from beltdyn.results import Run
+
+
+@pytest.fixture(autouse=True)
+def _no_window() -> Iterator[None]:
+    with mpl.rc_context({"backend": "agg"}):
+        yield
+    plt.close("all")
+
+
+@pytest.fixture
+def ax() -> Axes:
+    return Figure().add_subplot()
+
+
+@pytest.mark.parametrize(
+    ("draw", "variable", "ylabel"),
+    [
+        (plot.speeds, "pulley_speed", "Pulley speed [rad/s]"),
+        (plot.torques, "pulley_torque", "Torque of the belt on the pulley [N·m]"),
+        (plot.span_tensions, "span_tension", "Span tension [N]"),
+    ],
+)
+def test_histories(run: Run, ax: Axes, draw: Callable[..., Axes], variable: str, ylabel: str) -> None:
+    assert draw(run, ax) is ax
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Time [s]", ylabel)
+    values = run.dataset[variable]
+    for number, line in enumerate(ax.lines):
+        np.testing.assert_array_equal(line.get_ydata(), values[:, number])
+        assert line.get_label() == str(values[values.dims[1]][number].item())
+
+
+def test_energy(run: Run, ax: Axes) -> None:
+    plot.energy(run, ax)
+    assert ax.get_ylabel() == "Energy [J]"
+    assert ax.get_title(loc="left") + ax.get_title() == "Closure error 1.0e-04 of the energy put in"
+    assert {str(line.get_label()) for line in ax.lines} >= {"Kinetic energy", "Work of the drivers", "Loss in friction"}
+
+
+def test_new_axes_are_made_and_the_style_is_left_alone(run: Run) -> None:
+    before = dict(mpl.rcParams)
+    ax = plot.speeds(run)
+    assert ax.get_figure() is plt.gcf()
+    assert dict(mpl.rcParams) == before
+
+
+def test_single_output_is_a_point(make_run: Callable[..., Run], ax: Axes) -> None:
+    plot.speeds(make_run(outputs=1), ax)
+    assert all(line.get_marker() == "o" for line in ax.lines)
+
+
+def test_configuration(run: Run, ax: Axes) -> None:
+    plot.configuration(run, time=0.501, ax=ax)
+    assert ax.get_title() + ax.get_title(loc="left") == "t = 0.5 s"
+    instant = run.dataset.sel(time=0.5, method="nearest")
+    (belt,) = (artist for artist in ax.collections if isinstance(artist, LineCollection))
+    np.testing.assert_array_equal(belt.get_array(), instant["belt_tension"])
+    starts = np.array([segment[0] for segment in belt.get_segments()])
+    np.testing.assert_allclose(starts, instant["node_position"], atol=1e-12)
+    rims = [patch for patch in ax.patches if isinstance(patch, Circle) and patch.radius == 0.08125]
+    assert [rim.center for rim in rims] == [pulley.center for pulley in run.drive.pulleys]
+    assert [text.get_text() for text in ax.texts] == ["driver", "driven"]
+
+
+def test_configuration_of_a_drive_at_rest(make_run: Callable[..., Run], ax: Axes) -> None:
+    plot.configuration(make_run(outputs=1), ax=ax)
+    assert all(isinstance(patch, Circle) for patch in ax.patches)
+
+
+@pytest.mark.parametrize(("pulley", "rising"), [("driver", False), ("driven", True), (1, True)])
+def test_normal_force_falls_on_the_driver(run: Run, ax: Axes, pulley: str | int, rising: bool) -> None:
+    plot.contact_forces(run, pulley, ax=ax)
+    distance, force = (np.asarray(data) for data in ax.lines[0].get_data())
+    assert distance[0] == 0.0
+    assert np.all(np.diff(distance) > 0)
+    assert distance[-1] == pytest.approx(np.pi * 0.08125, abs=0.015)
+    assert np.all(np.diff(force) > 0) == rising
+    assert force.min() > 0
+    assert ax.get_ylabel() == "Normal force on the belt [N/m]"
+    assert ax.get_xlabel().endswith("[m]")
+
+
+def test_friction_with_its_limits(run: Run, ax: Axes) -> None:
+    plot.contact_forces(run, "driven", kind="friction", ax=ax)
+    (limits,) = ax.collections
+    assert isinstance(limits, LineCollection)
+    upper, lower = (np.asarray(segment) for segment in limits.get_segments())
+    np.testing.assert_allclose(upper[:, 1], -lower[:, 1])
+    force = np.asarray(ax.lines[0].get_ydata())
+    assert np.all(np.abs(force) < upper[:, 1])
+    assert force.max() < 0
+
+
+@pytest.mark.parametrize("pulley", ["idler", 2, -1])
+def test_unknown_pulley_is_a_model_error(run: Run, ax: Axes, pulley: str | int) -> None:
+    with pytest.raises(ModelError, match="Its pulleys are: driver, driven"):
+        plot.contact_forces(run, pulley, ax=ax)
+
+
+@pytest.mark.parametrize("draw", [plot.configuration, plot.energy, lambda run: plot.contact_forces(run, 0)])
+def test_nothing_to_draw_is_a_model_error(run: Run, draw: Callable[..., Any]) -> None:
+    with pytest.raises(ModelError, match="before its first output"):
+        draw(Run(run.dataset.isel(time=slice(0)), run.drive))
+
+
+def test_save_all(tmp_path: Path, run: Run) -> None:
+    paths = plot.save_all(run, tmp_path / "figures")
+    names = ["configuration", "contact_forces", "speeds", "torques", "span_tensions", "energy"]
+    assert [path.name for path in paths] == [f"{name}.png" for name in names]
+    assert sorted((tmp_path / "figures").iterdir()) == sorted(paths)
+    assert not plt.get_fignums()
+
+
+def test_save_all_of_one_output(tmp_path: Path, make_run: Callable[..., Run]) -> None:
+    paths = plot.save_all(make_run(outputs=1), tmp_path)
+    assert [path.stem for path in paths] == ["configuration", "contact_forces"]
+
+
+def test_figures_that_cannot_be_written_are_a_model_error(tmp_path: Path, run: Run) -> None:
+    (tmp_path / "speeds.png").mkdir()
+    with pytest.raises(ModelError, match="cannot be written"):
+        plot.save_all(run, tmp_path)
+    assert not any(path.name.startswith(".") for path in tmp_path.iterdir())

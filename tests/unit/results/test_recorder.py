@@ -1,0 +1,172 @@
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import h5netcdf
+import h5py
+import numpy as np
+import pytest
+import xarray as xr
+
+from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.results import COORDINATES, RECORDED, VARIABLES, FileRecorder, Layout, MemoryRecorder, open_run
+
+TIME = np.linspace(0.0, 1.0, 121)
+
+
+@pytest.fixture
+def result(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], statistics: Any
+) -> FileRecorder:
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    for time in np.split(TIME, [1, 50, 100]):
+        recorder.append(make_chunk(time))
+    recorder.close("completed", statistics)
+    return recorder
+
+
+def test_file_and_memory_hold_the_same(
+    result: FileRecorder, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], statistics: Any
+) -> None:
+    memory = MemoryRecorder(layout, attributes)
+    memory.append(make_chunk(TIME[:70]))
+    memory.append(make_chunk(TIME[70:]))
+    memory.close("completed", statistics)
+    with result.dataset() as dataset:
+        xr.testing.assert_identical(dataset, memory.dataset())
+        for name in dataset.variables:
+            assert dataset[name].dtype == memory.dataset()[name].dtype
+
+
+def test_dataset_keeps_to_the_schema(result: FileRecorder) -> None:
+    with result.dataset() as dataset:
+        assert set(dataset.data_vars) == set(VARIABLES)
+        assert set(dataset.coords) == set(COORDINATES)
+        for name, variable in {**VARIABLES, **COORDINATES}.items():
+            assert dataset[name].dims == variable.dims
+            assert dataset[name].attrs == variable.attributes
+
+
+def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
+    with xr.open_dataset(result.path, engine="h5netcdf") as dataset:
+        assert dataset.encoding["unlimited_dims"] == {"time"}
+        assert dataset["time"].dtype == np.float64
+        np.testing.assert_array_equal(dataset["time"], TIME)
+        assert float(dataset["pulley_speed"].sel(pulley="driver")[-1]) == 12.0
+        assert "belt_coordinate" in dataset["normal_force"].coords
+
+
+def test_file_is_netcdf4_with_an_unlimited_time(result: FileRecorder) -> None:
+    with h5netcdf.File(result.path, "r") as file:
+        assert file.dimensions["time"].isunlimited()
+        assert file.variables["nodal_coordinates"].dimensions == ("time", "node", "coordinate")
+        assert all(file.variables[name].shape[0] == len(TIME) for name in RECORDED)
+
+
+def test_file_has_no_consistency_flags(result: FileRecorder) -> None:
+    version_of_superblock = result.path.read_bytes()[8]
+    assert version_of_superblock == 0
+
+
+def test_file_is_readable_while_it_grows(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    recorder.append(make_chunk(TIME[:3]))
+    with open_run(recorder.path).dataset as early:
+        assert early.sizes["time"] == 3
+    recorder.append(make_chunk(TIME[3:5]))
+    run = open_run(recorder.path)
+    with run.dataset as late:
+        assert late.sizes["time"] == 5
+        assert run.status == "running"
+        assert any("the run is running" in warning for warning in run.warnings)
+
+
+def test_result_without_outputs_opens(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    recorder.close("failed", {})
+    with recorder.dataset() as dataset:
+        assert dataset.sizes["time"] == 0
+        xr.testing.assert_identical(dataset.drop_attrs(), _empty(layout).drop_attrs())
+
+
+def _empty(layout: Layout) -> xr.Dataset:
+    return MemoryRecorder(layout, {}).dataset()
+
+
+def test_interrupted_append_is_cut_off(result: FileRecorder, make_chunk: Callable[..., Any]) -> None:
+    with h5py.File(result.path, "r+") as file:
+        file["kinetic_energy"].resize(len(TIME) + 7, axis=0)
+    with result.dataset() as dataset:
+        assert dataset.sizes["time"] == len(TIME)
+        assert bool(dataset["kinetic_energy"].notnull().all())
+    result.append(make_chunk(np.array([2.0])))
+    result.close("interrupted", {})
+    with xr.open_dataset(result.path) as dataset:
+        assert dataset.sizes["time"] == len(TIME) + 1
+        assert dataset.attrs["status"] == "interrupted"
+
+
+def test_variables_are_read_when_used(result: FileRecorder) -> None:
+    with open_run(result.path).dataset as dataset:
+        assert not dataset["nodal_coordinates"].variable._in_memory
+
+
+def test_memory_recorder_keeps_copies(layout: Layout, make_chunk: Callable[..., Any]) -> None:
+    recorder, chunk = MemoryRecorder(layout, {}), make_chunk(TIME)
+    recorder.append(chunk)
+    chunk["kinetic_energy"][:] = -1.0
+    assert float(recorder.dataset()["kinetic_energy"].min()) >= 0.0
+
+
+def test_creation_leaves_nothing_else(result: FileRecorder) -> None:
+    assert list(result.path.parent.iterdir()) == [result.path]
+
+
+@pytest.mark.parametrize("place", ["missing/result.nc", "", "file/result.nc"])
+def test_unwritable_path_is_a_model_error(tmp_path: Path, layout: Layout, attributes: Any, place: str) -> None:
+    (tmp_path / "file").write_text("not a folder")
+    with pytest.raises(ModelError, match="cannot be written"):
+        FileRecorder(tmp_path / place, layout, attributes)
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_vanished_file_is_an_error(result: FileRecorder, make_chunk: Callable[..., Any]) -> None:
+    result.path.unlink()
+    with pytest.raises(BeltdynError, match="cannot be written"):
+        result.append(make_chunk(TIME))
+    with pytest.raises(BeltdynError, match="cannot be written"):
+        result.close("completed", {})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda chunk: chunk.pop("time"), "missing or unknown variables.*time"),
+        (lambda chunk: chunk.update(color=chunk["time"]), "missing or unknown variables.*color"),
+        (lambda chunk: chunk.update(step_size=np.zeros(3)), "step_size has shape"),
+        (lambda chunk: chunk.update(hub_force=np.zeros((121, 2))), "hub_force has shape"),
+    ],
+)
+def test_wrong_chunks_are_refused(
+    layout: Layout, make_chunk: Callable[..., Any], change: Callable[[Any], Any], message: str
+) -> None:
+    chunk = make_chunk(TIME)
+    change(chunk)
+    with pytest.raises(ValueError, match=message):
+        MemoryRecorder(layout, {}).append(chunk)
+
+
+def test_appending_is_quick_and_files_are_small(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    recorder, chunk = FileRecorder(tmp_path / "result.nc", layout, attributes), make_chunk(TIME[:50])
+    seconds = []
+    for _ in range(20):
+        start = perf_counter()
+        recorder.append(chunk)
+        seconds.append(perf_counter() - start)
+    assert min(seconds) < 0.01
+    assert recorder.path.stat().st_size < 15e6

@@ -1,0 +1,59 @@
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.results import Run, summarize
+
+
+def test_means_are_taken_over_the_last_tenth(make_run: Callable[..., Run]) -> None:
+    tension = np.zeros((101, 2))
+    tension[90:] = [1.0, 3.0]
+    tension[-1] += 11.0
+    summary = summarize(make_run(span_tension=tension))
+    assert summary.start == pytest.approx(0.9)
+    assert summary.end == 1.0
+    assert [span.tension for span in summary.spans] == pytest.approx([2.0, 4.0])
+
+
+def test_pulleys(run: Run) -> None:
+    driver, driven = summarize(run).pulleys
+    assert (driver.name, driven.name) == ("driver", "driven")
+    assert driver.speed == pytest.approx(12.0)
+    assert driver.slip == 0.0
+    assert driven.slip == pytest.approx(0.005)
+    assert driven.belt_torque == pytest.approx(30.0 * 0.08125)
+    assert driven.shaft_torque == pytest.approx(-30.0 * 0.08125)
+    assert driven.hub_load == pytest.approx(90.0)
+    assert driven.wrap_angle == pytest.approx(math.pi)
+
+
+def test_spans_and_solver(run: Run) -> None:
+    summary = summarize(run)
+    assert [span.name for span in summary.spans] == ["driver-driven", "driven-driver"]
+    assert [span.tension for span in summary.spans] == pytest.approx([30.0, 60.0])
+    assert summary.spans[0].belt_speed == pytest.approx(12.0 * 0.08125)
+    assert (summary.steps, summary.newton_iterations, summary.real_time_factor) == (1200, 4900, 2.0)
+    assert summary.energy_closure == 1e-4
+    assert summary.warnings == tuple(run.warnings)
+
+
+def test_single_output_at_rest(make_run: Callable[..., Run]) -> None:
+    summary = summarize(make_run(outputs=1))
+    assert (summary.start, summary.end, summary.outputs) == (0.0, 0.0, 1)
+    assert all(math.isnan(pulley.slip) for pulley in summary.pulleys)
+    assert summary.spans[0].tension == 30.0
+
+
+def test_run_whose_end_was_not_recorded(run: Run) -> None:
+    killed = Run(run.dataset.drop_attrs(deep=False).assign_attrs(status="running"), run.drive)
+    summary = summarize(killed)
+    assert (summary.integrator, summary.steps) == ("", 0)
+    assert math.isnan(summary.wall_time)
+
+
+def test_run_without_outputs_cannot_be_summed_up(run: Run) -> None:
+    with pytest.raises(ModelError, match="before its first output"):
+        summarize(Run(run.dataset.isel(time=slice(0)), run.drive))

@@ -1,0 +1,30 @@
+"""Write outputs without end, each filled with its number; the test kills this process."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from beltdyn.results import RECORDED, FileRecorder, Layout
+
+PERIOD = 100
+
+
+def write(path: Path, outputs: int) -> None:
+    layout = Layout(("a", "b"), ("a-b", "b-a"), np.arange(20.0), np.arange(20.0), np.arange(100.0))
+    recorder = FileRecorder(path, layout, {"drive": ""})
+    sys.stdout.write("ready\n")
+    sys.stdout.flush()
+    start = 0
+    while True:
+        numbers = np.arange(start, start + outputs) % PERIOD
+        chunk = {}
+        for name, variable in RECORDED.items():
+            shape = layout.shape(variable, outputs)
+            chunk[name] = np.broadcast_to(numbers.reshape(-1, *(1,) * (len(shape) - 1)), shape)
+        recorder.append(chunk)
+        start += outputs
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]), int(sys.argv[2]))
