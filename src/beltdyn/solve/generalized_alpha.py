@@ -31,7 +31,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 REACHED: Final = 0
-"""Status: the stop was reached, or the buffer of outputs is full."""
+"""Status: the stop was reached, the buffer of outputs is full, or the budget is spent."""
 STEP_TOO_SMALL: Final = 1
 """Status: no step was found that converges and is accurate."""
 SINGULAR: Final = 2
@@ -140,9 +140,9 @@ def method_of(rho: float) -> Method:
 
 @kernel
 def advance(
-    system: System, settings: Settings, march: March, stop: float, restart: bool, outputs: Outputs, filled: int
+    system: System, settings: Settings, march: March, stop: float, restart: bool, budget: int, outputs: Outputs
 ) -> tuple[int, int]:
-    """Integrate until a stop, or until all outputs are filled.
+    """Integrate until a stop, until all outputs are filled, or until a number of steps has been tried.
 
     Parameters
     ----------
@@ -156,18 +156,19 @@ def advance(
         Instant on which the last step ends, s: a kink or jump of what drives the system, or the end.
     restart
         Whether to ask the equations of motion for the accelerations first: at the start, and after a jump.
+    budget
+        Steps to try at most, so that the caller hears of progress.
     outputs
-        Filled from row `filled` on, by cubic Hermite interpolation within steps.
-    filled
-        Number of outputs already there.
+        Filled by cubic Hermite interpolation within steps.
 
     Returns
     -------
     status : int
         `REACHED`, `STEP_TOO_SMALL` or `SINGULAR`.
     filled : int
-        Number of outputs now there.
+        Number of outputs filled.
     """
+    filled = 0
     method = method_of(settings.spectral_radius)
     equations = new_equations(system)
     clock = march.clock
@@ -177,10 +178,12 @@ def advance(
             system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations
         )
         if not begun:
-            return SINGULAR, filled
+            return SINGULAR, 0
         march.auxiliary[:] = march.acceleration
         march.power[:] = equations.loads.power
-    while clock[0] < stop and filled < outputs.time.size:
+    for _ in range(budget):
+        if clock[0] >= stop or (filled == outputs.time.size and filled > 0):
+            break
         left = stop - clock[0]
         step = left if clock[1] >= left else min(clock[1], 0.5 * left) if 2.0 * clock[1] > left else clock[1]
         if not _newton(system, settings, method, march, step, equations):

@@ -1,8 +1,9 @@
-"""Static equilibrium of a belt: Newton's method, globalised by an inertial shift of the stiffness (section 5 of the paper).
+"""Static equilibrium of a belt: Newton's method, damped by the natural monotonicity test (section 5 of the paper).
 
-The step solves (K + shift M) x = residual.  A large shift makes small, safe steps along the forces; none makes Newton's step.  The
-shift falls while steps lower the energy and rises when one does not.  The change of energy is taken as the work of the mean of
-the forces before and after the step, so that it holds for friction and moments too, which have no potential.
+A belt is so much stiffer in tension than in bending that neither the energy nor the residual falls along a good path to
+equilibrium.  What must fall is the next correction as the present stiffness sees it (Deuflhard 2011, section 2.1): a step of
+length d is taken if |K^-1 r(q - d x)| <= (1 - d / 4) |x| with x = K^-1 r(q).  Where no length will do, or the stiffness is singular,
+a multiple of the mass matrix is added to the stiffness for a while.
 """
 
 from dataclasses import dataclass
@@ -13,13 +14,14 @@ import numpy as np
 from beltdyn.errors import ConvergenceError
 from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.motion import Equations, linearise, new_equations, subtract_solution
+from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import State
 
 
 
 _TOLERANCE = 1e-11
-_LARGEST_SHIFT = 1e12
-_SMALLEST_SHIFT = 1e-6
+_SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
+_SMALLEST_LENGTH = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,13 +81,13 @@ def find_equilibrium(
         If the iteration does not end, or the stiffness is singular.
     """
     search = _Search(system, start)
-    shift = 1.0 if method == "globalised" else 0.0
+    shift = 0.0
     iterates, norms = [start.nodes(system).copy()], list[float]()
     while len(norms) < max_iterations and shift < _LARGEST_SHIFT:
-        norm = search.solve(shift)
+        norm = search.linearise(shift)
         if method == "newton":
-            search.step()
-        elif not search.step_downhill():
+            search.step(1.0)
+        elif not search.step_naturally():
             shift = max(10.0 * shift, _SMALLEST_SHIFT)
             continue
         iterates.append(search.nodes.copy())
@@ -109,49 +111,54 @@ class _Search:
         still = np.full_like(system.pulleys.unknown, -1)
         self._system = system._replace(pulleys=system.pulleys._replace(unknown=still))
         self._position, self._velocity = start.position.copy(), start.velocity
-        self._equations: Equations = new_equations(self._system)
+        self._here: Equations = new_equations(self._system)
+        self._ahead: Equations = new_equations(self._system)
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.section.mass / system.section.axial
+        element = self._length / system.length.size
+        self._scale = np.array([1.0, 1.0, element, element, element, element])
 
     @property
     def nodes(self) -> FloatArray:
         """Nodal coordinates, shape (N, 6)."""
         return self._position[: NODE * self._system.nodes].reshape(-1, NODE)
 
-    def solve(self, shift: float) -> float:
+    def linearise(self, shift: float) -> float:
         """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step."""
-        at_rest = np.zeros_like(self._position)
-        solved = linearise(
-            self._system,
-            0.0,
-            self._position,
-            self._velocity,
-            at_rest,
-            np.zeros(NODE),
-            1.0,
-            0.0,
-            shift / self._time_scale,
-            self._equations,
-        )
-        self._residual = self._equations.matrix.node_side.copy()
-        self._step = self._equations.node_part.copy()
-        if not solved or not np.all(np.isfinite(self._step)):
-            self._step[:] = np.nan
-        energy = abs(float(np.sum(self._residual * self._step)))
+        self._solve(self._here, shift)
+        energy = abs(float(np.sum(self._here.matrix.node_side * self._here.node_part)))
         return float(np.sqrt(energy / (self._system.section.axial * self._length)))
 
-    def step(self) -> None:
-        """Take the step."""
-        subtract_solution(self._system, self._equations, 1.0, self._position)
+    def step(self, length: float) -> None:
+        """Take the step, or a part of it."""
+        subtract_solution(self._system, self._here, length, self._position)
 
-    def step_downhill(self) -> bool:
-        """Take the step if the forces do work on the way; stay otherwise."""
-        before, residual, step = self._position.copy(), self._residual, self._step
-        if np.all(np.isfinite(step)):
-            self.step()
-            self.solve(0.0)
-            work = 0.5 * float(np.sum((residual + self._residual) * step))
-            if work > 0.0 or np.linalg.norm(self._residual) < np.linalg.norm(residual):
+    def step_naturally(self) -> bool:
+        """Take the longest step, of halved lengths, that passes the natural monotonicity test; False if there is none."""
+        size, length = self._size(self._here), 1.0
+        while np.isfinite(size) and length >= _SMALLEST_LENGTH:
+            self.step(length)
+            self._solve(self._ahead, 0.0)
+            side = self._here.matrix.node_side.copy()
+            self._here.matrix.node_side[:] = self._ahead.matrix.node_side
+            solve_ring(self._here.matrix, self._system.closed, self._ahead.node_part, self._ahead.border_part)
+            self._here.matrix.node_side[:] = side
+            if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:
                 return True
-        self._position = before
+            self.step(-length)
+            length *= 0.5
         return False
+
+    def _solve(self, equations: Equations, shift: float) -> None:
+        """Linearise and solve; a singular stiffness leaves nan."""
+        at_rest, none = np.zeros_like(self._position), np.zeros(NODE)
+        shift /= self._time_scale
+        solved = linearise(
+            self._system, 0.0, self._position, self._velocity, at_rest, none, 1.0, 0.0, shift, equations
+        )
+        if not solved:
+            equations.node_part[:] = np.nan
+
+    def _size(self, equations: Equations) -> float:
+        """Root mean square of a step, m."""
+        return float(np.sqrt(np.mean((equations.node_part * self._scale) ** 2)))

@@ -1,0 +1,112 @@
+"""Generalised-alpha behind the interface of all integrators."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.solve.generalized_alpha import (
+    FAILED,
+    ITERATIONS,
+    REACHED,
+    REJECTED,
+    STEPS,
+    March,
+    Outputs,
+    Settings,
+    advance,
+    new_march,
+)
+from beltdyn.solve.trajectory import Chunk, Task
+
+_OUTPUTS = 64
+_STEPS_AT_ONCE = 8000
+_FIRST_STEP = 1e-6
+_NEWTON_FRACTION = 1e-3
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Generalised-alpha with variable steps.
+
+    Attributes
+    ----------
+    spectral_radius : float
+        At infinite frequency, 0 (strongest damping) to 1 (none).
+    rtol : float
+        Local error per unit of time over the velocity scale of the task.
+    max_step : float or None
+        s.
+    """
+
+    spectral_radius: float
+    rtol: float
+    max_step: float | None = None
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate; see `Integrator`."""
+        system, start = task.system, task.start
+        element = float(np.max(system.length))
+        settings = Settings(
+            spectral_radius=self.spectral_radius,
+            velocity_tolerance=self.rtol * task.velocity_scale,
+            newton_fraction=_NEWTON_FRACTION,
+            max_step=self.max_step or float(task.times[-1] - task.times[0]),
+            length_scale=np.array([1.0, 1.0, element, element, element, element]),
+        )
+        march = new_march(float(task.times[0]), _FIRST_STEP, start.position, start.velocity)
+        budget = max(1, _STEPS_AT_ONCE // system.length.size)
+        yield _first_chunk(task)
+        written = 1
+        for stop in task.stops:
+            restart = True
+            while march.clock[0] < stop:
+                outputs = _buffer(task.times[written : written + _OUTPUTS], start.position.size)
+                status, filled = advance(system, settings, march, stop, restart, budget, outputs)
+                restart = False
+                _count(task, march)
+                yield _chunk(outputs, filled, march)
+                written += filled
+                if status != REACHED:
+                    raise ConvergenceError(_message(task, march, self.rtol))
+
+
+def _first_chunk(task: Task) -> Chunk:
+    """The start itself."""
+    start = task.start
+    return Chunk(
+        task.times[:1], start.position[None], start.velocity[None], np.zeros((1, 4)), np.zeros(1), float(task.times[0])
+    )
+
+
+def _buffer(times: np.ndarray, size: int) -> Outputs:
+    """Room for the states at the next output instants."""
+    count = len(times)
+    return Outputs(
+        times.copy(), np.empty((count, size)), np.empty((count, size)), np.empty((count, 4)), np.empty(count)
+    )
+
+
+def _chunk(outputs: Outputs, filled: int, march: March) -> Chunk:
+    """The filled part of a buffer."""
+    return Chunk(*(array[:filled] for array in outputs), reached=float(march.clock[0]))
+
+
+def _count(task: Task, march: March) -> None:
+    """Hand the counters on."""
+    task.statistics.steps = int(march.counts[STEPS])
+    task.statistics.rejected_steps = int(march.counts[REJECTED] + march.counts[FAILED])
+    task.statistics.newton_iterations = int(march.counts[ITERATIONS])
+
+
+def _message(task: Task, march: March, rtol: float) -> str:
+    """Where and when the march ended, and what to try."""
+    nodes = march.acceleration[: 6 * task.system.nodes].reshape(-1, 6)
+    worst = int(np.argmax(np.hypot(nodes[:, 0], nodes[:, 1])))
+    x, y = march.position[6 * worst : 6 * worst + 2]
+    return (
+        f"the simulation cannot go on at t = {march.clock[0]:.6g} s: no time step above 1e-11 s converges. "
+        f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try more elements, a larger "
+        f"simulation.rtol than {rtol:g}, a smaller contact.stiffness or a smaller slope of friction."
+    )

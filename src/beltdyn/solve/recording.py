@@ -1,0 +1,167 @@
+"""From states to results: observe what the integrator hands out, record it, and tell of progress."""
+
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from beltdyn.model import Drive
+from beltdyn.results import FileRecorder, Layout, MemoryRecorder, Recorder, Run, provenance
+from beltdyn.solve.energy import EnergyAccount
+from beltdyn.solve.progress import Phase, Progress, Report
+from beltdyn.solve.trajectory import Chunk, Statistics
+from beltdyn.system.arrays import NODE, POWERS, System
+from beltdyn.system.observe import new_observations, observe
+
+_SECONDS_BETWEEN_WRITES = 0.25
+
+
+class Recording:
+    """A run in the making: a context that closes the results whatever happens.
+
+    An interruption (Ctrl-C) ends the recording with the status "interrupted" and goes no further; an error ends it with the status
+    "failed" and goes on to the caller.
+
+    Parameters
+    ----------
+    drive, system
+        What is simulated.
+    output
+        Result file, or None for memory.
+    title
+        Title of the dataset.
+    progress
+        Whom to tell.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be written.
+    """
+
+    def __init__(
+        self, drive: Drive, system: System, output: Path | str | None, title: str, progress: Report | None
+    ) -> None:
+        self.statistics = Statistics()
+        self._drive, self._system, self._progress = drive, system, progress
+        self._path = Path(output) if output is not None else None
+        layout, attributes = result_layout(drive, system), provenance(drive.text, title)
+        self._recorder: Recorder = (
+            FileRecorder(self._path, layout, attributes) if self._path else MemoryRecorder(layout, attributes)
+        )
+        self._energy = EnergyAccount()
+        self._waiting: list[Chunk] = []
+        self._written = 0
+        self._step = 0.0
+        self._begun = self._compiled = self._last_write = time.perf_counter()
+
+    def __enter__(self) -> Self:
+        """Compile the kernels of observation, which are used last and must not delay the end."""
+        self.tell(0.0, "compiling")
+        observe(self._system, np.empty(0), np.empty((0, 1)), np.empty((0, 1)), new_observations(self._system, 0))
+        self._compiled = time.perf_counter()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        """Write what waits and close the results with their status."""
+        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
+        self._write()
+        status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        self._recorder.close(status, self._attributes())
+        return interrupted
+
+    def take(self, chunk: Chunk) -> None:
+        """Take states; they are recorded a few at a time."""
+        if len(chunk.time):
+            self._waiting.append(chunk)
+            self._step = float(chunk.step[-1])
+        self.tell(chunk.reached, "integrating")
+        if time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
+            self._write()
+
+    def tell(self, reached: float, phase: Phase) -> None:
+        """Tell of progress."""
+        if self._progress is not None:
+            waiting = sum(len(chunk.time) for chunk in self._waiting)
+            duration = self._drive.simulation.duration
+            self._progress(Progress(reached, duration, self._step, self._written + waiting, phase))
+
+    def run(self) -> Run:
+        """The run that was recorded."""
+        return Run(self._recorder.dataset(), self._drive, self._path)
+
+    def _write(self) -> None:
+        """Observe and record the states that wait."""
+        if self._waiting:
+            names = ("time", "position", "velocity", "work", "step")
+            arrays = [np.concatenate([getattr(chunk, name) for chunk in self._waiting]) for name in names]
+            self._recorder.append(self._observe(*arrays))
+            self._written += len(arrays[0])
+            self._waiting.clear()
+        self._last_write = time.perf_counter()
+
+    def _observe(
+        self, instants: np.ndarray, position: np.ndarray, velocity: np.ndarray, work: np.ndarray, step: np.ndarray
+    ) -> dict[str, Any]:
+        """Every recorded variable for some states."""
+        system, count = self._system, len(instants)
+        seen = new_observations(system, count)
+        observe(system, instants, position, velocity, seen)
+        nodes = NODE * system.nodes
+        coordinates = position[:, :nodes].reshape(count, -1, NODE)
+        stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy
+        return {
+            **seen._asdict(),
+            **dict(zip(POWERS, work.T, strict=True)),
+            "time": instants,
+            "pulley_speed": velocity[:, nodes:],
+            "pulley_angle": position[:, nodes:],
+            "node_position": coordinates[..., :2],
+            "nodal_coordinates": coordinates,
+            "nodal_velocities": velocity[:, :nodes].reshape(count, -1, NODE),
+            "energy_closure": self._energy.closure(stored, work),
+            "step_size": step,
+        }
+
+    def _attributes(self) -> dict[str, Any]:
+        """Statistics of the solver, known at the end."""
+        wall = time.perf_counter() - self._compiled
+        simulated = self._drive.simulation.duration
+        return {
+            "integrator": self._drive.simulation.integrator,
+            "steps": self.statistics.steps,
+            "rejected_steps": self.statistics.rejected_steps,
+            "newton_iterations": self.statistics.newton_iterations,
+            "wall_time": wall,
+            "compile_time": self._compiled - self._begun,
+            "real_time_factor": wall / simulated,
+        }
+
+
+def result_layout(drive: Drive, system: System) -> Layout:
+    """Names and reference coordinates of the results.
+
+    Parameters
+    ----------
+    drive, system
+        What is simulated.
+
+    Returns
+    -------
+    Layout
+        Belt coordinates run from node 0 in the direction of motion.
+    """
+    names = tuple(pulley.name for pulley in drive.pulleys)
+    spans = tuple(f"{a}-{b}" for a, b in zip(names, (*names[1:], names[0]), strict=True))
+    starts = np.concatenate([[0.0], np.cumsum(system.length)])
+    return Layout(
+        pulleys=names,
+        spans=spans,
+        node_coordinate=starts[: system.nodes],
+        element_coordinate=starts[:-1] + 0.5 * system.length,
+        belt_coordinate=(starts[:-1, None] + system.length[:, None] * system.contact.points).ravel(),
+    )

@@ -1,0 +1,100 @@
+"""From a drive to a run: start, integrate, observe, record."""
+
+from pathlib import Path
+
+import numpy as np
+
+from beltdyn.model import Drive
+from beltdyn.results import Run
+from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.progress import Report
+from beltdyn.solve.recording import Recording
+from beltdyn.solve.standard import StandardIntegrator
+from beltdyn.solve.static import find_equilibrium
+from beltdyn.solve.trajectory import Chunk, Integrator, drive_task
+from beltdyn.system.build import drive_system
+from beltdyn.system.state import laid
+
+
+def simulate(drive: Drive, output: Path | str | None = None, progress: Report | None = None) -> Run:
+    """Simulate a drive over time.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    output
+        Result file (NetCDF4), written as the simulation goes; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+
+    Returns
+    -------
+    Run
+        Its status is "completed", or "interrupted" after Ctrl-C.
+
+    Raises
+    ------
+    ModelError
+        If the result file cannot be written, or an integrator is not installed.
+    ConvergenceError
+        If the simulation cannot go on; what was computed is kept in the file, with the status "failed".
+    """
+    system, settings = drive_system(drive), drive.simulation
+    with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress) as recording:
+        state = laid(system, drive.path)
+        if settings.start == "equilibrium":
+            recording.tell(0.0, "equilibrium")
+            state = find_equilibrium(system, state).state
+        task = drive_task(drive, system, state, recording.statistics)
+        for chunk in choose_integrator(drive)(task):
+            recording.take(chunk)
+    return recording.run()
+
+
+def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
+    """Find the static equilibrium of a drive at rest, with pulleys that do not turn.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    progress
+        Called now and then with a `Progress`.
+
+    Returns
+    -------
+    Run
+        With one output, at time zero.
+
+    Raises
+    ------
+    ConvergenceError
+        If no equilibrium is found.
+    """
+    system = drive_system(drive)
+    with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:
+        recording.tell(0.0, "equilibrium")
+        state = find_equilibrium(system, laid(system, drive.path)).state
+        zero = np.zeros(1)
+        recording.take(Chunk(zero, state.position[None], state.velocity[None], np.zeros((1, 4)), zero, 0.0))
+    return recording.run()
+
+
+def choose_integrator(drive: Drive) -> Integrator:
+    """The integrator that a drive file asks for.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+
+    Returns
+    -------
+    Integrator
+        `GeneralizedAlpha` or a `StandardIntegrator`.
+    """
+    settings = drive.simulation
+    if settings.integrator == "generalized_alpha":
+        return GeneralizedAlpha(settings.spectral_radius, settings.rtol, settings.max_step)
+    return StandardIntegrator(settings.integrator, settings.rtol, settings.max_step)

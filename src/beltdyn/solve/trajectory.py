@@ -1,0 +1,148 @@
+"""What every time integrator takes and gives, whatever its method."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from beltdyn.model import Drive
+from beltdyn.system.arrays import FloatArray, System
+from beltdyn.system.state import State
+
+
+@dataclass(frozen=True, eq=False)
+class Chunk:
+    """States at some successive output instants; none in a chunk that only tells of progress.
+
+    Attributes
+    ----------
+    time : ndarray, shape (k,)
+        s.
+    position, velocity : ndarray, shape (k, 6 N + P)
+        Nodal coordinates and pulley angles, and their rates.
+    work : ndarray, shape (k, 4)
+        Time integrals of the powers in `system.arrays.POWERS`, J.
+    step : ndarray, shape (k,)
+        Step that the solver took around each instant, s.
+    reached : float
+        Time that the solver has reached, s.
+    """
+
+    time: FloatArray
+    position: FloatArray
+    velocity: FloatArray
+    work: FloatArray
+    step: FloatArray
+    reached: float
+
+
+@dataclass
+class Statistics:
+    """What the solver did so far."""
+
+    steps: int = 0
+    rejected_steps: int = 0
+    newton_iterations: int = 0
+
+
+@dataclass(frozen=True)
+class Task:
+    """An initial value problem.
+
+    Attributes
+    ----------
+    system : System
+        Belt, pulleys, supports.
+    start : State
+        State at the first output instant.
+    times : ndarray, shape (k,)
+        Output instants, s, ascending; the solver ends at the last one.
+    breakpoints : sequence of float
+        Instants between, s, on which a step must end because what drives the system has a kink or a jump there.
+    velocity_scale : float
+        Velocity that relative tolerances are relative to, m/s.
+    statistics : Statistics
+        Kept up to date by the solver.
+    """
+
+    system: System
+    start: State
+    times: FloatArray
+    breakpoints: Sequence[float]
+    velocity_scale: float
+    statistics: Statistics
+
+    @property
+    def stops(self) -> list[float]:
+        """Breakpoints after the start, and the end, s."""
+        first, last = float(self.times[0]), float(self.times[-1])
+        return [*sorted({float(t) for t in self.breakpoints if first < t < last}), last]
+
+
+class Integrator(Protocol):
+    """A method of time integration."""
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate, handing out chunks as they come.
+
+        Parameters
+        ----------
+        task
+            The problem; its statistics are kept up to date.
+
+        Raises
+        ------
+        ConvergenceError
+            If the solver cannot go on.
+        """
+
+
+def drive_task(drive: Drive, system: System, start: State, statistics: Statistics) -> Task:
+    """The initial value problem that a drive file describes.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    system
+        Its arrays.
+    start
+        State at time zero.
+    statistics
+        Where the solver counts.
+
+    Returns
+    -------
+    Task
+        Outputs at multiples of the interval and at the end.
+    """
+    settings = drive.simulation
+    count = int(np.floor(settings.duration / settings.output_interval * (1 + 1e-12)))
+    times = settings.output_interval * np.arange(count + 1)
+    if settings.duration - times[-1] > 1e-9 * settings.duration:
+        times = np.append(times, settings.duration)
+    times[-1] = settings.duration
+    profiles = [profile for pulley in drive.pulleys for profile in (pulley.speed, pulley.torque) if profile]
+    breakpoints = [t for profile in profiles for t in profile.breakpoints()]
+    return Task(system, start, times, breakpoints, velocity_scale(drive), statistics)
+
+
+def velocity_scale(drive: Drive) -> float:
+    """Velocity that local errors are measured by: the largest prescribed rim speed, or what the installed strain can cause.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+
+    Returns
+    -------
+    float
+        m/s; the second is strain times the speed of axial waves, the velocity of a belt end that is let go.
+    """
+    times = np.linspace(0.0, drive.simulation.duration, 1001)
+    rims = [p.radius * float(np.max(np.abs(p.speed.at(times)))) for p in drive.pulleys if p.speed is not None]
+    belt = drive.belt
+    strain = drive.path.length / belt.length - 1.0
+    return max(*rims, strain * float(np.sqrt(belt.axial_stiffness / belt.mass_per_length)), 0.0)

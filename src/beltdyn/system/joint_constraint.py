@@ -1,0 +1,83 @@
+"""The belt's ends joined by Lagrange multipliers, and the multipliers eliminated (Eqs. 25 and 26)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beltdyn.errors import ModelError
+from beltdyn.system.arrays import NODE, FloatArray, System
+
+
+@dataclass(frozen=True, eq=False)
+class JointConstraint:
+    """The constant matrices of Eqs. 25 and 26 for a belt of N nodes, the last tied to the first.
+
+    Attributes
+    ----------
+    jacobian : ndarray, shape (6, 6 N)
+        C_e: coordinates of the first node minus those of the last.
+    by_force : ndarray, shape (6 N, 6 N)
+        First bracket of Eq. 26, M^-1 - M^-1 C^T (C M^-1 C^T)^-1 C M^-1.
+    by_constraint : ndarray, shape (6 N, 6)
+        Second bracket of Eq. 26, M^-1 C^T (C M^-1 C^T)^-1.
+    """
+
+    jacobian: FloatArray
+    by_force: FloatArray
+    by_constraint: FloatArray
+
+    def accelerations(self, force: FloatArray, constraint: FloatArray | None = None) -> FloatArray:
+        """Accelerations of the nodal coordinates (Eq. 26).
+
+        Parameters
+        ----------
+        force : ndarray, shape (6 N,)
+            Generalised contact and elastic forces Q.
+        constraint : ndarray, shape (6,), optional
+            Q_d; zero for a rigid joint, whose constraint is linear.
+
+        Returns
+        -------
+        ndarray, shape (6 N,)
+        """
+        result = self.by_force @ force
+        return result if constraint is None else result + self.by_constraint @ constraint
+
+
+def joint_constraint(system: System) -> JointConstraint:
+    """Compute the matrices in brackets of Eq. 26 once.
+
+    Parameters
+    ----------
+    system
+        A belt whose joint is closed by multipliers.
+
+    Returns
+    -------
+    JointConstraint
+
+    Raises
+    ------
+    ModelError
+        If the belt has no such joint.
+    """
+    if not system.joint:
+        raise ModelError('the belt has no joint with multipliers. Set simulation.joint = "multipliers".')
+    jacobian = np.zeros((NODE, NODE * system.nodes))
+    jacobian[:, :NODE] = np.eye(NODE)
+    jacobian[:, -NODE:] = -np.eye(NODE)
+    inverse = np.linalg.inv(mass_matrix(system))
+    flexibility = inverse @ jacobian.T
+    by_constraint = np.linalg.solve((jacobian @ flexibility).T, flexibility.T).T
+    return JointConstraint(jacobian, inverse - by_constraint @ flexibility.T, by_constraint)
+
+
+def mass_matrix(system: System) -> FloatArray:
+    """Mass matrix of the belt, dense, shape (6 N, 6 N)."""
+    size = NODE * system.nodes
+    matrix = np.zeros((size, size))
+    for element, mass in enumerate(system.mass):
+        nodes = np.array([element, (element + 1) % system.nodes])
+        rows = (NODE * nodes[:, None] + np.arange(NODE)).ravel()
+        matrix[np.ix_(rows, rows)] += mass
+    return matrix
