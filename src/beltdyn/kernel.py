@@ -32,16 +32,24 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     Parameters
     ----------
     function
-        A function of scalars, arrays and named tuples of them.  Everything that it calls must be a kernel too.
+        A function of scalars, arrays and named tuples of them.  Everything that it calls must be a kernel too.  A private one
+        (leading underscore) becomes a part of its callers and cannot be called from Python.
 
     Returns
     -------
     Callable
         The compiled function, with the signature of the given one.
     """
+    private = function.__name__.startswith("_")
     with _cache_folder(str(kernel_cache())):
         compiled: Callable[P, R] = numba.njit(
-            cache=True, nogil=True, error_model="numpy", fastmath={"contract", "nsz"}
+            cache=True,
+            nogil=True,
+            error_model="numpy",
+            fastmath={"contract", "nsz"},
+            forceinline=private,
+            no_cpython_wrapper=private,
+            no_cfunc_wrapper=private,
         )(function)
     return compiled
 

@@ -40,7 +40,6 @@ class ShearSums(NamedTuple):
     jj: float
 
 
-@kernel
 def elastic_workspace() -> ElasticWorkspace:
     """Make the scratch arrays of `element_force`."""
     return ElasticWorkspace(np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((2, 12)))

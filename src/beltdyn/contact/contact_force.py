@@ -58,7 +58,6 @@ class ContactTotals(NamedTuple):
     """Power lost in friction, -f_t (t . dr/dt - (R - d) omega) over the touching length: what belt and pulley really lose, W."""
 
 
-@kernel
 def contact_workspace() -> ContactWorkspace:
     """Make the arrays of `contact_force`."""
     return ContactWorkspace(

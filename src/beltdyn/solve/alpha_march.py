@@ -17,8 +17,10 @@ from beltdyn.solve.generalized_alpha import (
     Settings,
     advance,
     new_march,
+    restart,
 )
 from beltdyn.solve.trajectory import Chunk, Task
+from beltdyn.system.motion import new_equations
 
 _OUTPUTS = 64
 _STEPS_AT_ONCE = 8000
@@ -56,15 +58,15 @@ class GeneralizedAlpha:
             length_scale=np.array([1.0, 1.0, element, element, element, element]),
         )
         march = new_march(float(task.times[0]), _FIRST_STEP, start.position, start.velocity)
+        equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
         yield _first_chunk(task)
         written = 1
         for stop in task.stops:
-            restart = True
+            restart(system, march, equations)
             while march.clock[0] < stop:
                 outputs = _buffer(task.times[written : written + _OUTPUTS], start.position.size)
-                status, filled = advance(system, settings, march, stop, restart, budget, outputs)
-                restart = False
+                status, filled = advance(system, settings, march, equations, stop, budget, outputs)
                 _count(task, march)
                 yield _chunk(outputs, filled, march)
                 written += filled

@@ -15,17 +15,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import NODE, POWERS, System
+from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe, prescribe_speeds
-from beltdyn.system.motion import (
-    Equations,
-    accelerate,
-    linearise,
-    new_equations,
-    subtract_multipliers,
-    subtract_solution,
-)
+from beltdyn.system.motion import Equations, accelerate, subtract_multipliers, subtract_solution
+from beltdyn.system.ring_matrix import solve_ring
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -34,8 +30,6 @@ REACHED: Final = 0
 """Status: the stop was reached, the buffer of outputs is full, or the budget is spent."""
 STEP_TOO_SMALL: Final = 1
 """Status: no step was found that converges and is accurate."""
-SINGULAR: Final = 2
-"""Status: the mass matrix is singular."""
 
 STEPS: Final = 0
 REJECTED: Final = 1
@@ -112,21 +106,60 @@ class Method(NamedTuple):
     """Local error of the position over h^2 (A1 - A0)."""
 
 
-@kernel
 def new_march(time: float, step: float, position: FloatArray, velocity: FloatArray) -> March:
-    """Start an integration from copies of a position and a velocity."""
+    """Begin an integration.
+
+    Parameters
+    ----------
+    time, step
+        Where to begin, and the first step to try, s.
+    position, velocity : ndarray, shape (6 N + P,)
+        State to begin from; copied.
+
+    Returns
+    -------
+    March
+        `restart` has to give it accelerations before it can `advance`.
+    """
+    size = position.size
     return March(
-        np.array((time, step)),
-        position.copy(),
-        velocity.copy(),
-        np.zeros(position.size),
-        np.zeros(position.size),
-        np.zeros(NODE),
-        np.zeros(4),
-        np.zeros(4),
-        np.zeros((4, position.size)),
-        np.zeros(4, dtype=np.int64),
+        clock=np.array((time, step)),
+        position=position.copy(),
+        velocity=velocity.copy(),
+        acceleration=np.zeros(size),
+        auxiliary=np.zeros(size),
+        multipliers=np.zeros(NODE),
+        work=np.zeros(len(POWERS)),
+        power=np.zeros(len(POWERS)),
+        trial=np.zeros((4, size)),
+        counts=np.zeros(4, dtype=np.int64),
     )
+
+
+def restart(system: System, march: March, equations: Equations) -> None:
+    """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+    march
+        Changed in place; profiles are taken just after its time.
+    equations
+        Arrays to work in.
+
+    Raises
+    ------
+    ConvergenceError
+        If the mass matrix is singular.
+    """
+    after = float(np.nextafter(march.clock[0], np.inf))
+    if not accelerate(
+        system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations
+    ):
+        raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
+    march.auxiliary[:] = march.acceleration
+    march.power[:] = equations.loads.power
 
 
 @kernel
@@ -140,7 +173,13 @@ def method_of(rho: float) -> Method:
 
 @kernel
 def advance(
-    system: System, settings: Settings, march: March, stop: float, restart: bool, budget: int, outputs: Outputs
+    system: System,
+    settings: Settings,
+    march: March,
+    equations: Equations,
+    stop: float,
+    budget: int,
+    outputs: Outputs,
 ) -> tuple[int, int]:
     """Integrate until a stop, until all outputs are filled, or until a number of steps has been tried.
 
@@ -152,10 +191,10 @@ def advance(
         Tolerances and the method's parameter.
     march
         Changed in place; it stands on the last state reached.
+    equations
+        Arrays to work in.
     stop
         Instant on which the last step ends, s: a kink or jump of what drives the system, or the end.
-    restart
-        Whether to ask the equations of motion for the accelerations first: at the start, and after a jump.
     budget
         Steps to try at most, so that the caller hears of progress.
     outputs
@@ -164,23 +203,13 @@ def advance(
     Returns
     -------
     status : int
-        `REACHED`, `STEP_TOO_SMALL` or `SINGULAR`.
+        `REACHED` or `STEP_TOO_SMALL`.
     filled : int
         Number of outputs filled.
     """
     filled = 0
     method = method_of(settings.spectral_radius)
-    equations = new_equations(system)
     clock = march.clock
-    if restart:
-        after = np.nextafter(clock[0], np.inf)
-        begun = accelerate(
-            system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations
-        )
-        if not begun:
-            return SINGULAR, 0
-        march.auxiliary[:] = march.acceleration
-        march.power[:] = equations.loads.power
     for _ in range(budget):
         if clock[0] >= stop or (filled == outputs.time.size and filled > 0):
             break
@@ -229,7 +258,7 @@ def _newton(
     before = np.inf
     for iteration in range(_MAX_ITERATIONS):
         march.counts[ITERATIONS] += 1
-        solved = linearise(
+        assemble(
             system,
             time,
             position,
@@ -239,8 +268,11 @@ def _newton(
             1.0,
             by_velocity,
             by_acceleration,
-            equations,
+            equations.work,
+            equations.matrix,
+            equations.loads,
         )
+        solved = solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
         change = _size_of_step(system, settings, equations)
         if not solved or not np.isfinite(change):
             return False

@@ -13,7 +13,7 @@ from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
 from beltdyn.system.arrays import NODE, POWERS, System
-from beltdyn.system.observe import new_observations, observe
+from beltdyn.system.observe import observe
 
 _SECONDS_BETWEEN_WRITES = 0.25
 
@@ -60,7 +60,7 @@ class Recording:
     def __enter__(self) -> Self:
         """Compile the kernels of observation, which are used last and must not delay the end."""
         self.tell(0.0, "compiling")
-        observe(self._system, np.empty(0), np.empty((0, 1)), np.empty((0, 1)), new_observations(self._system, 0))
+        observe(self._system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
         self._compiled = time.perf_counter()
         return self
 
@@ -109,8 +109,7 @@ class Recording:
     ) -> dict[str, Any]:
         """Every recorded variable for some states."""
         system, count = self._system, len(instants)
-        seen = new_observations(system, count)
-        observe(system, instants, position, velocity, seen)
+        seen = observe(system, instants, position, velocity)
         nodes = NODE * system.nodes
         coordinates = position[:, :nodes].reshape(count, -1, NODE)
         stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy

@@ -85,14 +85,15 @@ def find_equilibrium(
     iterates, norms = [start.nodes(system).copy()], list[float]()
     while len(norms) < max_iterations and shift < _LARGEST_SHIFT:
         norm = search.linearise(shift)
-        if method == "newton":
+        converged = shift == 0.0 and norm < _TOLERANCE
+        if method == "newton" or converged:
             search.step(1.0)
         elif not search.step_naturally():
             shift = max(10.0 * shift, _SMALLEST_SHIFT)
             continue
         iterates.append(search.nodes.copy())
         norms.append(norm)
-        if shift == 0.0 and norm < _TOLERANCE:
+        if converged:
             position = np.concatenate([search.nodes.ravel(), start.position[search.nodes.size :]])
             state = State(position, start.velocity.copy(), np.zeros_like(position))
             return Equilibrium(state, np.array(iterates), np.array(norms))

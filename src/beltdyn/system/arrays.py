@@ -54,7 +54,7 @@ class Supports(NamedTuple):
     force: FloatArray
     """Constant generalised forces on the nodal coordinates, shape (6 N,)."""
     moment: FloatArray
-    """Constant moments that turn the tangent r_x of a node, N m, shape (N,)."""
+    """Constant moments that turn the section r_y of a node, N m, shape (N,)."""
 
 
 class System(NamedTuple):
@@ -79,6 +79,23 @@ class System(NamedTuple):
     supports: Supports
 
 
+class RingScratch(NamedTuple):
+    """Arrays in which `solve_ring` works; b is the border with the node that a closed ring moves there."""
+
+    rows: FloatArray
+    """Rows of the node in hand, shape (6, width)."""
+    panels: FloatArray
+    """Eliminated rows of every node, shape (N, 6, width)."""
+    rim: FloatArray
+    """Rows of the border, shape (b, width)."""
+    left: FloatArray
+    """Columns of the node in hand in the rows of the border, shape (b, 6)."""
+    dense: FloatArray
+    """What elimination leaves of the border, shape (b, b)."""
+    answer: FloatArray
+    """Its right-hand side, then its solution, shape (b, 1)."""
+
+
 class RingMatrix(NamedTuple):
     """A block-tridiagonal matrix, cyclic if the belt is closed, with a border of m further unknowns, and a right-hand side."""
 
@@ -98,6 +115,7 @@ class RingMatrix(NamedTuple):
     """Right-hand side of the nodes, shape (N, 6)."""
     border_side: FloatArray
     """Right-hand side of the border, shape (m,)."""
+    scratch: RingScratch
 
 
 class Loads(NamedTuple):

@@ -39,7 +39,6 @@ class AssemblyWorkspace(NamedTuple):
     """Tangent of one element, shape (12, 12)."""
 
 
-@kernel
 def assembly_workspace() -> AssemblyWorkspace:
     """Make the scratch arrays of `assemble`."""
     return AssemblyWorkspace(
@@ -53,19 +52,14 @@ def assembly_workspace() -> AssemblyWorkspace:
     )
 
 
-@kernel
 def new_loads(pulleys: int) -> Loads:
     """Make zero loads for a number of pulleys."""
     return Loads(np.zeros(pulleys), np.zeros((pulleys, 2)), np.zeros(pulleys), np.zeros(4), np.zeros(1))
 
 
-@kernel
 def border_size(system: System) -> int:
     """Unknowns beside the nodes: free pulleys, and the multipliers of the joint where there is one."""
-    free = 0
-    for p in range(system.pulleys.unknown.size):
-        if system.pulleys.unknown[p] >= 0:
-            free += 1
+    free = int(np.count_nonzero(system.pulleys.unknown >= 0))
     return free + (NODE if system.joint else 0)
 
 

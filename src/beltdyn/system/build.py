@@ -60,7 +60,7 @@ def belt_system(
     forces
         Pairs (node, force), N.
     moments
-        Pairs (node, moment), N m, counter-clockwise positive; a moment turns the tangent of its node.
+        Pairs (node, moment), N m, counter-clockwise positive; a moment turns the section r_y of its node.
 
     Returns
     -------

@@ -26,7 +26,6 @@ class Equations(NamedTuple):
     work: AssemblyWorkspace
 
 
-@kernel
 def new_equations(system: System) -> Equations:
     """Make the arrays for a system."""
     border = border_size(system)
@@ -39,7 +38,6 @@ def new_equations(system: System) -> Equations:
     )
 
 
-@kernel
 def linearise(
     system: System,
     time: float,
@@ -110,7 +108,6 @@ def subtract_multipliers(system: System, equations: Equations, factor: float, mu
             multipliers[c] -= factor * equations.border_part[first + c]
 
 
-@kernel
 def accelerate(
     system: System,
     time: float,

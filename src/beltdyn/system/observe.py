@@ -56,20 +56,24 @@ class Observations(NamedTuple):
     penalty_energy: FloatArray
 
 
-class _Samples(NamedTuple):
-    """Scratch arrays over the contact points of one state."""
+class Samples(NamedTuple):
+    """Scratch arrays for one state."""
 
     tension: FloatArray
     speed: FloatArray
+    weight: FloatArray
+    """Length of the free belt in each span."""
     element: FloatArray
     """Coordinates and velocities of one element, shape (2, 12)."""
     control: FloatArray
     control_velocity: FloatArray
     intervals: FloatArray
     overlap: FloatArray
+    acceleration: FloatArray
+    multipliers: FloatArray
 
 
-def new_observations(system: System, count: int) -> Observations:
+def _new_observations(system: System, count: int) -> Observations:
     """Make empty observations for a number of instants."""
     pulleys, elements = system.pulleys.radius.size, system.length.size
     points = elements * system.contact.points.size
@@ -92,11 +96,8 @@ def new_observations(system: System, count: int) -> Observations:
     )
 
 
-@kernel
-def observe(
-    system: System, time: FloatArray, position: FloatArray, velocity: FloatArray, result: Observations
-) -> None:
-    """Fill the observations of a number of states.
+def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
+    """Observe a number of states.
 
     Parameters
     ----------
@@ -106,23 +107,43 @@ def observe(
         s.
     position, velocity : ndarray, shape (k, 6 N + P)
         The states.
-    result
-        Overwritten.
+
+    Returns
+    -------
+    Observations
+        Derived quantities at every instant.
     """
-    equations = new_equations(system)
-    acceleration, multipliers = np.zeros(position.shape[1]), np.zeros(NODE)
+    result = _new_observations(system, time.size)
     points = system.length.size * system.contact.points.size
-    samples = _Samples(
-        np.zeros(points),
-        np.zeros(points),
-        np.zeros((2, 2 * NODE)),
-        np.zeros((4, 2)),
-        np.zeros((4, 2)),
-        np.zeros((MAX_INTERVALS, 2)),
-        np.zeros(7),
+    samples = Samples(
+        tension=np.zeros(points),
+        speed=np.zeros(points),
+        weight=np.zeros(system.pulleys.radius.size),
+        element=np.zeros((2, 2 * NODE)),
+        control=np.zeros((4, 2)),
+        control_velocity=np.zeros((4, 2)),
+        intervals=np.zeros((MAX_INTERVALS, 2)),
+        overlap=np.zeros(7),
+        acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
+        multipliers=np.zeros(NODE),
     )
+    fill_observations(system, time, position, velocity, new_equations(system), samples, result)
+    return result
+
+
+@kernel
+def fill_observations(
+    system: System,
+    time: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
+    equations: Equations,
+    samples: Samples,
+    result: Observations,
+) -> None:
+    """Fill the observations."""
     for k in range(time.size):
-        _observe_loads(system, time[k], position[k], velocity[k], acceleration, multipliers, equations, result, k)
+        _observe_loads(system, time[k], position[k], velocity[k], samples, equations, result, k)
         for element in range(system.length.size):
             _gather(system, element, position[k], velocity[k], samples)
             _observe_element(system, element, samples, result, k)
@@ -137,21 +158,20 @@ def _observe_loads(
     time: float,
     position: FloatArray,
     velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
+    samples: Samples,
     equations: Equations,
     result: Observations,
     k: int,
 ) -> None:
     """Torques, hub forces and penalty energy, from the same assembly that moves the system."""
-    prescribe(system, time, velocity, acceleration)
+    prescribe(system, time, velocity, samples.acceleration)
     assemble(
         system,
         time,
         position,
         velocity,
-        acceleration,
-        multipliers,
+        samples.acceleration,
+        samples.multipliers,
         0.0,
         0.0,
         0.0,
@@ -170,7 +190,7 @@ def _observe_loads(
 
 
 @kernel
-def _gather(system: System, element: int, position: FloatArray, velocity: FloatArray, samples: _Samples) -> None:
+def _gather(system: System, element: int, position: FloatArray, velocity: FloatArray, samples: Samples) -> None:
     """Coordinates, velocities and control points of an element."""
     node_j = (element + 1) % system.nodes
     for c in range(NODE):
@@ -183,7 +203,7 @@ def _gather(system: System, element: int, position: FloatArray, velocity: FloatA
 
 
 @kernel
-def _observe_element(system: System, element: int, samples: _Samples, result: Observations, k: int) -> None:
+def _observe_element(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
     """Energies and mean axial force of an element."""
     e, v, length = samples.element[0], samples.element[1], system.length[element]
     if element == 0:
@@ -203,7 +223,7 @@ def _observe_element(system: System, element: int, samples: _Samples, result: Ob
 
 @kernel
 def _observe_contact(
-    system: System, element: int, velocity: FloatArray, samples: _Samples, result: Observations, k: int
+    system: System, element: int, velocity: FloatArray, samples: Samples, result: Observations, k: int
 ) -> None:
     """Contact at the Gauss points of an element, and the angle over which it touches each pulley."""
     pulleys, length = system.pulleys, system.length[element]
@@ -251,7 +271,7 @@ def _angle(control: FloatArray, wheel: Wheel, start: float, end: float) -> float
 
 
 @kernel
-def _observe_spans(system: System, samples: _Samples, result: Observations, k: int) -> None:
+def _observe_spans(system: System, samples: Samples, result: Observations, k: int) -> None:
     """Mean tension and speed of the free belt between two pulleys.
 
     Going along the belt, free points belong to the span of the pulley that was touched last, if the next one touched is another.
@@ -259,9 +279,9 @@ def _observe_spans(system: System, samples: _Samples, result: Observations, k: i
     spans = system.pulleys.radius.size
     touched = result.contact_pulley[k]
     count, points = touched.size, system.contact.points.size
-    weight = np.zeros(spans)
+    weight = samples.weight
     for p in range(spans):
-        result.span_tension[k, p] = result.belt_speed[k, p] = 0.0
+        weight[p] = result.span_tension[k, p] = result.belt_speed[k, p] = 0.0
     for row in range(count):
         if touched[row] >= 0:
             continue

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, RingMatrix
+from beltdyn.system.arrays import NODE, RingMatrix, RingScratch
 
 FloatArray = NDArray[np.float64]
 
@@ -17,18 +17,40 @@ _LANES = 16
 """Rows are padded to a multiple of this many numbers, so that the inner loops run in whole vector registers."""
 
 
-@kernel
 def ring_matrix(nodes: int, border: int) -> RingMatrix:
-    """Make a zero matrix with the given number of nodes and of unknowns in the border."""
+    """Make a zero matrix.
+
+    Parameters
+    ----------
+    nodes
+        Number of nodes.
+    border
+        Number of unknowns in the border.
+
+    Returns
+    -------
+    RingMatrix
+        With room to solve it.
+    """
+    size = NODE + border
+    width = (NODE + size + _LANES) // _LANES * _LANES
     return RingMatrix(
-        np.zeros((nodes, NODE, NODE)),
-        np.zeros((nodes, NODE, NODE)),
-        np.zeros((nodes, NODE, NODE)),
-        np.zeros((nodes, NODE, border)),
-        np.zeros((nodes, border, NODE)),
-        np.zeros((border, border)),
-        np.zeros((nodes, NODE)),
-        np.zeros(border),
+        diagonal=np.zeros((nodes, NODE, NODE)),
+        upper=np.zeros((nodes, NODE, NODE)),
+        lower=np.zeros((nodes, NODE, NODE)),
+        column=np.zeros((nodes, NODE, border)),
+        row=np.zeros((nodes, border, NODE)),
+        corner=np.zeros((border, border)),
+        node_side=np.zeros((nodes, NODE)),
+        border_side=np.zeros(border),
+        scratch=RingScratch(
+            rows=np.zeros((NODE, width)),
+            panels=np.zeros((nodes, NODE, width)),
+            rim=np.zeros((size, width)),
+            left=np.zeros((size, NODE)),
+            dense=np.zeros((size, size)),
+            answer=np.zeros((size, 1)),
+        ),
     )
 
 
@@ -66,36 +88,31 @@ def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
         False if a pivot vanished (singular to working precision); the solution is then meaningless.
     """
     nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
-    cut = NODE if closed else 0
-    chain, border = (nodes - 1 if closed else nodes), cut + extra
-    width = (NODE + border + _LANES) // _LANES * _LANES
-    rows = np.zeros((NODE, width))
-    rim = np.zeros((border, width))
-    left = np.zeros((border, NODE))
-    panels = np.zeros((chain, NODE, width))
+    cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
+    border = cut + extra
+    rows, rim, left, answer = matrix.scratch.rows, matrix.scratch.rim, matrix.scratch.left, matrix.scratch.answer
     _load_node(matrix, 0, closed, chain, rows)
     _load_border(matrix, closed, rim)
     _load_coupling(matrix, 0, closed, chain, rim)
     for k in range(chain):
-        panel = panels[k]
+        panel = matrix.scratch.panels[k]
         _split(rows, matrix.upper[k], k < chain - 1, panel)
         if not _eliminate(rows, panel, NODE):
             return False
-        _copy_columns(rim, left)
+        _copy_columns(rim, left, border)
         if k < chain - 1:
             _load_node(matrix, k + 1, closed, chain, rows)
             _load_coupling(matrix, k + 1, closed, chain, rim)
-            _subtract_product(matrix.lower[k], panel, rows)
-        _subtract_product(left, panel, rim)
-    answer = np.zeros(border)
-    if not _solve_border(rim, answer):
+            _subtract_product(matrix.lower[k], panel, rows, NODE)
+        _subtract_product(left, panel, rim, border)
+    if not _solve_border(rim, matrix.scratch.dense, answer, border):
         return False
     for i in range(extra):
-        border_part[i] = answer[cut + i]
+        border_part[i] = answer[cut + i, 0]
     for i in range(cut):
-        node_part[chain, i] = answer[i]
+        node_part[chain, i] = answer[i, 0]
     for k in range(chain - 1, -1, -1):
-        _back_substitute(panels[k], answer, node_part, k, k < chain - 1)
+        _back_substitute(matrix.scratch.panels[k], answer, border, node_part, k, k < chain - 1)
     return True
 
 
@@ -166,9 +183,9 @@ def _split(rows: FloatArray, upper: FloatArray, coupled: bool, panel: FloatArray
 
 
 @kernel
-def _copy_columns(rim: FloatArray, left: FloatArray) -> None:
+def _copy_columns(rim: FloatArray, left: FloatArray, border: int) -> None:
     """Take the columns of the current node out of the rows of the border."""
-    for i in range(left.shape[0]):
+    for i in range(border):
         for j in range(NODE):
             left[i, j] = rim[i, j]
 
@@ -209,9 +226,9 @@ def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
 
 
 @kernel
-def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -> None:
-    """target -= left right, for a left factor of six columns."""
-    for i in range(target.shape[0]):
+def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray, count: int) -> None:
+    """target -= left right in the first rows, for a left factor of six columns."""
+    for i in range(count):
         for k in range(NODE):
             factor = left[i, k]
             for j in range(target.shape[1]):
@@ -219,28 +236,24 @@ def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -
 
 
 @kernel
-def _solve_border(rim: FloatArray, answer: FloatArray) -> bool:
+def _solve_border(rim: FloatArray, dense: FloatArray, answer: FloatArray, border: int) -> bool:
     """Solve the dense system that is left in the border; False if it is singular."""
-    size = answer.size
-    square, panel = np.zeros((size, size)), np.zeros((size, 1))
-    for i in range(size):
-        panel[i, 0] = rim[i, NODE + size]
-        for j in range(size):
-            square[i, j] = rim[i, NODE + j]
-    if not _eliminate(square, panel, size):
-        return False
-    for i in range(size):
-        answer[i] = panel[i, 0]
-    return True
+    for i in range(border):
+        answer[i, 0] = rim[i, NODE + border]
+        for j in range(border):
+            dense[i, j] = rim[i, NODE + j]
+    return _eliminate(dense, answer, border)
 
 
 @kernel
-def _back_substitute(panel: FloatArray, answer: FloatArray, node_part: FloatArray, k: int, coupled: bool) -> None:
+def _back_substitute(
+    panel: FloatArray, answer: FloatArray, border: int, node_part: FloatArray, k: int, coupled: bool
+) -> None:
     """Unknowns of node k from those of the border and of the next node."""
     for i in range(NODE):
-        total = panel[i, NODE + answer.size]
-        for j in range(answer.size):
-            total -= panel[i, NODE + j] * answer[j]
+        total = panel[i, NODE + border]
+        for j in range(border):
+            total -= panel[i, NODE + j] * answer[j, 0]
         if coupled:
             for j in range(NODE):
                 total -= panel[i, j] * node_part[k + 1, j]

@@ -13,8 +13,9 @@ FloatArray = NDArray[np.float64]
 def add_nodal_loads(system: System, position: FloatArray, by_position: float, matrix: RingMatrix) -> None:
     """Take constant forces and moments off the residual.
 
-    A moment m turns the tangent: its work is m dphi with phi the direction of r_x, so that it acts on r_x with
-    m n / |r_x|, n normal to r_x.
+    A moment m turns the section: its work is m dphi with phi the direction of r_y, so that it acts on r_y with
+    m n / |r_y|, n normal to r_y.  (On r_x it would be a couple of opposite shears within one element, which grows with
+    every refinement of the mesh, since the energy holds s but not its jumps.)
 
     Parameters
     ----------
@@ -33,15 +34,15 @@ def add_nodal_loads(system: System, position: FloatArray, by_position: float, ma
             matrix.node_side[node, c] -= supports.force[NODE * node + c]
         moment = supports.moment[node]
         if moment != 0.0:
-            x, y = position[NODE * node + 2], position[NODE * node + 3]
+            x, y = position[NODE * node + 4], position[NODE * node + 5]
             square = x * x + y * y
-            matrix.node_side[node, 2] += moment * y / square
-            matrix.node_side[node, 3] -= moment * x / square
+            matrix.node_side[node, 4] += moment * y / square
+            matrix.node_side[node, 5] -= moment * x / square
             factor = by_position * moment / (square * square)
-            matrix.diagonal[node, 2, 2] -= 2.0 * factor * x * y
-            matrix.diagonal[node, 2, 3] += factor * (x * x - y * y)
-            matrix.diagonal[node, 3, 2] += factor * (x * x - y * y)
-            matrix.diagonal[node, 3, 3] += 2.0 * factor * x * y
+            matrix.diagonal[node, 4, 4] -= 2.0 * factor * x * y
+            matrix.diagonal[node, 4, 5] += factor * (x * x - y * y)
+            matrix.diagonal[node, 5, 4] += factor * (x * x - y * y)
+            matrix.diagonal[node, 5, 5] += 2.0 * factor * x * y
 
 
 @kernel

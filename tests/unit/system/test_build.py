@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.quadrature import gauss_points
+from beltdyn.system.build import Closure, belt_section, belt_system, drive_system
+
+
+def test_section_of_the_papers_belt(drive: Drive) -> None:
+    belt, section = drive.belt, belt_section(drive.belt)
+    assert section.axial == belt.axial_stiffness
+    assert section.bending == belt.bending_stiffness
+    assert section.quartic == pytest.approx(1e8 * 1e-12 / 80 * 0.01)
+    assert section.shear == pytest.approx(13 / 15.3 * 1e8 / 2.6 * 1e-4 * 0.01)
+    assert section.shear_gradient == pytest.approx(section.shear * 1e-4 / 12)
+    assert section.thickness == pytest.approx(1e4)
+    assert section.mass == belt.mass_per_length
+    assert section.rotary_inertia == belt.rotary_inertia
+
+
+@pytest.mark.parametrize(("factor", "field"), [("axial_factor", "axial"), ("bending_factor", "bending")])
+def test_factors_leave_thickness_and_inertia_alone(drive: Drive, factor: str, field: str) -> None:
+    before, after = belt_section(drive.belt), belt_section(drive.belt.replace(**{factor: 3.0}))
+    assert getattr(after, field) != getattr(before, field)
+    assert after[-3:] == before[-3:]
+
+
+@pytest.mark.parametrize(("closure", "extra"), [("shared_node", 0), ("multipliers", 1), ("open", 1)])
+def test_nodes_by_closure(drive: Drive, closure: Closure, extra: int) -> None:
+    system = belt_system(drive.belt, closure=closure)
+    assert system.nodes == drive.belt.elements + extra
+    assert system.closed == (closure == "shared_node")
+    assert system.joint == (closure == "multipliers")
+    assert system.supports.fixed.shape == system.supports.force.shape == (6 * system.nodes,)
+    assert system.supports.moment.shape == (system.nodes,)
+    assert not system.supports.any_fixed
+
+
+def test_the_elements_make_up_the_belt(drive: Drive) -> None:
+    system = drive_system(drive)
+    assert system.length.sum() == pytest.approx(drive.belt.length)
+    shift = np.tile([1, 0, 0, 0, 0, 0], 2)
+    mass = np.einsum("i,kij,j->", shift, system.mass, shift)
+    assert mass == pytest.approx(drive.belt.mass_per_length * drive.belt.length)
+    np.testing.assert_array_equal(system.elastic.points, gauss_points(drive.belt.quadrature_points)[0])
+
+
+def test_pulleys(drive: Drive) -> None:
+    pulleys = drive_system(drive).pulleys
+    np.testing.assert_array_equal(pulleys.center, [pulley.center for pulley in drive.pulleys])
+    np.testing.assert_array_equal(pulleys.radius, [pulley.radius for pulley in drive.pulleys])
+    np.testing.assert_array_equal(pulleys.unknown, [-1, 0])
+    assert pulleys.profile_first[-1] == len(pulleys.profile) == len(pulleys.profile_start)
+
+
+def test_supports_and_loads(drive: Drive) -> None:
+    system = belt_system(
+        drive.belt, fixed=[(0, 1), (-1, 5)], forces=[(-1, (2.0, 3.0)), (-1, (1.0, 0.0))], moments=[(2, 4.0)]
+    )
+    np.testing.assert_array_equal(np.flatnonzero(system.supports.fixed), [1, 6 * system.nodes - 1])
+    np.testing.assert_array_equal(system.supports.force.reshape(-1, 6)[-1], [3, 3, 0, 0, 0, 0])
+    assert system.supports.moment[2] == system.supports.moment.sum() == 4.0
+
+
+def test_pulleys_need_contact(drive: Drive) -> None:
+    with pytest.raises(ModelError, match="contact is missing"):
+        belt_system(drive.belt, drive.pulleys)

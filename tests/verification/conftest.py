@@ -1,0 +1,133 @@
+"""Belts and elements to verify; the numbers that tests measure are listed by ``pytest -v`` at the end."""
+
+from collections.abc import Callable, Sequence
+from importlib.resources import files
+
+import numpy as np
+import pytest
+from hypothesis import settings
+from numpy.typing import NDArray
+
+from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
+from beltdyn.model import Belt, Drive, loads
+from beltdyn.quadrature import gauss_points
+from beltdyn.system.arrays import System
+from beltdyn.system.build import belt_section, belt_system
+from beltdyn.system.state import State, at_rest
+
+FloatArray = NDArray[np.float64]
+
+settings.register_profile("patient", deadline=None)  # a kernel is compiled at its first call
+settings.load_profile("patient")
+
+MEASURED = pytest.StashKey[list[str]]()
+SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
+"""A clamp holds the place and the section r_y; the tangent r_x is free to stretch and to shear against it."""
+
+
+@pytest.fixture
+def measured(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """Note numbers of a test for docs/verification."""
+    notes = request.config.stash.setdefault(MEASURED, [])
+
+    def note(**values: float) -> None:
+        notes.append(f"{request.node.name}: " + ", ".join(f"{key} = {value:.3g}" for key, value in values.items()))
+
+    return note
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    notes = terminalreporter.config.stash.get(MEASURED, [])
+    if notes and terminalreporter.verbosity > 0:
+        terminalreporter.section("measured")
+        terminalreporter.write_line("\n".join(notes))
+
+
+@pytest.fixture(scope="session")
+def drive() -> Drive:
+    """The paper's drive."""
+    return loads(files("beltdyn").joinpath("published", "two_pulley.toml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="session")
+def belt(drive: Drive) -> Belt:
+    """The paper's belt (Table 1)."""
+    return drive.belt
+
+
+@pytest.fixture(scope="session")
+def element_length(belt: Belt) -> float:
+    return belt.length / belt.elements
+
+
+@pytest.fixture(scope="session")
+def unloaded(element_length: float) -> FloatArray:
+    """Coordinates of a straight element along the x axis."""
+    return np.array([0, 0, 1, 0, 0, 1, element_length, 0, 1, 0, 0, 1], dtype=float)
+
+
+@pytest.fixture(scope="session")
+def evaluate() -> Callable[[Belt, FloatArray], tuple[float, FloatArray, FloatArray]]:
+    """Energy, its gradient and its tangent for one element of a belt."""
+    work = elastic_workspace()
+
+    def values(belt: Belt, e: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+        section, length = belt_section(belt), belt.length / belt.elements
+        points, weights = gauss_points(belt.quadrature_points)
+        gradient, tangent = np.empty(12), np.empty((12, 12))
+        element_force(e, section, length, points, weights, work, gradient, tangent)
+        return element_energy(e, section, length, points, weights), gradient, tangent
+
+    return values
+
+
+@pytest.fixture(scope="session")
+def make_cantilever() -> Callable[..., tuple[Belt, System]]:
+    """A cantilever of 1 m, loaded at its tip; only the ratios of its numbers matter."""
+
+    def make(
+        thickness: float,
+        elements: int,
+        *,
+        force: float = 0.0,
+        moment: float = 0.0,
+        held: Sequence[tuple[int, int]] = SECTION_HELD,
+    ) -> tuple[Belt, System]:
+        """Load by force L^2 / EI and moment L / EI."""
+        belt = Belt(
+            length=1.0,
+            width=0.01,
+            thickness=thickness,
+            density=1000.0,
+            youngs_modulus=1e8,
+            poissons_ratio=0.3,
+            elements=elements,
+        )
+        stiffness = belt.bending_stiffness
+        return belt, belt_system(
+            belt,
+            closure="open",
+            fixed=held,
+            forces=[(-1, (0.0, force * stiffness))],
+            moments=[(-1, moment * stiffness)],
+        )
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def along() -> Callable[[System, FloatArray, FloatArray], State]:
+    """A belt at rest with its nodes at given places, shape (N, 2), and its tangents at given angles, shape (N,)."""
+
+    def state(system: System, places: FloatArray, angles: FloatArray) -> State:
+        tangent = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+        return at_rest(system, np.hstack([places, tangent, normal]))
+
+    return state
+
+
+@pytest.fixture(scope="session")
+def order() -> Callable[[Sequence[int], Sequence[float]], float]:
+    """Convergence order: the slope of log error over log element length, fitted."""
+    return lambda elements, errors: -float(np.polyfit(np.log(elements), np.log(errors), 1)[0])

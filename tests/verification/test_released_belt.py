@@ -1,0 +1,150 @@
+"""Verified: the belt released from its two pulleys, the static example of section 5 of the paper.
+
+Against: a circle.  Its radius is that of pure bending, sqrt(G) L / 2 pi with G = 1 - 3 (EI / EA) (2 pi / L)^2, which
+is 3e-6 less than L / 2 pi; the published one is "a perfect circle" after 55 iterations of Newton's method.
+"""
+
+from collections.abc import Callable
+from math import pi, sqrt
+from typing import Literal
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.model import Belt, Drive
+from beltdyn.solve.static import Equilibrium, find_equilibrium
+from beltdyn.system.arrays import System
+from beltdyn.system.build import belt_system
+from beltdyn.system.state import State, laid
+
+FloatArray = NDArray[np.float64]
+Method = Literal["globalised", "newton"]
+Start = Callable[[System], State]
+
+
+@pytest.fixture(scope="module")
+def released(belt: Belt) -> Callable[[int], Belt]:
+    return lambda elements: belt.replace(length=1.276, elements=elements)
+
+
+@pytest.fixture(scope="module")
+def on_pulleys(drive: Drive) -> Start:
+    """The laid belt."""
+    return lambda system: laid(system, drive.path)
+
+
+@pytest.fixture(scope="module")
+def ellipse(along: Callable[[System, FloatArray, FloatArray], State]) -> Callable[[float], Start]:
+    """An ellipse of the belt's length, given by its slenderness, with equally spaced nodes."""
+
+    def start(slenderness: float) -> Start:
+        def state(system: System) -> State:
+            turn = np.linspace(0.0, 2.0 * pi, 2001)
+            outline = np.stack([np.cos(turn), slenderness * np.sin(turn)], axis=1)
+            arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(outline, axis=0), axis=1))])
+            at = np.interp(np.arange(system.nodes) * arc[-1] / system.nodes, arc, turn)
+            size = float(np.sum(system.length)) / arc[-1]
+            places = size * np.stack([np.cos(at), slenderness * np.sin(at)], axis=1)
+            return along(system, places, np.arctan2(slenderness * np.cos(at), -np.sin(at)))
+
+        return state
+
+    return start
+
+
+def release(belt: Belt, start: Start, method: Method = "globalised") -> tuple[System, Equilibrium]:
+    """Equilibrium with the leftmost node fixed in x and y and the rightmost in y (Fig. 4)."""
+    system = belt_system(belt, closure="shared_node")
+    begin = start(system)
+    x = begin.nodes(system)[:, 0]
+    left, right = int(np.argmin(x)), int(np.argmax(x))
+    system = belt_system(belt, closure="shared_node", fixed=[(left, 0), (left, 1), (right, 1)])
+    return system, find_equilibrium(system, begin, method=method)
+
+
+def around_center(nodes: FloatArray) -> FloatArray:
+    """Place, tangent and section of the nodes, each radial and circumferential about the center; shape (N, 6)."""
+    place = nodes[:, :2] - nodes[:, :2].mean(axis=0)
+    radial = place / np.linalg.norm(place, axis=1, keepdims=True)
+    around = np.stack([-radial[:, 1], radial[:, 0]], axis=1)
+    vectors = (place, nodes[:, 2:4], nodes[:, 4:6])
+    return np.stack([np.sum(v * axis, axis=1) for v in vectors for axis in (radial, around)], axis=1)
+
+
+def circle_radius(belt: Belt) -> float:
+    contraction = 3.0 * belt.bending_stiffness / belt.axial_stiffness * (2.0 * pi / belt.length) ** 2
+    return sqrt(1.0 - contraction) * belt.length / (2.0 * pi)
+
+
+def assert_circle(belt: Belt, nodes: FloatArray) -> None:
+    seen = around_center(nodes)
+    np.testing.assert_allclose(seen, np.tile(seen[0], (len(seen), 1)), rtol=0.0, atol=1e-8)
+    assert seen[0, 0] == pytest.approx(belt.length / (2.0 * pi), rel=3e-4)
+
+
+@pytest.mark.parametrize(("method", "iterations"), [("globalised", 200), ("newton", 40)])
+def test_the_papers_belt_becomes_a_circle(
+    released: Callable[[int], Belt],
+    on_pulleys: Start,
+    measured: Callable[..., None],
+    method: Method,
+    iterations: int,
+) -> None:
+    belt = released(10)
+    system, found = release(belt, on_pulleys, method)
+    nodes = found.state.nodes(system)
+    assert_circle(belt, nodes)
+    assert found.iterations <= iterations
+    np.testing.assert_array_equal(found.iterates[0], on_pulleys(system).nodes(system))
+    np.testing.assert_array_equal(found.iterates[-1], nodes)
+    assert len(found.iterates) == found.iterations + 1
+    seen = around_center(nodes)
+    measured(
+        iterations=found.iterations,
+        radius_error=2.0 * pi * seen[0, 0] / belt.length - 1.0,
+        spread=float(np.ptp(seen, axis=0).max()),
+    )
+
+
+def test_radius_converges_to_that_of_pure_bending(
+    released: Callable[[int], Belt], on_pulleys: Start, order: Callable[..., float], measured: Callable[..., None]
+) -> None:
+    """At order 4, that of cubics in the energy of second derivatives."""
+    meshes = [10, 20, 40, 80]
+    errors = []
+    for elements in meshes:
+        belt = released(elements)
+        system, found = release(belt, on_pulleys)
+        errors.append(around_center(found.state.nodes(system))[0, 0] / circle_radius(belt) - 1.0)
+    fitted = order(meshes, errors)
+    measured(**{f"error_{n}": error for n, error in zip(meshes, errors, strict=True)}, order=fitted)
+    assert fitted == pytest.approx(4.0, abs=0.05)
+
+
+@pytest.mark.parametrize("elements", [10, 20, 40])
+@pytest.mark.parametrize("slenderness", [0.3, 0.5, 0.8, 2.0])
+def test_an_ellipse_becomes_a_circle(
+    released: Callable[[int], Belt],
+    ellipse: Callable[[float], Start],
+    slenderness: float,
+    elements: int,
+) -> None:
+    belt = released(elements)
+    system, found = release(belt, ellipse(slenderness))
+    assert_circle(belt, found.state.nodes(system))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_disturbed_belt_becomes_a_circle(released: Callable[[int], Belt], on_pulleys: Start, seed: int) -> None:
+    """Nodes off by 1 cm, tangents and sections by 1 degree."""
+
+    def disturbed(system: System) -> State:
+        state = on_pulleys(system)
+        size = [0.01, 0.01, 0.02, 0.02, 0.02, 0.02]
+        state.nodes(system)[:] += np.random.default_rng(seed).uniform(-1.0, 1.0, (system.nodes, 6)) * size
+        return state
+
+    belt = released(10)
+    system, found = release(belt, disturbed)
+    assert_circle(belt, found.state.nodes(system))
