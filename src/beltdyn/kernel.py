@@ -1,8 +1,8 @@
 """The one decorator of compiled code: Numba options and an on-disk cache that cannot go stale.
 
 Numba's own cache watches the file of the compiled function only.  A kernel that inlines a law from another file would
-keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source file that
-takes part in compiled code, so that an edit anywhere in them starts an empty cache.
+keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source
+file that takes part in compiled code, so that an edit anywhere in them starts an empty cache.
 """
 
 import hashlib
@@ -32,8 +32,8 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     Parameters
     ----------
     function
-        A function of scalars, arrays and named tuples of them.  Everything that it calls must be a kernel too.  A private one
-        (leading underscore) becomes a part of its callers and cannot be called from Python.
+        A function of scalars, arrays and named tuples of them.  Everything that it calls must be a kernel too.  A
+        private one (leading underscore) becomes a part of its callers and cannot be called from Python.
 
     Returns
     -------

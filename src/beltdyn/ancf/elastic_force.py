@@ -1,8 +1,9 @@
 """Elastic force of the belt element and its exact tangent (Eq. 16).
 
-The energy depends on the centreline, through the four vectors r_i, r_x,i, r_j, r_x,j, and on the nodal shears s_i and s_j; beside
-them stands the thickness stretch of r_y.  Over the quadrature points the derivatives are gathered with respect to these vectors
-and shears.  The shears are carried to r_x and r_y once, by their own first and second derivatives.
+The energy depends on the centreline, through the four vectors r_i, r_x,i, r_j, r_x,j, and on the nodal shears s_i
+and s_j; beside them stands the thickness stretch of r_y.  Over the quadrature points the derivatives are gathered
+with respect to these vectors and shears.  The shears are carried to r_x and r_y once, by their own first and second
+derivatives.
 """
 
 from typing import NamedTuple
@@ -152,9 +153,9 @@ def _add_point(
 ) -> ShearSums:
     """Add one quadrature point.
 
-    The energy density is a function of G = q . q, theta = (q x w) / G, s and p.  With g = dG/dq = 2 q and the derivatives
-    a = dtheta/dq, b = dtheta/dw, its second derivatives in q and w are tensors made of g, a, b, the identity (from d2G) and the
-    cross product (from d2(q x w)).
+    The energy density is a function of G = q . q, theta = (q x w) / G, s and p.  With g = dG/dq = 2 q and the
+    derivatives a = dtheta/dq, b = dtheta/dw, its second derivatives in q and w are tensors made of g, a, b, the
+    identity (from d2G) and the cross product (from d2(q x w)).
     """
     slope, bend = slopes(xi, length), bends(xi, length)
     qx, qy = centreline(e, slope)
@@ -208,7 +209,7 @@ def _add_point(
 
 @kernel
 def _add_block(block: FloatArray, slope: Four, bend: Four, qq: float, qw: float, wq: float, ww: float) -> None:
-    """Add the pairs of vectors (a, b): slope_a qq slope_b + slope_a qw bend_b + bend_a wq slope_b + bend_a ww bend_b."""
+    """Add slope_a qq slope_b + slope_a qw bend_b + bend_a wq slope_b + bend_a ww bend_b for all pairs (a, b)."""
     _add_row(block, 0, slope, bend, slope[0] * qq + bend[0] * wq, slope[0] * qw + bend[0] * ww)
     _add_row(block, 1, slope, bend, slope[1] * qq + bend[1] * wq, slope[1] * qw + bend[1] * ww)
     _add_row(block, 2, slope, bend, slope[2] * qq + bend[2] * wq, slope[2] * qw + bend[2] * ww)
@@ -243,7 +244,7 @@ def _add_shear_row(
     bx: float,
     by: float,
 ) -> None:
-    """Mixed derivatives with respect to the centreline vectors and s_k, where ds/ds_k = at_node and dp/ds_k = by_rate."""
+    """Mixed derivatives in the centreline vectors and s_k, where ds/ds_k = at_node and dp/ds_k = by_rate."""
     g, t = at_node * gs + by_rate * gp, at_node * ts + by_rate * tp
     qx, qy, wx, wy = g * gx + t * ax, g * gy + t * ay, t * bx, t * by
     by_shear[k, 0] += slope[0] * qx + bend[0] * wx
@@ -281,8 +282,9 @@ def _carry_shear(
 ) -> None:
     """Chain rule from the nodal shears to r_x and r_y of their nodes.
 
-    With h_k = ds_k/de, the mixed derivatives m_k and the second derivatives c_kl of the energy in the shears, the tangent gains
-    sum_k (m_k h_k^T + h_k m_k^T) + sum_kl c_kl h_k h_l^T + sum_k dU/ds_k d2s_k/de2; the second sum is folded into the m_k.
+    With h_k = ds_k/de, the mixed derivatives m_k and the second derivatives c_kl of the energy in the shears, the
+    tangent gains sum_k (m_k h_k^T + h_k m_k^T) + sum_kl c_kl h_k h_l^T + sum_k dU/ds_k d2s_k/de2; the second sum is
+    folded into the m_k.
     """
     hi, hj = shear_gradient(shear_i), shear_gradient(shear_j)
     _add_four(work.by_shear, 0, 2, 0.5 * sums.ii, hi)
@@ -329,7 +331,7 @@ def _thickness_strain(section_x: float, section_y: float) -> float:
 
 @kernel
 def _add_thickness(e: FloatArray, section: Section, length: float, gradient: FloatArray, tangent: FloatArray) -> None:
-    """Add force and tangent of the thickness stretch, E A L / 6 (eps_i^2 + eps_i eps_j + eps_j^2), to the rows of r_y."""
+    """Add force and tangent of the thickness energy to the rows of r_y."""
     stiffness = section.thickness * length / 6.0
     strain_i, strain_j = _thickness_strain(e[4], e[5]), _thickness_strain(e[10], e[11])
     pressure_i, pressure_j = stiffness * (2.0 * strain_i + strain_j), stiffness * (2.0 * strain_j + strain_i)

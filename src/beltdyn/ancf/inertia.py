@@ -9,8 +9,8 @@ from beltdyn.ancf.section import Section
 def element_mass(section: Section, length: float) -> NDArray[np.float64]:
     """Mass matrix, the integral of rho S^T S over the volume.
 
-    The centreline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones; on a
-    symmetric section the two do not couple.
+    The centreline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones;
+    on a symmetric section the two do not couple.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ Four = tuple[float, float, float, float]
 
 @kernel
 def slopes(xi: float, length: float) -> Four:
-    """First derivatives of the shape functions with respect to x: the centreline gradient q = r_c,x is their combination.
+    """First derivatives of the shape functions with respect to x, whose combination is q = r_c,x.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def slopes(xi: float, length: float) -> Four:
 
 @kernel
 def bends(xi: float, length: float) -> Four:
-    """Second derivatives of the shape functions with respect to x: w = r_c,xx is their combination.
+    """Second derivatives of the shape functions with respect to x, whose combination is w = r_c,xx.
 
     Parameters
     ----------

@@ -76,9 +76,7 @@ def energy_density(metric: float, turning: float, sine: float, sine_rate: float,
 
 
 @kernel
-def energy_gradient(
-    metric: float, turning: float, sine: float, sine_rate: float, section: Section
-) -> EnergyGradient:
+def energy_gradient(metric: float, turning: float, sine: float, sine_rate: float, section: Section) -> EnergyGradient:
     """First derivatives of `energy_density`; parameters as there."""
     excess = metric - 1.0
     bend = turning + sine_rate
@@ -90,16 +88,13 @@ def energy_gradient(
         + 0.5 * section.bending * (bend * bend + 0.5 * spread)
         + 0.5 * section.shear * sine * sine,
         moment + weight * 2.0 * (bend + sine * sine * turning),
-        sine
-        * (weight * 2.0 * turning * turning + section.shear * metric + section.shear_gradient * sine_rate**2),
+        sine * (weight * 2.0 * turning * turning + section.shear * metric + section.shear_gradient * sine_rate**2),
         moment + weight * 2.0 * bend + section.shear_gradient * sine * sine * sine_rate,
     )
 
 
 @kernel
-def energy_curvature(
-    metric: float, turning: float, sine: float, sine_rate: float, section: Section
-) -> EnergyCurvature:
+def energy_curvature(metric: float, turning: float, sine: float, sine_rate: float, section: Section) -> EnergyCurvature:
     """Second derivatives of `energy_density`; parameters as there."""
     excess = metric - 1.0
     bend = turning + sine_rate
@@ -147,6 +142,4 @@ def thickness_energy(strain_i: float, strain_j: float, section: Section, length:
     length
         Reference length of the element, m.
     """
-    return (
-        section.thickness * length / 6.0 * (strain_i * strain_i + strain_i * strain_j + strain_j * strain_j)
-    )
+    return section.thickness * length / 6.0 * (strain_i * strain_i + strain_i * strain_j + strain_j * strain_j)

@@ -1,0 +1,1 @@
+"""Contact between belt and pulleys: the paper's section 3, kernels only."""

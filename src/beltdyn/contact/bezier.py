@@ -1,4 +1,4 @@
-"""The centreline of an element as a cubic Bezier curve: a form that every belt discretisation can give (S at y = 0 in Eq. 24)."""
+"""The centreline of an element as a cubic Bezier curve, a form that every belt discretisation can give (Eq. 24)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +27,14 @@ def bernstein_rates(xi: float) -> Four:
 def combine(control: FloatArray, weights: Four) -> tuple[float, float]:
     """Weighted sum of control points or of their velocities."""
     return (
-        weights[0] * control[0, 0] + weights[1] * control[1, 0] + weights[2] * control[2, 0] + weights[3] * control[3, 0],
-        weights[0] * control[0, 1] + weights[1] * control[1, 1] + weights[2] * control[2, 1] + weights[3] * control[3, 1],
+        weights[0] * control[0, 0]
+        + weights[1] * control[1, 0]
+        + weights[2] * control[2, 0]
+        + weights[3] * control[3, 0],
+        weights[0] * control[0, 1]
+        + weights[1] * control[1, 1]
+        + weights[2] * control[2, 1]
+        + weights[3] * control[3, 1],
     )
 
 

@@ -1,7 +1,8 @@
 """Generalised contact forces of one element against one pulley and their exact tangent (Eq. 24).
 
-The centreline is a cubic Bezier curve given by its control points, whatever the belt discretisation; the forces belong to the
-four vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + f_t t) dx.
+The centreline is a cubic Bezier curve given by its control points, whatever the belt discretisation; the forces
+belong to the four vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n +
+f_t t) dx.
 """
 
 from typing import NamedTuple
@@ -55,7 +56,7 @@ class ContactTotals(NamedTuple):
     damping_power: float
     """Power lost in the contact dampers, (f_n - k_p d) dd/dt over the touching length, W."""
     friction_power: float
-    """Power lost in friction, -f_t (t . dr/dt - (R - d) omega) over the touching length: what belt and pulley really lose, W."""
+    """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - (R - d) omega), W."""
 
 
 def contact_workspace() -> ContactWorkspace:
@@ -188,7 +189,13 @@ def _clear(work: ContactWorkspace) -> None:
 
 @kernel
 def _spread(
-    shape: Four, weight: float, force: PointForce, tangent: PointTangent, speed_x: float, speed_y: float, work: ContactWorkspace
+    shape: Four,
+    weight: float,
+    force: PointForce,
+    tangent: PointTangent,
+    speed_x: float,
+    speed_y: float,
+    work: ContactWorkspace,
 ) -> None:
     """Give force, tangent and couplings of a point to the four vectors (Eq. 24)."""
     _add_pairs(work.force, shape, weight * force.x, weight * force.y)
@@ -245,8 +252,8 @@ def _add_end(
 ) -> None:
     """Derivative of a point's contribution with respect to an end of its interval.
 
-    The end changes the weight of the point by share and, through grow / weight, its place; drift is the change of the force and
-    of the moment along the element.
+    The end changes the weight of the point by share and, through grow / weight, its place; drift is the change of
+    the force and of the moment along the element.
     """
     fx, fy = share * force.x + grow * drift[0], share * force.y + grow * drift[1]
     gx, gy = grow * force.x, grow * force.y
@@ -258,7 +265,13 @@ def _add_end(
 
 @kernel
 def _move_end(
-    control: FloatArray, basis: FloatArray, wheel: Wheel, xi: float, end: int, by_position: float, work: ContactWorkspace
+    control: FloatArray,
+    basis: FloatArray,
+    wheel: Wheel,
+    xi: float,
+    end: int,
+    by_position: float,
+    work: ContactWorkspace,
 ) -> None:
     """Add what the motion of one end of the touching interval does to the tangent.
 

@@ -1,7 +1,8 @@
 """Where an element touches a pulley: the intervals of its centreline with d >= 0.
 
-The centreline of an element is a cubic Bezier curve given by its control points, whatever the discretisation.  The squared
-distance to a pulley's centre is then a polynomial of degree six, and R^2 minus it has the sign of the penetration.
+The centreline of an element is a cubic Bezier curve given by its control points, whatever the discretisation.  The
+squared distance to a pulley's centre is then a polynomial of degree six, and R^2 minus it has the sign of the
+penetration.
 """
 
 import numpy as np

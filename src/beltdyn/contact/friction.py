@@ -28,9 +28,7 @@ def friction_force(slip: float, normal: float, law: ContactLaw) -> tuple[float, 
 
 
 @kernel
-def force_slope(
-    slip: float, normal: float, friction: float, creep_rate_factor: float
-) -> tuple[float, float, float]:
+def force_slope(slip: float, normal: float, friction: float, creep_rate_factor: float) -> tuple[float, float, float]:
     """The paper's law: f_t = -clip(nu_s v_t, -mu f_n, mu f_n), nu_s the slope of the force (Fig. 3).
 
     Parameters
@@ -51,9 +49,7 @@ def force_slope(
 
 
 @kernel
-def coefficient_slope(
-    slip: float, normal: float, friction: float, creep_velocity: float
-) -> tuple[float, float, float]:
+def coefficient_slope(slip: float, normal: float, friction: float, creep_velocity: float) -> tuple[float, float, float]:
     """Leamy and Wasfy's law: f_t = -mu f_n clip(v_t / v_c, -1, 1), v_c the creep velocity.
 
     Parameters

@@ -1,7 +1,7 @@
 """Contact force at one point of the belt and its variation (Eqs. 17-22).
 
-With n, t of Eqs. 19 and 21, subscripts n, t for components along them, v the velocity of the point and rho its distance from
-the pulley's centre, a change of position, velocity and pulley speed changes
+With n, t of Eqs. 19 and 21, subscripts n, t for components along them, v the velocity of the point and rho its
+distance from the pulley's centre, a change of position, velocity and pulley speed changes
 
     d by -dr_n,   dd/dt by -v_t dr_t / rho - dv_n,   n by t dr_t / rho,   t by -n dr_t / rho,
     the slip velocity by -v_n dr_t / rho + dv_t - R d(omega),

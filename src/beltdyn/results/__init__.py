@@ -2,7 +2,7 @@
 
 from beltdyn.results.layout import Layout
 from beltdyn.results.provenance import provenance
-from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder
+from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
 from beltdyn.results.run import Run, open_run
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.summary import PulleySummary, SpanSummary, Summary, summarize
@@ -19,6 +19,7 @@ __all__ = [
     "Recorder",
     "Run",
     "SpanSummary",
+    "Status",
     "Summary",
     "Variable",
     "open_run",

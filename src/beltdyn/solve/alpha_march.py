@@ -6,20 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solve.generalized_alpha import (
-    FAILED,
-    ITERATIONS,
-    REACHED,
-    REJECTED,
-    STEPS,
-    March,
-    Outputs,
-    Settings,
-    advance,
-    new_march,
-    restart,
-)
+from beltdyn.solve.generalized_alpha import REACHED, advance
+from beltdyn.solve.march import FAILED, ITERATIONS, REJECTED, STEPS, March, Outputs, Settings, new_march, restart
 from beltdyn.solve.trajectory import Chunk, Task
+from beltdyn.system.arrays import FloatArray
 from beltdyn.system.motion import new_equations
 
 _OUTPUTS = 64
@@ -77,22 +67,26 @@ class GeneralizedAlpha:
 def _first_chunk(task: Task) -> Chunk:
     """The start itself."""
     start = task.start
-    return Chunk(
-        task.times[:1], start.position[None], start.velocity[None], np.zeros((1, 4)), np.zeros(1), float(task.times[0])
-    )
+    return Chunk.at(task.times[:1], start.position[None], start.velocity[None], np.zeros((1, 4)), np.zeros(1))
 
 
-def _buffer(times: np.ndarray, size: int) -> Outputs:
-    """Room for the states at the next output instants."""
+def _buffer(times: FloatArray, size: int) -> Outputs:
+    """Room for the steps around the next output instants."""
     count = len(times)
     return Outputs(
-        times.copy(), np.empty((count, size)), np.empty((count, size)), np.empty((count, 4)), np.empty(count)
+        time=times.copy(),
+        fraction=np.empty(count),
+        step=np.empty(count),
+        position=np.empty((count, 2, size)),
+        velocity=np.empty((count, 2, size)),
+        work=np.empty((count, 4)),
     )
 
 
 def _chunk(outputs: Outputs, filled: int, march: March) -> Chunk:
     """The filled part of a buffer."""
-    return Chunk(*(array[:filled] for array in outputs), reached=float(march.clock[0]))
+    arrays = {name: array[:filled] for name, array in outputs._asdict().items()}
+    return Chunk(**arrays, reached=float(march.clock[0]))
 
 
 def _count(task: Task, march: March) -> None:

@@ -12,7 +12,8 @@ class EnergyAccount:
 
         (E(t) - E(0) - driver work - torque work + friction loss + damping loss) / energy put in,
 
-    where the energy put in up to t is E(0) plus the largest amounts that drivers and torques have done by then, either way.
+    where the energy put in up to t is E(0) plus the largest amounts that drivers and torques have done by then,
+    either way.
     """
 
     def __init__(self) -> None:
@@ -40,4 +41,4 @@ class EnergyAccount:
         self._largest = largest[-1]
         put_in = self._initial + largest[1:].sum(axis=1)
         error = stored - self._initial - work[:, 0] - work[:, 1] + work[:, 2] + work[:, 3]
-        return np.divide(error, put_in, out=np.zeros_like(error), where=put_in > 0.0)
+        return np.asarray(np.divide(error, put_in, out=np.zeros_like(error), where=put_in > 0.0))

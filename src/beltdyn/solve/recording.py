@@ -6,9 +6,10 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.model import Drive
-from beltdyn.results import FileRecorder, Layout, MemoryRecorder, Recorder, Run, provenance
+from beltdyn.results import FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
@@ -21,8 +22,8 @@ _SECONDS_BETWEEN_WRITES = 0.25
 class Recording:
     """A run in the making: a context that closes the results whatever happens.
 
-    An interruption (Ctrl-C) ends the recording with the status "interrupted" and goes no further; an error ends it with the status
-    "failed" and goes on to the caller.
+    An interruption (Ctrl-C) ends the recording with the status "interrupted" and goes no further; an error ends it
+    with the status "failed" and goes on to the caller.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ class Recording:
         """Write what waits and close the results with their status."""
         interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
         self._write()
-        status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        status: Status = "interrupted" if interrupted else "completed" if kind is None else "failed"
         self._recorder.close(status, self._attributes())
         return interrupted
 
@@ -97,33 +98,31 @@ class Recording:
     def _write(self) -> None:
         """Observe and record the states that wait."""
         if self._waiting:
-            names = ("time", "position", "velocity", "work", "step")
-            arrays = [np.concatenate([getattr(chunk, name) for chunk in self._waiting]) for name in names]
-            self._recorder.append(self._observe(*arrays))
-            self._written += len(arrays[0])
+            chunk = Chunk.join(self._waiting)
+            self._recorder.append(self._variables(chunk))
+            self._written += len(chunk.time)
             self._waiting.clear()
         self._last_write = time.perf_counter()
 
-    def _observe(
-        self, instants: np.ndarray, position: np.ndarray, velocity: np.ndarray, work: np.ndarray, step: np.ndarray
-    ) -> dict[str, Any]:
-        """Every recorded variable for some states."""
-        system, count = self._system, len(instants)
-        seen = observe(system, instants, position, velocity)
+    def _variables(self, chunk: Chunk) -> dict[str, Any]:
+        """Every recorded variable at the instants of a chunk."""
+        system, count = self._system, len(chunk.time)
+        seen = observe_chunk(system, chunk)
+        position, velocity = chunk.interpolate()
         nodes = NODE * system.nodes
         coordinates = position[:, :nodes].reshape(count, -1, NODE)
-        stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy
+        stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
         return {
-            **seen._asdict(),
-            **dict(zip(POWERS, work.T, strict=True)),
-            "time": instants,
+            **seen,
+            **dict(zip(POWERS, chunk.work.T, strict=True)),
+            "time": chunk.time,
             "pulley_speed": velocity[:, nodes:],
             "pulley_angle": position[:, nodes:],
             "node_position": coordinates[..., :2],
             "nodal_coordinates": coordinates,
             "nodal_velocities": velocity[:, :nodes].reshape(count, -1, NODE),
-            "energy_closure": self._energy.closure(stored, work),
-            "step_size": step,
+            "energy_closure": self._energy.closure(stored, chunk.work),
+            "step_size": chunk.step,
         }
 
     def _attributes(self) -> dict[str, Any]:
@@ -135,10 +134,40 @@ class Recording:
             "steps": self.statistics.steps,
             "rejected_steps": self.statistics.rejected_steps,
             "newton_iterations": self.statistics.newton_iterations,
+            "evaluations": self.statistics.evaluations,
             "wall_time": wall,
             "compile_time": self._compiled - self._begun,
             "real_time_factor": wall / simulated,
         }
+
+
+def observe_chunk(system: System, chunk: Chunk) -> dict[str, NDArray[Any]]:
+    """Derived quantities at the instants of a chunk.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    chunk
+        Solver steps.
+
+    Returns
+    -------
+    dict
+        The fields of `Observations`.  An instant inside a step gets the mean of what is seen at its ends, weighted by
+        its place; the pulley that a point touches is that of the nearer end.
+    """
+    x = chunk.fraction
+    after = observe(system, chunk.time + (1.0 - x) * chunk.step, chunk.position[:, 1], chunk.velocity[:, 1])._asdict()
+    inside = np.flatnonzero(x < 1.0)
+    if inside.size:
+        starts = chunk.time[inside] - x[inside] * chunk.step[inside]
+        before = observe(system, starts, chunk.position[inside, 0], chunk.velocity[inside, 0])._asdict()
+        for name, values in after.items():
+            weight = x[inside].reshape(-1, *[1] * (values.ndim - 1))
+            weight = np.round(weight) if values.dtype.kind == "i" else weight
+            values[inside] = (1.0 - weight) * before[name] + weight * values[inside]
+    return after
 
 
 def result_layout(drive: Drive, system: System) -> Layout:

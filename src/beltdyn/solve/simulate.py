@@ -77,7 +77,7 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
         recording.tell(0.0, "equilibrium")
         state = find_equilibrium(system, laid(system, drive.path)).state
         zero = np.zeros(1)
-        recording.take(Chunk(zero, state.position[None], state.velocity[None], np.zeros((1, 4)), zero, 0.0))
+        recording.take(Chunk.at(zero, state.position[None], state.velocity[None], np.zeros((1, 4)), zero))
     return recording.run()
 
 

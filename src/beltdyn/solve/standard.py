@@ -1,12 +1,12 @@
-"""The paper's "any standard integrator": SUNDIALS CVODE and IDA, and SciPy's BDF and Radau, on the same equations of motion.
+"""The paper's "any standard integrator": SUNDIALS CVODE and IDA, and SciPy's BDF and Radau, on the same equations.
 
-The unknowns are y = (positions, velocities, works): the powers of the energy account are integrated along.  With multipliers, the
-accelerations come from Eq. 26 with its constant matrices; with shared nodes from Eq. 27.
+The unknowns are y = (positions, velocities, works): the powers of the energy account are integrated along.  With
+multipliers, the accelerations come from Eq. 26 with its constant matrices; with shared nodes from Eq. 27.
 """
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -19,7 +19,6 @@ Name = Literal["cvode", "ida", "bdf", "radau"]
 
 _POSITION_TIME = 1e-3
 _RELATIVE = 1e-9
-_MANY_STEPS = 100_000
 
 
 @dataclass(frozen=True)
@@ -31,7 +30,8 @@ class StandardIntegrator:
     name : str
         "cvode", "ida", "bdf" or "radau".
     rtol : float
-        Allowed error of velocities over the velocity scale of the task; positions may err by what that makes in a millisecond.
+        Allowed error of velocities over the velocity scale of the task; positions may err by what that makes in a
+        millisecond.
     max_step : float or None
         s.
     """
@@ -43,23 +43,29 @@ class StandardIntegrator:
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
-        start, y = float(task.times[0]), equations.pack(task.start)
-        yield _chunk(equations, task.times[:1], y[None], np.zeros(1), start)
+        tolerances = equations.tolerances(self.rtol * task.velocity_scale, _POSITION_TIME)
+        y, time = equations.pack(task.start), float(task.times[0])
+        yield _chunk(equations, task.times[:1], [y], 0.0, time)
         written = 1
-        march = _sundials if self.name in ("cvode", "ida") else _scipy
         for stop in task.stops:
-            count = int(np.searchsorted(task.times, stop, side="right"))
-            outputs = task.times[written:count]
-            for chunk, y in march(self, equations, task, start, y, stop, outputs):
-                written += len(chunk.time)
-                yield chunk
-            start = stop
+            make = _Sundials if self.name in ("cvode", "ida") else _SciPy
+            solver: _Solver = make(self, equations, tolerances, time, y, stop)
+            while solver.time < stop:
+                before = solver.time
+                try:
+                    solver.step()
+                except _SolverError as error:
+                    raise self._give_up(before, error) from error
+                task.statistics.steps += 1
+                task.statistics.evaluations = equations.evaluations
+                count = int(np.searchsorted(task.times, solver.time, side="right"))
+                instants = task.times[written:count]
+                states = [solver.at(float(instant)) for instant in instants]
+                yield _chunk(equations, instants, states, solver.time - before, solver.time)
+                written = count
+            time, y = stop, solver.at(stop)
 
-    def tolerances(self, equations: FirstOrder, scale: float) -> FloatArray:
-        """Absolute tolerances of the unknowns from the velocity scale, m/s."""
-        return equations.tolerances(self.rtol * scale, _POSITION_TIME)
-
-    def give_up(self, time: float, reason: str) -> ConvergenceError:
+    def _give_up(self, time: float, reason: Exception) -> ConvergenceError:
         """The error for a solver that stopped at a time, s."""
         return ConvergenceError(
             f"the integrator {self.name} cannot go on at t = {time:.6g} s ({reason}). "
@@ -67,89 +73,90 @@ class StandardIntegrator:
         )
 
 
-Marched = Iterator[tuple[Chunk, FloatArray]]
+class _SolverError(Exception):
+    """A library's solver has given up; the message is its own."""
 
 
-def _scipy(
-    method: StandardIntegrator,
-    equations: FirstOrder,
-    task: Task,
-    start: float,
-    y: FloatArray,
-    stop: float,
-    outputs: FloatArray,
-) -> Marched:
-    """March to a stop with an implicit method of SciPy, step by step."""
-    from scipy.integrate import BDF, Radau
+class _Solver(Protocol):
+    """A library's solver on its way from one stop to the next."""
 
-    options: dict[str, Any] = {"max_step": method.max_step} if method.max_step else {}
-    solver = {"bdf": BDF, "radau": Radau}[method.name](
-        equations.rates,
-        np.nextafter(start, np.inf),
-        y,
-        stop,
-        rtol=_RELATIVE,
-        atol=method.tolerances(equations, task.velocity_scale),
-        jac=equations.jacobian,
-        **options,
-    )
-    written = 0
-    while solver.status == "running":
-        message = solver.step()
-        if solver.status == "failed":
-            raise method.give_up(solver.t, str(message))
-        task.statistics.steps += 1
-        task.statistics.newton_iterations = equations.evaluations
-        count = int(np.searchsorted(outputs, solver.t, side="right"))
-        interpolant = solver.dense_output() if count > written else None
-        states = np.array([interpolant(t) for t in outputs[written:count]]).reshape(-1, y.size)
-        steps = np.full(count - written, solver.step_size)
-        yield _chunk(equations, outputs[written:count], states, steps, solver.t), solver.y
-        written = count
+    time: float
+
+    def step(self) -> None:
+        """Take one step of the solver's own choice."""
+
+    def at(self, time: float) -> FloatArray:
+        """Unknowns at an instant of the last step, s."""
 
 
-def _sundials(
-    method: StandardIntegrator,
-    equations: FirstOrder,
-    task: Task,
-    start: float,
-    y: FloatArray,
-    stop: float,
-    outputs: FloatArray,
-) -> Marched:
-    """March to a stop with CVODE or IDA, from output to output."""
-    begin = np.nextafter(start, np.inf)
-    solver = _sundials_solver(method, equations, task)
-    if method.name == "ida":
-        solver.init_step(begin, y, equations.rates(begin, y))
-    else:
-        solver.init_step(begin, y)
-    before = task.statistics.steps
-    instants = outputs if len(outputs) and outputs[-1] == stop else np.append(outputs, stop)
-    last = start
-    for k, instant in enumerate(instants):
-        result = solver.step(float(instant), tstop=stop)
+class _SciPy:
+    """An implicit method of SciPy."""
+
+    def __init__(
+        self,
+        method: StandardIntegrator,
+        equations: FirstOrder,
+        tolerances: FloatArray,
+        start: float,
+        y: FloatArray,
+        stop: float,
+    ) -> None:
+        from scipy.integrate import BDF, Radau
+
+        kind = BDF if method.name == "bdf" else Radau
+        self._solver = kind(
+            equations.rates,
+            np.nextafter(start, np.inf),
+            y,
+            stop,
+            max_step=method.max_step or np.inf,
+            rtol=_RELATIVE,
+            atol=tolerances,
+            jac=equations.jacobian,
+        )
+        self.time = start
+
+    def step(self) -> None:
+        message = self._solver.step()
+        if self._solver.status == "failed":
+            raise _SolverError(message)
+        self.time = float(self._solver.t)
+
+    def at(self, time: float) -> FloatArray:
+        return np.asarray(self._solver.dense_output()(time))
+
+
+class _Sundials:
+    """CVODE or IDA, with the exact dense Jacobian."""
+
+    def __init__(
+        self,
+        method: StandardIntegrator,
+        equations: FirstOrder,
+        tolerances: FloatArray,
+        start: float,
+        y: FloatArray,
+        stop: float,
+    ) -> None:
+        options = {"rtol": _RELATIVE, "atol": tolerances, "max_step": method.max_step or 0.0}
+        self._solver = _cvode(equations, options) if method.name == "cvode" else _ida(equations, options)
+        begin = float(np.nextafter(start, np.inf))
+        self._solver.init_step(begin, y, *([] if method.name == "cvode" else [equations.rates(begin, y)]))
+        self.time, self._stop = start, stop
+
+    def step(self) -> None:
+        result = self._solver.step(self._stop, method="onestep", tstop=self._stop)
         if not result.success:
-            raise method.give_up(float(result.t), str(result.message))
-        task.statistics.newton_iterations = equations.evaluations
-        y = np.array(result.y).reshape(-1, y.size)[-1]
-        written = instants[k : k + 1] if k < len(outputs) else outputs[:0]
-        states = y[None][: len(written)]
-        yield _chunk(equations, written, states, np.full(len(written), instant - last), float(instant)), y
-        last = float(instant)
-    task.statistics.steps = before + int(solver.nsteps if hasattr(solver, "nsteps") else 0)
+            raise _SolverError(result.message)
+        self.time = float(np.ravel(result.t)[-1])
+
+    def at(self, time: float) -> FloatArray:
+        return np.array(np.atleast_2d(self._solver.step(time).y)[-1])
 
 
-def _sundials_solver(method: StandardIntegrator, equations: FirstOrder, task: Task) -> Any:
-    """CVODE or IDA with exact dense Jacobian."""
-    try:
-        from sksundae.cvode import CVODE
-        from sksundae.ida import IDA
-    except ImportError as error:
-        raise ModelError(
-            f'simulation.integrator = "{method.name}" needs scikit-sundae, which is not installed: '
-            'pip install "beltdyn[integrators]", or choose "generalized_alpha", "bdf" or "radau".'
-        ) from error
+def _cvode(equations: FirstOrder, options: dict[str, Any]) -> Any:
+    """CVODE on dy/dt = f(t, y)."""
+    from_sundials = _import_sundials()
 
     def rates(t: float, y: FloatArray, result: FloatArray) -> None:
         result[:] = equations.rates(t, y)
@@ -157,28 +164,36 @@ def _sundials_solver(method: StandardIntegrator, equations: FirstOrder, task: Ta
     def jacobian(t: float, y: FloatArray, _: FloatArray, result: FloatArray) -> None:
         result[:] = equations.jacobian(t, y)
 
+    return from_sundials.cvode.CVODE(rates, jacfn=jacobian, **options)
+
+
+def _ida(equations: FirstOrder, options: dict[str, Any]) -> Any:
+    """IDA on dy/dt - f(t, y) = 0."""
+    from_sundials = _import_sundials()
+
     def residual(t: float, y: FloatArray, slope: FloatArray, result: FloatArray) -> None:
         result[:] = slope - equations.rates(t, y)
 
-    def residual_jacobian(
-        t: float, y: FloatArray, _slope: FloatArray, _residual: FloatArray, by_slope: float, result: FloatArray
-    ) -> None:
+    def jacobian(t: float, y: FloatArray, _s: FloatArray, _r: FloatArray, by_slope: float, result: FloatArray) -> None:
         result[:] = by_slope * np.eye(y.size) - equations.jacobian(t, y)
 
-    options: dict[str, Any] = {
-        "rtol": _RELATIVE,
-        "atol": method.tolerances(equations, task.velocity_scale),
-        "max_num_steps": _MANY_STEPS,
-        "max_step": method.max_step or 0.0,
-    }
-    if method.name == "cvode":
-        return CVODE(rates, jacfn=jacobian, **options)
-    return IDA(residual, jacfn=residual_jacobian, **options)
+    return from_sundials.ida.IDA(residual, jacfn=jacobian, **options)
 
 
-def _chunk(equations: FirstOrder, time: FloatArray, y: FloatArray, step: FloatArray, reached: float) -> Chunk:
-    """Outputs from unknowns of shape (k, size)."""
+def _import_sundials() -> Any:
+    """The package scikit-sundae, an optional extra."""
+    try:
+        import sksundae
+    except ImportError as error:
+        raise ModelError(
+            'simulation.integrator is "cvode" or "ida", which need scikit-sundae: it is not installed. '
+            'pip install "beltdyn[integrators]", or choose "generalized_alpha", "bdf" or "radau".'
+        ) from error
+    return sksundae
+
+
+def _chunk(equations: FirstOrder, time: FloatArray, states: list[FloatArray], step: float, reached: float) -> Chunk:
+    """Outputs from unknowns."""
+    y = np.array(states).reshape(len(states), equations.size)
     position, velocity, work = equations.unpack(y)
-    return Chunk(time, position, velocity, work, step, reached)
-
-
+    return replace(Chunk.at(time, position, velocity, work, np.full(len(time), step)), reached=reached)

@@ -1,9 +1,9 @@
 """Static equilibrium of a belt: Newton's method, damped by the natural monotonicity test (section 5 of the paper).
 
 A belt is so much stiffer in tension than in bending that neither the energy nor the residual falls along a good path to
-equilibrium.  What must fall is the next correction as the present stiffness sees it (Deuflhard 2011, section 2.1): a step of
-length d is taken if |K^-1 r(q - d x)| <= (1 - d / 4) |x| with x = K^-1 r(q).  Where no length will do, or the stiffness is singular,
-a multiple of the mass matrix is added to the stiffness for a while.
+equilibrium.  What must fall is the next correction as the present stiffness sees it (Deuflhard 2011, section 2.1):
+a step of length d is taken if |K^-1 r(q - d x)| <= (1 - d / 4) |x| with x = K^-1 r(q).  Where no length will do, or
+the stiffness is singular, a multiple of the mass matrix is added to the stiffness for a while.
 """
 
 from dataclasses import dataclass
@@ -16,8 +16,6 @@ from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.motion import Equations, linearise, new_equations, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import State
-
-
 
 _TOLERANCE = 1e-11
 _SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
@@ -57,7 +55,8 @@ def find_equilibrium(
 ) -> Equilibrium:
     """Find the static equilibrium that a belt falls into from a start.
 
-    Pulleys do not move: the belt slides on them without friction, unless `start` gives them speeds, which then rub the belt at rest.
+    Pulleys do not move: the belt slides on them without friction, unless `start` gives them speeds, which then rub
+    the belt at rest.
 
     Parameters
     ----------
@@ -135,7 +134,7 @@ class _Search:
         subtract_solution(self._system, self._here, length, self._position)
 
     def step_naturally(self) -> bool:
-        """Take the longest step, of halved lengths, that passes the natural monotonicity test; False if there is none."""
+        """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""
         size, length = self._size(self._here), 1.0
         while np.isfinite(size) and length >= _SMALLEST_LENGTH:
             self.step(length)
@@ -154,9 +153,7 @@ class _Search:
         """Linearise and solve; a singular stiffness leaves nan."""
         at_rest, none = np.zeros_like(self._position), np.zeros(NODE)
         shift /= self._time_scale
-        solved = linearise(
-            self._system, 0.0, self._position, self._velocity, at_rest, none, 1.0, 0.0, shift, equations
-        )
+        solved = linearise(self._system, 0.0, self._position, self._velocity, at_rest, none, 1.0, 0.0, shift, equations)
         if not solved:
             equations.node_part[:] = np.nan
 

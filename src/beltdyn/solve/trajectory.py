@@ -1,8 +1,8 @@
 """What every time integrator takes and gives, whatever its method."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, fields
+from typing import Protocol, Self
 
 import numpy as np
 
@@ -13,37 +13,98 @@ from beltdyn.system.state import State
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """States at some successive output instants; none in a chunk that only tells of progress.
+    """Solver steps around some successive output instants; none in a chunk that only tells of progress.
 
     Attributes
     ----------
     time : ndarray, shape (k,)
-        s.
-    position, velocity : ndarray, shape (k, 6 N + P)
-        Nodal coordinates and pulley angles, and their rates.
-    work : ndarray, shape (k, 4)
-        Time integrals of the powers in `system.arrays.POWERS`, J.
+        Output instants, s.
+    fraction : ndarray, shape (k,)
+        Where in its step each instant lies, 0 to 1.
     step : ndarray, shape (k,)
-        Step that the solver took around each instant, s.
+        Length of the step, s.
+    position, velocity : ndarray, shape (k, 2, 6 N + P)
+        Nodal coordinates and pulley angles, and their rates, at start and end of the step.
+    work : ndarray, shape (k, 4)
+        Time integrals of the powers in `system.arrays.POWERS` at the instants, J.
     reached : float
         Time that the solver has reached, s.
     """
 
     time: FloatArray
+    fraction: FloatArray
+    step: FloatArray
     position: FloatArray
     velocity: FloatArray
     work: FloatArray
-    step: FloatArray
     reached: float
+
+    @classmethod
+    def at(
+        cls, time: FloatArray, position: FloatArray, velocity: FloatArray, work: FloatArray, step: FloatArray
+    ) -> Self:
+        """States that a solver hands out at the output instants themselves.
+
+        Parameters
+        ----------
+        time, position, velocity, work, step : ndarray
+            As in a chunk, but position and velocity of shape (k, 6 N + P).
+        """
+        return cls(
+            time=time,
+            fraction=np.ones(len(time)),
+            step=step,
+            position=np.repeat(position[:, None], 2, axis=1),
+            velocity=np.repeat(velocity[:, None], 2, axis=1),
+            work=work,
+            reached=float(time[-1]) if len(time) else np.nan,
+        )
+
+    @classmethod
+    def join(cls, chunks: Sequence[Self]) -> Self:
+        """One chunk of several successive ones."""
+        names = [item.name for item in fields(cls)][:-1]
+        arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in names}
+        return cls(**arrays, reached=chunks[-1].reached)
+
+    def interpolate(self) -> tuple[FloatArray, FloatArray]:
+        """Position and velocity at the instants: cubic Hermite interpolation within the steps.
+
+        Returns
+        -------
+        position, velocity : ndarray, shape (k, 6 N + P)
+        """
+        x, step = self.fraction[:, None], self.step[:, None]
+        before, after = self.position[:, 0], self.position[:, 1]
+        start, end = self.velocity[:, 0], self.velocity[:, 1]
+        rest = 1.0 - x
+        rise = np.divide(after - before, step, out=np.zeros_like(before), where=step > 0.0)
+        position = before + step * x * (x * (3.0 - 2.0 * x) * rise + rest * (rest * start - x * end))
+        velocity = 6.0 * x * rest * rise + rest * (1.0 - 3.0 * x) * start + x * (3.0 * x - 2.0) * end
+        inside = x < 1.0
+        return np.where(inside, position, after), np.where(inside, velocity, end)
 
 
 @dataclass
 class Statistics:
-    """What the solver did so far."""
+    """What the solver did so far.
+
+    Attributes
+    ----------
+    steps : int
+        Accepted steps.
+    rejected_steps : int
+        Steps tried in vain; zero for standard integrators, which do not tell.
+    newton_iterations : int
+        Iterations of generalised-alpha.
+    evaluations : int
+        Evaluations of the equations of motion by standard integrators.
+    """
 
     steps: int = 0
     rejected_steps: int = 0
     newton_iterations: int = 0
+    evaluations: int = 0
 
 
 @dataclass(frozen=True)
@@ -119,7 +180,7 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
     """
     settings = drive.simulation
     count = int(np.floor(settings.duration / settings.output_interval * (1 + 1e-12)))
-    times = settings.output_interval * np.arange(count + 1)
+    times: FloatArray = settings.output_interval * np.arange(count + 1, dtype=np.float64)
     if settings.duration - times[-1] > 1e-9 * settings.duration:
         times = np.append(times, settings.duration)
     times[-1] = settings.duration
@@ -129,7 +190,7 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
 
 
 def velocity_scale(drive: Drive) -> float:
-    """Velocity that local errors are measured by: the largest prescribed rim speed, or what the installed strain can cause.
+    """Velocity that local errors are measured by: the largest prescribed rim speed, or what the strain can cause.
 
     Parameters
     ----------

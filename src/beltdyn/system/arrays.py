@@ -1,7 +1,7 @@
 """What the kernels of the system work on: named tuples of arrays and scalars, nothing else.
 
-The state of a system with N nodes and P pulleys is the vector of 6 N nodal coordinates followed by P pulley angles; velocities
-and accelerations are ordered alike.
+The state of a system with N nodes and P pulleys is the vector of 6 N nodal coordinates followed by P pulley angles;
+velocities and accelerations are ordered alike.
 """
 
 from typing import NamedTuple
@@ -97,7 +97,7 @@ class RingScratch(NamedTuple):
 
 
 class RingMatrix(NamedTuple):
-    """A block-tridiagonal matrix, cyclic if the belt is closed, with a border of m further unknowns, and a right-hand side."""
+    """A block-tridiagonal matrix, cyclic for a closed belt, with a border of m unknowns, and a right-hand side."""
 
     diagonal: FloatArray
     """Shape (N, 6, 6)."""

@@ -1,8 +1,8 @@
 """Equations of motion of belt and pulleys: residual and exact tangent (Eqs. 23, 25 and 27).
 
-    M a + dU/de - Q_c(e, v, omega) - F + C^T lambda = 0        belt
-    I domega/dt - moment - T_a = 0                              free pulleys (Eq. 23)
-    C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
+M a + dU/de - Q_c(e, v, omega) - F + C^T lambda = 0        belt
+I domega/dt - moment - T_a = 0                              free pulleys (Eq. 23)
+C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
 """
 
 from typing import NamedTuple
@@ -91,8 +91,8 @@ def assemble(
     multipliers : ndarray, shape (6,)
         Lagrange multipliers of the joint; ignored without joint.
     by_position, by_velocity, by_acceleration : float
-        The tangent is the sum of these times the derivatives with respect to position, velocity and acceleration, which is what an
-        integrator needs whose unknown moves all three.
+        The tangent is the sum of these times the derivatives with respect to position, velocity and acceleration,
+        which is what an integrator needs whose unknown moves all three.
     work
         Scratch arrays.
     matrix
@@ -153,9 +153,7 @@ def _elastic_and_inertia(
         total = 0.0
         for column in range(2 * NODE):
             total += mass[row, column] * acceleration[column]
-            work.tangent[row, column] = (
-                by_position * work.tangent[row, column] + by_acceleration * mass[row, column]
-            )
+            work.tangent[row, column] = by_position * work.tangent[row, column] + by_acceleration * mass[row, column]
         work.gradient[row] += total
 
 
@@ -280,7 +278,7 @@ def _pulleys(
     matrix: RingMatrix,
     loads: Loads,
 ) -> None:
-    """Rotation of the pulleys (Eq. 23): equation of the free ones, reaction torque of the prescribed ones, power of both."""
+    """Rotation of the pulleys (Eq. 23): equation of free ones, reaction of prescribed ones, power of both."""
     pulleys = system.pulleys
     first = velocity.size - pulleys.radius.size
     for p in range(pulleys.radius.size):

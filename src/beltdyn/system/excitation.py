@@ -29,7 +29,8 @@ def profile_value(pulleys: Pulleys, pulley: int, time: float) -> tuple[float, fl
     Returns
     -------
     value, rate : float
-        Speed and angular acceleration of a prescribed pulley (rad/s, rad/s^2), torque and its rate of a free one (N m, N m/s).
+        Speed and angular acceleration of a prescribed pulley (rad/s, rad/s^2), or torque and its rate of a free one
+        (N m, N m/s).
     """
     first, last = pulleys.profile_first[pulley], pulleys.profile_first[pulley + 1] - 1
     while first < last:
@@ -47,19 +48,19 @@ def profile_value(pulleys: Pulleys, pulley: int, time: float) -> tuple[float, fl
 
 
 @kernel
-def prescribe_speeds(system: System, time: float, velocity: FloatArray) -> None:
-    """Write the speeds of the prescribed pulleys at a time (s) into a velocity, shape (6 N + P,)."""
-    first = velocity.size - system.pulleys.radius.size
-    for p in range(system.pulleys.radius.size):
-        if system.pulleys.unknown[p] < 0:
-            velocity[first + p] = profile_value(system.pulleys, p, time)[0]
-
-
-@kernel
 def prescribe(system: System, time: float, velocity: FloatArray, acceleration: FloatArray) -> None:
-    """Write speeds and angular accelerations of the prescribed pulleys at a time (s) into a state."""
-    prescribe_speeds(system, time, velocity)
+    """Write the speeds of the prescribed pulleys and their rates into a state.
+
+    Parameters
+    ----------
+    system
+        The system.
+    time
+        s.
+    velocity, acceleration : ndarray, shape (6 N + P,)
+        The entries of prescribed pulleys are overwritten.
+    """
     first = velocity.size - system.pulleys.radius.size
     for p in range(system.pulleys.radius.size):
         if system.pulleys.unknown[p] < 0:
-            acceleration[first + p] = profile_value(system.pulleys, p, time)[1]
+            velocity[first + p], acceleration[first + p] = profile_value(system.pulleys, p, time)

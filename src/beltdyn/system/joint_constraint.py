@@ -66,9 +66,9 @@ def joint_constraint(system: System) -> JointConstraint:
     jacobian = np.zeros((NODE, NODE * system.nodes))
     jacobian[:, :NODE] = np.eye(NODE)
     jacobian[:, -NODE:] = -np.eye(NODE)
-    inverse = np.linalg.inv(mass_matrix(system))
+    inverse: FloatArray = np.linalg.inv(mass_matrix(system)).astype(np.float64)
     flexibility = inverse @ jacobian.T
-    by_constraint = np.linalg.solve((jacobian @ flexibility).T, flexibility.T).T
+    by_constraint: FloatArray = flexibility @ np.linalg.inv(jacobian @ flexibility).astype(np.float64)
     return JointConstraint(jacobian, inverse - by_constraint @ flexibility.T, by_constraint)
 
 

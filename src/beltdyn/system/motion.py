@@ -142,9 +142,7 @@ def accelerate(
     acceleration[:] = 0.0
     multipliers[:] = 0.0
     prescribe(system, time, velocity, acceleration)
-    if not linearise(
-        system, time, position, velocity, acceleration, multipliers, 0.0, 0.0, 1.0, equations
-    ):
+    if not linearise(system, time, position, velocity, acceleration, multipliers, 0.0, 0.0, 1.0, equations):
         return False
     subtract_solution(system, equations, 1.0, acceleration)
     subtract_multipliers(system, equations, 1.0, multipliers)

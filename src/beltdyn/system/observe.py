@@ -208,9 +208,7 @@ def _observe_element(system: System, element: int, samples: Samples, result: Obs
     e, v, length = samples.element[0], samples.element[1], system.length[element]
     if element == 0:
         result.kinetic_energy[k] = result.strain_energy[k] = 0.0
-    result.strain_energy[k] += element_energy(
-        e, system.section, length, system.elastic.points, system.elastic.weights
-    )
+    result.strain_energy[k] += element_energy(e, system.section, length, system.elastic.points, system.elastic.weights)
     for row in range(2 * NODE):
         for column in range(2 * NODE):
             result.kinetic_energy[k] += 0.5 * v[row] * system.mass[element, row, column] * v[column]
@@ -274,7 +272,8 @@ def _angle(control: FloatArray, wheel: Wheel, start: float, end: float) -> float
 def _observe_spans(system: System, samples: Samples, result: Observations, k: int) -> None:
     """Mean tension and speed of the free belt between two pulleys.
 
-    Going along the belt, free points belong to the span of the pulley that was touched last, if the next one touched is another.
+    Going along the belt, free points belong to the span of the pulley that was touched last, if the next one
+    touched is another.
     """
     spans = system.pulleys.radius.size
     touched = result.contact_pulley[k]

@@ -1,8 +1,8 @@
 """Linear algebra of the belt: a block-tridiagonal matrix, cyclic or open, with a border, solved in O(n).
 
-A closed ring is cut open by moving its last node to the border.  The chain that remains is eliminated block by block; what it
-leaves in the border is a small dense system.  Rows are kept as [own block | border | right-hand side], so that eliminating a
-node is one small matrix product for the next node and one for the border.
+A closed ring is cut open by moving its last node to the border.  The chain that remains is eliminated block by
+block; what it leaves in the border is a small dense system.  Rows are kept as [own block | border | right-hand
+side], so that eliminating a node is one small matrix product for the next node and one for the border.
 """
 
 import numpy as np
@@ -227,7 +227,7 @@ def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
 
 @kernel
 def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray, count: int) -> None:
-    """target -= left right in the first rows, for a left factor of six columns."""
+    """Target -= left right in the first rows, for a left factor of six columns."""
     for i in range(count):
         for k in range(NODE):
             factor = left[i, k]

@@ -51,7 +51,8 @@ def at_rest(system: System, coordinates: FloatArray) -> State:
 def laid(system: System, path: Path) -> State:
     """The belt laid on its path at uniform stretch, at rest.
 
-    Node 0 stands where the belt leaves the first pulley; r_x is the stretch times the unit tangent, r_y the unit normal.
+    Node 0 stands where the belt leaves the first pulley; r_x is the stretch times the unit tangent, r_y the unit
+    normal.
 
     Parameters
     ----------

@@ -1,0 +1,129 @@
+"""The moving state of generalised-alpha and what it is told, as named tuples for its kernels."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.system.arrays import NODE, POWERS, FloatArray, System
+from beltdyn.system.motion import Equations, accelerate
+
+IntArray = NDArray[np.int64]
+
+STEPS: Final = 0
+REJECTED: Final = 1
+FAILED: Final = 2
+ITERATIONS: Final = 3
+
+
+class Settings(NamedTuple):
+    """Choices of the user, as numbers."""
+
+    spectral_radius: float
+    """rho at infinite frequency, 0 (strongest damping) to 1 (none)."""
+    velocity_tolerance: float
+    """Local error allowed per unit of time, m/s: the relative tolerance times a velocity of the drive."""
+    newton_fraction: float
+    """Newton stops when its error is below this fraction of the local error allowed."""
+    max_step: float
+    """s."""
+    length_scale: FloatArray
+    """Lengths that turn changes of r, r_x, r_y into m, shape (6,)."""
+
+
+class March(NamedTuple):
+    """The moving state of an integration, and what it tries next; everything is changed in place."""
+
+    clock: FloatArray
+    """Time and next step, s, shape (2,)."""
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    auxiliary: FloatArray
+    """A of the method."""
+    multipliers: FloatArray
+    work: FloatArray
+    """Time integrals of the powers in the loads, J, shape (4,)."""
+    power: FloatArray
+    """These powers at the present time, W, shape (4,)."""
+    trial: FloatArray
+    """Position, velocity, acceleration and A at the end of the step that is tried, shape (4, 6 N + P)."""
+    counts: IntArray
+    """Steps, steps rejected for their error, steps that Newton failed, Newton iterations; shape (4,)."""
+
+
+class Outputs(NamedTuple):
+    """Steps around the output instants, filled by `advance`.
+
+    Most steps end on an output instant.  Where instants lie closer together than steps, both ends of the step are
+    kept: only there do the equations of motion hold, so that forces are interpolated, not taken from interpolated
+    states.
+    """
+
+    time: FloatArray
+    """Instants, s, ascending, shape (k,)."""
+    fraction: FloatArray
+    """Where in its step each instant lies, 0 to 1, shape (k,)."""
+    step: FloatArray
+    """Length of the step, s, shape (k,)."""
+    position: FloatArray
+    """At start and end of the step, shape (k, 2, 6 N + P)."""
+    velocity: FloatArray
+    """Alike."""
+    work: FloatArray
+    """Works at the instant, shape (k, 4)."""
+
+
+def new_march(time: float, step: float, position: FloatArray, velocity: FloatArray) -> March:
+    """Begin an integration.
+
+    Parameters
+    ----------
+    time, step
+        Where to begin, and the first step to try, s.
+    position, velocity : ndarray, shape (6 N + P,)
+        State to begin from; copied.
+
+    Returns
+    -------
+    March
+        `restart` has to give it accelerations before it can `advance`.
+    """
+    size = position.size
+    return March(
+        clock=np.array((time, step)),
+        position=position.copy(),
+        velocity=velocity.copy(),
+        acceleration=np.zeros(size),
+        auxiliary=np.zeros(size),
+        multipliers=np.zeros(NODE),
+        work=np.zeros(len(POWERS)),
+        power=np.zeros(len(POWERS)),
+        trial=np.zeros((4, size)),
+        counts=np.zeros(4, dtype=np.int64),
+    )
+
+
+def restart(system: System, march: March, equations: Equations) -> None:
+    """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+    march
+        Changed in place; profiles are taken just after its time.
+    equations
+        Arrays to work in.
+
+    Raises
+    ------
+    ConvergenceError
+        If the mass matrix is singular.
+    """
+    after = float(np.nextafter(march.clock[0], np.inf))
+    if not accelerate(system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations):
+        raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
+    march.auxiliary[:] = march.acceleration
+    march.power[:] = equations.loads.power
