@@ -10,6 +10,12 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 if TYPE_CHECKING:
     from beltdyn.solve.progress import Progress as SolverProgress
 
+_PHASES = {
+    "compiling": "preparing kernels (once on a machine: about a minute)",
+    "equilibrium": "finding equilibrium",
+    "integrating": "simulating",
+}
+
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
@@ -32,10 +38,14 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
         def report(progress: "SolverProgress") -> None:
             bar.update(
                 task,
-                description="simulating",
+                description=_PHASES[progress.phase],
                 completed=progress.time,
                 total=progress.duration,
-                state=f"{progress.time:.4g} of {progress.duration:.4g} s, step {progress.step_size:.1e} s",
+                state=_state(progress) if progress.phase == "integrating" else "",
             )
 
         yield report
+
+
+def _state(progress: "SolverProgress") -> str:
+    return f"{progress.time:.4g} of {progress.duration:.4g} s, step {progress.step_size:.1e} s"

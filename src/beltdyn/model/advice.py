@@ -4,10 +4,10 @@ import math
 
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
+from beltdyn.model.resolution import arc_angle, arc_error, elements_needed
 
 _MOST_TENSION_LOST = 0.1
 _DEEPEST_PENETRATION = 0.1
-_LARGEST_ARC_ERROR = 0.1  # of the penetration
 _LARGEST_STRAIN = 0.1
 
 
@@ -67,16 +67,16 @@ def _mesh_warnings(drive: Drive, installation: Installation) -> list[str]:
     """Compare the penetration with what a cubic element misses the circle by, which falls with elements^4."""
     if not installation.tension > 0:
         return []
-    ratios = installation.arc_errors / installation.penetrations
-    worst = int(ratios.argmax())
-    if ratios[worst] <= _LARGEST_ARC_ERROR:
+    needs = [
+        (elements_needed(drive.belt, pulley.radius, float(depth)), pulley, depth)
+        for pulley, depth in zip(drive.pulleys, installation.penetrations, strict=True)
+    ]
+    needed, pulley, depth = max(needs, key=lambda need: need[0])
+    if needed <= drive.belt.elements:
         return []
-    elements = drive.belt.elements
-    needed = math.ceil(elements * (ratios[worst] / _LARGEST_ARC_ERROR) ** 0.25)
-    arc = math.degrees(drive.path.length / (elements * drive.pulleys[worst].radius))
     return [
-        f'an element covers {arc:.0f}° of "{drive.pulleys[worst].name}" and misses its circle by '
-        f"{installation.arc_errors[worst]:.1e} m, where the belt sinks in by {installation.penetrations[worst]:.1e} m: "
+        f'an element covers {math.degrees(arc_angle(drive.belt, pulley.radius)):.0f}° of "{pulley.name}" and misses '
+        f"its circle by {arc_error(drive.belt, pulley.radius):.1e} m, where the belt sinks in by {depth:.1e} m: "
         f"contact forces will be uneven along the arc. For smooth ones, set belt.elements = {needed} or more; "
         "speeds and torques need fewer."
     ]

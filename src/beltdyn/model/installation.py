@@ -22,15 +22,12 @@ class Installation:
         Tension once the belt has sunk into the pulleys, N.
     penetrations : ndarray, shape (n,), m
         How deep it sinks into each pulley.
-    arc_errors : ndarray, shape (n,), m
-        How far a cubic element misses the circle of each pulley.
     """
 
     strain: float
     laid_tension: float
     tension: float
     penetrations: NDArray[np.float64]
-    arc_errors: NDArray[np.float64]
 
 
 def install(drive: Drive) -> Installation:
@@ -38,8 +35,7 @@ def install(drive: Drive) -> Installation:
 
     At the stretch g the tension is T = E A alpha1 (g^2 - 1) g / 2 (the axial term of the strain energy). On a
     pulley of radius R it presses with T g / R per unstretched metre, so the belt sinks by d = T g / (R k_p),
-    which shortens the path by the wrap angle times d. An element over the angle phi of a circle, a cubic
-    Hermite curve, misses it by R phi^4 / 384.
+    which shortens the path by the wrap angle times d.
 
     Parameters
     ----------
@@ -65,5 +61,4 @@ def install(drive: Drive) -> Installation:
 
     laid = path.length / length
     stretch = float(brentq(excess, 1.0, laid * (1 + 1e-9), xtol=1e-14))
-    angles = path.length / (drive.belt.elements * radii)
-    return Installation(laid - 1, tension(laid), tension(stretch), penetrations(stretch), radii * angles**4 / 384)
+    return Installation(laid - 1, tension(laid), tension(stretch), penetrations(stretch))

@@ -6,12 +6,10 @@ from collections.abc import Iterator
 import xarray as xr
 
 from beltdyn.model import Drive
+from beltdyn.model.resolution import arc_angle, arc_error, elements_needed
 
 CLOSURE_LIMIT = 0.01
 """Largest closure error of the energy account that passes without a warning."""
-
-MISS_LIMIT = 0.1
-"""Largest ratio of an element's distance from the pulley's circle to the penetration."""
 
 
 def find_warnings(dataset: xr.Dataset, drive: Drive) -> list[str]:
@@ -68,17 +66,16 @@ def _slack_spans(dataset: xr.Dataset) -> Iterator[str]:
 
 
 def _coarse_elements(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
-    """Compare how far a cubic misses the circle, R phi^4 / 384, with the penetration f_n / k_p."""
+    """Compare how far an element misses the circle with the penetration f_n / k_p."""
     last = dataset.isel(time=-1)
     for number, pulley in enumerate(drive.pulleys):
         force = last["normal_force"].where(last["contact_pulley"] == number)
         if not float(force.max()) > 0.0:
             continue
         penetration = float(force.mean()) / drive.contact.stiffness
-        angle = drive.belt.length / (drive.belt.elements * pulley.radius)
-        miss = pulley.radius * angle**4 / 384
-        if miss > MISS_LIMIT * penetration:
-            needed = math.ceil(drive.belt.elements * (miss / (MISS_LIMIT * penetration)) ** 0.25)
+        needed = elements_needed(drive.belt, pulley.radius, penetration)
+        if needed > drive.belt.elements:
+            angle, miss = arc_angle(drive.belt, pulley.radius), arc_error(drive.belt, pulley.radius)
             yield (
                 f"contact forces on {pulley.name} are not resolved: "
                 f"an element spans {math.degrees(angle):.0f} degrees and "

@@ -7,9 +7,19 @@ import numpy as np
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.solve.generalized_alpha import REACHED, advance
-from beltdyn.solve.march import FAILED, ITERATIONS, REJECTED, STEPS, March, Outputs, Settings, new_march, restart
+from beltdyn.solve.march import (
+    FAILED,
+    ITERATIONS,
+    REJECTED,
+    STEPS,
+    March,
+    Outputs,
+    Settings,
+    empty_outputs,
+    new_march,
+    restart,
+)
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import FloatArray
 from beltdyn.system.motion import new_equations
 
 _OUTPUTS = 64
@@ -50,37 +60,18 @@ class GeneralizedAlpha:
         march = new_march(float(task.times[0]), _FIRST_STEP, start.position, start.velocity)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
-        yield _first_chunk(task)
+        yield Chunk.start(float(task.times[0]), start)
         written = 1
         for stop in task.stops:
             restart(system, march, equations)
             while march.clock[0] < stop:
-                outputs = _buffer(task.times[written : written + _OUTPUTS], start.position.size)
+                outputs = empty_outputs(task.times[written : written + _OUTPUTS], start.position.size)
                 status, filled = advance(system, settings, march, equations, stop, budget, outputs)
                 _count(task, march)
                 yield _chunk(outputs, filled, march)
                 written += filled
                 if status != REACHED:
                     raise ConvergenceError(_message(task, march, self.rtol))
-
-
-def _first_chunk(task: Task) -> Chunk:
-    """The start itself."""
-    start = task.start
-    return Chunk.at(task.times[:1], start.position[None], start.velocity[None], np.zeros((1, 4)), np.zeros(1))
-
-
-def _buffer(times: FloatArray, size: int) -> Outputs:
-    """Room for the steps around the next output instants."""
-    count = len(times)
-    return Outputs(
-        time=times.copy(),
-        fraction=np.empty(count),
-        step=np.empty(count),
-        position=np.empty((count, 2, size)),
-        velocity=np.empty((count, 2, size)),
-        work=np.empty((count, 4)),
-    )
 
 
 def _chunk(outputs: Outputs, filled: int, march: March) -> Chunk:

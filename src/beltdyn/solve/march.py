@@ -75,6 +75,27 @@ class Outputs(NamedTuple):
     """Works at the instant, shape (k, 4)."""
 
 
+def empty_outputs(times: FloatArray, size: int) -> Outputs:
+    """Make room for the steps around some output instants.
+
+    Parameters
+    ----------
+    times : ndarray, shape (k,)
+        Instants, s, ascending.
+    size
+        Size of a state, 6 N + P.
+    """
+    count = len(times)
+    return Outputs(
+        time=times.copy(),
+        fraction=np.empty(count),
+        step=np.empty(count),
+        position=np.empty((count, 2, size)),
+        velocity=np.empty((count, 2, size)),
+        work=np.empty((count, len(POWERS))),
+    )
+
+
 def new_march(time: float, step: float, position: FloatArray, velocity: FloatArray) -> March:
     """Begin an integration.
 

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.solve.alpha_march import GeneralizedAlpha
@@ -76,8 +74,7 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
     with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:
         recording.tell(0.0, "equilibrium")
         state = find_equilibrium(system, laid(system, drive.path)).state
-        zero = np.zeros(1)
-        recording.take(Chunk.at(zero, state.position[None], state.velocity[None], np.zeros((1, 4)), zero))
+        recording.take(Chunk.start(0.0, state), "equilibrium")
     return recording.run()
 
 

@@ -45,7 +45,7 @@ class StandardIntegrator:
         equations = FirstOrder(task.system)
         tolerances = equations.tolerances(self.rtol * task.velocity_scale, _POSITION_TIME)
         y, time = equations.pack(task.start), float(task.times[0])
-        yield _chunk(equations, task.times[:1], [y], 0.0, time)
+        yield Chunk.start(time, task.start)
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy

@@ -7,7 +7,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from beltdyn.model import Drive
-from beltdyn.system.arrays import FloatArray, System
+from beltdyn.system.arrays import POWERS, FloatArray, System
 from beltdyn.system.state import State
 
 
@@ -59,6 +59,12 @@ class Chunk:
             work=work,
             reached=float(time[-1]) if len(time) else np.nan,
         )
+
+    @classmethod
+    def start(cls, time: float, state: State) -> Self:
+        """A state before the first step, at a time (s)."""
+        zero = np.zeros(1)
+        return cls.at(np.array([time]), state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), zero)
 
     @classmethod
     def join(cls, chunks: Sequence[Self]) -> Self:
