@@ -31,7 +31,7 @@ validate: install ## slow verification tests and comparisons with the literature
 	$(if $(wildcard tests/validation),$(BIN)/pytest tests/validation)
 
 bench: install ## benchmarks
-	$(BIN)/pytest benchmarks --benchmark-enable --benchmark-only
+	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
 
 docs: install ## the documentation, in docs/_build/html
 	$(BIN)/sphinx-build -W --keep-going -b html docs docs/_build/html
@@ -43,6 +43,6 @@ lock: ## resolve the versions anew
 		--no-header --no-emit-index-url --no-emit-find-links pyproject.toml --output-file requirements.lock
 
 clean: ## remove everything that can be made again
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis .benchmarks \
+	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
 		dist docs/_build beltdyn-demo
 	find src tests -name __pycache__ -type d -exec rm -rf {} +

@@ -1,6 +1,5 @@
 """`beltdyn demo`."""
 
-from importlib.resources import files
 from pathlib import Path
 
 from beltdyn.cli.console import show
@@ -18,9 +17,10 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
         The folder for the drive file, its results and its figures.
     """
     from beltdyn.model import load
+    from beltdyn.published import demo_text
 
     file = folder / "two_pulley.toml"
-    write_text(file, files("beltdyn").joinpath("published", "two_pulley.toml").read_text(encoding="utf-8"))
+    write_text(file, demo_text())
     show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
     run = simulate_to(load(file), folder / "two_pulley.nc")
     if run.status == "completed":

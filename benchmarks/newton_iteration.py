@@ -1,0 +1,85 @@
+"""Cost of one Newton iteration (tangent, contact, linear solve) over the number of elements, in one thread.
+
+Prints microseconds per iteration and element, and the fitted growth: cost ~ elements^p, p = 1 being linear.
+"""
+
+import statistics
+import time
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from beltdyn.kernel import kernel
+from beltdyn.published import two_pulley
+from beltdyn.solve import find_equilibrium
+from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.assembly import assemble
+from beltdyn.system.build import drive_system
+from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.ring_matrix import solve_ring
+from beltdyn.system.state import laid
+
+ELEMENTS = (20, 40, 80, 160, 320, 640)
+ITERATIONS = 20_000
+ROUNDS = 7
+
+
+@kernel
+def iterate(
+    system: System, position: FloatArray, velocity: FloatArray, equations: Equations, none: FloatArray, count: int
+) -> None:
+    """Linearise and solve at the same state again and again, as an integrator with steps of a millisecond does."""
+    for _ in range(count):
+        assemble(
+            system,
+            0.0,
+            position,
+            velocity,
+            velocity,
+            none,
+            1.0,
+            2e3,
+            4e6,
+            equations.work,
+            equations.matrix,
+            equations.loads,
+        )
+        solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
+
+
+def measure(elements: int, integration: str) -> list[float]:
+    """Microseconds per iteration and element of each round, on the belt in equilibrium on its pulleys."""
+    drive = two_pulley(elements)
+    drive = drive.replace(contact=drive.contact.replace(integration=integration))
+    system = drive_system(drive)
+    state = find_equilibrium(system, laid(system, drive.path)).state
+    velocity = np.zeros_like(state.position)
+    equations, none = new_equations(system), np.zeros(NODE)
+    count = ITERATIONS // elements
+    iterate(system, state.position, velocity, equations, none, 1)
+    rounds = []
+    for _ in range(ROUNDS):
+        begun = time.perf_counter()
+        iterate(system, state.position, velocity, equations, none, count)
+        rounds.append((time.perf_counter() - begun) / count / elements * 1e6)
+    return rounds
+
+
+def main() -> None:
+    """Print the table and the fit."""
+    console = Console()
+    for integration in ("zone", "fixed"):
+        table = Table("elements", "µs per iteration and element", "spread", title=f"Newton iteration, {integration}")
+        medians = []
+        for elements in ELEMENTS:
+            rounds = measure(elements, integration)
+            medians.append(statistics.median(rounds))
+            table.add_row(f"{elements}", f"{medians[-1]:.2f}", f"{min(rounds):.2f} to {max(rounds):.2f}")
+        growth = np.polyfit(np.log(ELEMENTS), np.log(np.array(medians) * ELEMENTS), 1)[0]
+        console.print(table)
+        console.print(f"cost of an iteration ~ elements^{growth:.3f}\n", highlight=False)
+
+
+if __name__ == "__main__":
+    main()
