@@ -1,6 +1,6 @@
 """Real-time factor of the two-pulley drive of the paper: seconds of computing for each simulated second, one thread.
 
-Compilation is apart.  Each setting is run in turn, several times over; medians are printed, with the ratio to the first.
+Compilation is apart.  Settings are run in turn, several times over; medians are printed, with their ratio to the first.
 """
 
 import statistics

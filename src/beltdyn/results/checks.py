@@ -41,7 +41,8 @@ def _unfinished(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
     status = dataset.attrs["status"]
     if status != "completed":
         end = float(dataset["time"][-1])
-        yield f"the run is {status}: results end at t = {end:.6g} s of {drive.simulation.duration:.6g} s."
+        ended = {"interrupted": "was interrupted", "failed": "failed"}.get(status, "goes on, or was killed")
+        yield f"the run {ended}: results end at t = {end:.6g} s of {drive.simulation.duration:.6g} s."
 
 
 def _open_energy_account(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:

@@ -57,7 +57,7 @@ class Recording:
         self._energy = EnergyAccount()
         self._waiting: list[Chunk] = []
         self._written = 0
-        self._step = 0.0
+        self._reached = self._step = 0.0
         self._begun = self._compiled = self._last_write = time.perf_counter()
 
     def __enter__(self) -> Self:
@@ -82,6 +82,7 @@ class Recording:
         if len(chunk.time):
             self._waiting.append(chunk)
             self._step = float(chunk.step[-1])
+        self._reached = chunk.reached
         self.tell(chunk.reached, phase)
         if time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
             self._write()
@@ -130,7 +131,6 @@ class Recording:
     def _attributes(self) -> dict[str, Any]:
         """Statistics of the solver, known at the end."""
         wall = time.perf_counter() - self._compiled
-        simulated = self._drive.simulation.duration
         return {
             "integrator": self._drive.simulation.integrator,
             "steps": self.statistics.steps,
@@ -139,7 +139,7 @@ class Recording:
             "evaluations": self.statistics.evaluations,
             "wall_time": wall,
             "compile_time": self._compiled - self._begun,
-            "real_time_factor": wall / simulated,
+            "real_time_factor": wall / self._reached if self._reached > 0.0 else np.nan,
         }
 
 

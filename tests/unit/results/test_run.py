@@ -73,7 +73,7 @@ def test_deep_contact_is_resolved(make_run: MakeRun, run: Run) -> None:
 
 
 def test_interrupted_run_is_said(make_run: MakeRun) -> None:
-    assert "the run is interrupted: results end at t = 1 s of 1 s." in make_run(status="interrupted").warnings
+    assert "the run was interrupted: results end at t = 1 s of 1 s." in make_run(status="interrupted").warnings
 
 
 def test_run_without_outputs_is_said(run: Run) -> None:
