@@ -3,7 +3,8 @@
 The header is made by h5netcdf, which knows the conventions of NetCDF4; outputs are appended by h5py,
 which is quick to open. Both keep to HDF5's earliest format: it has no consistency flags, so that a file
 whose writer was killed opens like any other. ``time`` is extended last and on its own, after
-everything else has reached the file: its length is the number of complete outputs.
+everything else has reached the file: its length is the number of complete outputs. What is left is a kill within
+the milliseconds in which HDF5 splits a node of a chunk index: one of several hundred writers without pause was lost.
 """
 
 from collections.abc import Mapping

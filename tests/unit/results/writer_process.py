@@ -1,6 +1,10 @@
-"""Write outputs without end, each filled with its number; the test kills this process."""
+"""Write outputs without end, each filled with its number; the test kills this process.
+
+It pauses between writes for a fifth of the time that a simulation computes between two of its own.
+"""
 
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +12,7 @@ import numpy as np
 from beltdyn.results import RECORDED, FileRecorder, Layout
 
 PERIOD = 100
+PAUSE = 0.05
 
 
 def write(path: Path, outputs: int) -> None:
@@ -23,6 +28,7 @@ def write(path: Path, outputs: int) -> None:
             shape = layout.shape(variable, outputs)
             chunk[name] = np.broadcast_to(numbers.reshape(-1, *(1,) * (len(shape) - 1)), shape)
         recorder.append(chunk)
+        time.sleep(PAUSE)
         start += outputs
 
 

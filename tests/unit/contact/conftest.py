@@ -1,0 +1,56 @@
+"""A pulley, both friction laws, and the control points of random belt-like curves."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw, Wheel
+
+FloatArray = NDArray[np.float64]
+
+
+@pytest.fixture(scope="session")
+def wheel() -> Wheel:
+    return Wheel(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0)
+
+
+@pytest.fixture(scope="session", params=[FORCE_SLOPE, COEFFICIENT_SLOPE], ids=["force_slope", "coefficient_slope"])
+def law(request: pytest.FixtureRequest) -> ContactLaw:
+    creep = 300.0 if request.param == FORCE_SLOPE else 0.4
+    return ContactLaw(1e6, 40.0, 0.5, request.param, creep, True)
+
+
+@pytest.fixture(scope="session")
+def place() -> Callable[[Wheel, float, float], tuple[float, float]]:
+    """Point at a penetration and an angle."""
+
+    def at(wheel: Wheel, penetration: float, angle: float) -> tuple[float, float]:
+        distance = wheel.radius - penetration
+        return wheel.center_x + distance * np.cos(angle), wheel.center_y + distance * np.sin(angle)
+
+    return at
+
+
+@pytest.fixture(scope="session")
+def belt_like() -> st.SearchStrategy[FloatArray]:
+    """Control points of curves from near the unit circle, up to half of it long, that turn by up to half a turn."""
+
+    def curve(start: float, radius: float, heading: float, turn: float, length: float, stretch: float) -> FloatArray:
+        directions = start + np.pi / 2 + heading + np.array([0.0, turn, 0.5 * turn])
+        first, last, chord = np.stack([np.cos(directions), np.sin(directions)], axis=1)
+        begin = radius * np.array([np.cos(start), np.sin(start)])
+        end = begin + stretch * length * chord
+        return np.array([begin, begin + length / 3 * first, end - length / 3 * last, end])
+
+    return st.builds(
+        curve,
+        st.floats(0.0, 6.28),
+        st.floats(0.7, 1.3),
+        st.floats(-0.8, 0.8),
+        st.floats(-3.14, 3.14),
+        st.floats(0.05, 3.14),
+        st.floats(0.6, 1.1),
+    )

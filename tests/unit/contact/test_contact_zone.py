@@ -1,0 +1,87 @@
+"""Touching intervals against dense sampling of random belt-like curves, and quick rejection against the same."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from beltdyn.contact.bezier import bernstein
+from beltdyn.contact.contact_zone import MAX_INTERVALS, out_of_reach, touching_intervals
+from beltdyn.contact.law import Wheel
+
+FloatArray = NDArray[np.float64]
+UNIT = Wheel(0.0, 0.0, 1.0, 0.0)
+XI = np.linspace(0.0, 1.0, 2001)
+WEIGHTS = np.array([bernstein(xi) for xi in XI])
+GRAZING = 1e-6
+"""Between two samples a curve of these lengths sags by less."""
+
+
+def overlap(control: FloatArray) -> FloatArray:
+    return np.asarray(1.0 - np.linalg.norm(WEIGHTS @ control, axis=1))
+
+
+def intervals(control: FloatArray, wheel: Wheel = UNIT) -> FloatArray:
+    found = np.zeros((MAX_INTERVALS, 2))
+    return found[: touching_intervals(control, wheel, np.zeros(7), found)]
+
+
+@given(st.data())
+def test_intervals_hold_exactly_the_points_inside(belt_like: st.SearchStrategy[FloatArray], data: Any) -> None:
+    control = data.draw(belt_like)
+    depth = overlap(control)
+    inside = np.zeros(XI.size, dtype=bool)
+    for start, end in intervals(control):
+        inside |= (start <= XI) & (end >= XI)
+    clear = np.abs(depth) > GRAZING
+    np.testing.assert_array_equal(inside[clear], depth[clear] > 0)
+
+
+@given(st.data())
+def test_inner_ends_lie_on_the_pulley(belt_like: st.SearchStrategy[FloatArray], data: Any) -> None:
+    control = data.draw(belt_like)
+    ends = intervals(control).ravel()
+    assert np.all(np.diff(ends) >= 0.0)
+    points = np.array([bernstein(xi) for xi in ends if 0.0 < xi < 1.0]).reshape(-1, 4) @ control
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 1.0, atol=1e-12)  # resolution of the roots
+
+
+@given(st.lists(st.floats(-1.5, 1.5), min_size=8, max_size=8), st.floats(0.0, 3.0))
+def test_an_element_that_touches_is_never_rejected(numbers: list[float], shift: float) -> None:
+    control = np.array(numbers).reshape(4, 2) + np.array([shift, 0.0])
+    assert not (out_of_reach(control, UNIT) and np.any(overlap(control) >= 0.0))
+
+
+@given(st.data())
+def test_a_rejected_element_has_no_intervals(belt_like: st.SearchStrategy[FloatArray], data: Any) -> None:
+    control = data.draw(belt_like)
+    assert not (out_of_reach(control, UNIT) and len(intervals(control)))
+
+
+def test_quick_rejection_sees_a_distant_element() -> None:
+    assert out_of_reach(np.array([[2.0, -1.0], [2.1, 0.0], [2.1, 1.0], [2.0, 2.0]]), UNIT)
+
+
+@pytest.mark.parametrize(
+    ("height", "half"), [(0.0, 1.0), (0.6, 0.8), (0.999, np.sqrt(1 - 0.999**2)), (1.0 - 1e-9, np.sqrt(2e-9))]
+)
+def test_chord_of_a_straight_element(height: float, half: float) -> None:
+    control = np.stack([np.linspace(-1.5, 1.5, 4), np.full(4, height)], axis=1)
+    np.testing.assert_allclose(intervals(control), [[0.5 - half / 3, 0.5 + half / 3]], atol=1e-9)
+
+
+@pytest.mark.parametrize(("shift", "expected"), [(0.0, [[0.0, 1.0]]), (5.0, np.empty((0, 2)))], ids=["inside", "away"])
+def test_whole_element(shift: float, expected: Any) -> None:
+    control = np.stack([np.linspace(-0.5, 0.5, 4) + shift, np.full(4, 0.1)], axis=1)
+    np.testing.assert_array_equal(intervals(control), expected)
+
+
+def test_position_and_size_of_the_pulley_do_not_matter() -> None:
+    control = np.stack([np.linspace(-1.5, 1.5, 4), np.full(4, 0.6)], axis=1)
+    moved = intervals(0.01 * control + [3.0, -4.0], Wheel(3.0, -4.0, 0.01, 50.0))
+    np.testing.assert_allclose(
+        moved, intervals(control), atol=1e-10
+    )  # cancellation in coordinates 400 times the radius

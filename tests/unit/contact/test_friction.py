@@ -1,0 +1,60 @@
+"""Both friction laws (Eq. 20, Fig. 3; Leamy and Wasfy 2002): odd, capped, continuous, with exact derivatives."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beltdyn.contact.friction import friction_force
+from beltdyn.contact.law import FORCE_SLOPE, ContactLaw
+
+SLIPS = st.floats(-5.0, 5.0)
+NORMALS = st.floats(0.0, 1e4)
+
+
+def break_away(law: ContactLaw, normal: float) -> float:
+    """Slip velocity at which the Coulomb limit is reached."""
+    return law.friction * normal / law.creep if law.friction_law == FORCE_SLOPE else law.creep
+
+
+@given(SLIPS, NORMALS)
+def test_is_odd(law: ContactLaw, slip: float, normal: float) -> None:
+    there, back = friction_force(slip, normal, law), friction_force(-slip, normal, law)
+    assert back == (-there[0], there[1], -there[2])
+
+
+@given(SLIPS, NORMALS)
+def test_opposes_slip_within_the_coulomb_limit(law: ContactLaw, slip: float, normal: float) -> None:
+    force = friction_force(slip, normal, law)[0]
+    assert force * slip <= 0.0
+    assert abs(force) <= law.friction * normal * (1 + 1e-15)
+
+
+@given(st.floats(-10.0, 10.0), st.floats(0.1, 1e4))
+def test_equals_its_clipped_line(law: ContactLaw, ratio: float, normal: float) -> None:
+    force = friction_force(ratio * break_away(law, normal), normal, law)[0]
+    assert force == pytest.approx(-law.friction * normal * np.clip(ratio, -1, 1), rel=1e-12)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_has_no_jump_at_break_away(law: ContactLaw, side: float) -> None:
+    edge = side * break_away(law, 200.0)
+    below, above = (friction_force(edge * factor, 200.0, law)[0] for factor in (1 - 1e-12, 1 + 1e-12))
+    assert above == pytest.approx(below, rel=1e-11)
+
+
+@pytest.mark.parametrize("ratio", [-3.0, -0.9, -0.1, 0.0, 0.4, 0.99, 1.01, 2.0])
+def test_derivatives(law: ContactLaw, ratio: float) -> None:
+    normal, share = 200.0, 1e-6
+    slip = ratio * break_away(law, normal)
+    _, by_slip, by_normal = friction_force(slip, normal, law)
+
+    def difference(d_slip: float, d_normal: float) -> float:
+        return (
+            friction_force(slip + d_slip, normal + d_normal, law)[0]
+            - friction_force(slip - d_slip, normal - d_normal, law)[0]
+        )
+
+    rounding = 1e-8  # 1e-16 over the step
+    assert difference(share, 0.0) / (2 * share) == pytest.approx(by_slip, rel=rounding, abs=1e-5)
+    assert difference(0.0, share) / (2 * share) == pytest.approx(by_normal, rel=rounding, abs=1e-5)

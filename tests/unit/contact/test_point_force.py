@@ -1,0 +1,76 @@
+"""Contact force at a point (Eqs. 17-22): its parts, and its tangent against central differences."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.penetration import Approach, approach
+from beltdyn.contact.point_force import point_force, point_tangent
+from beltdyn.contact.pulley_moment import pulley_moment
+
+FloatArray = NDArray[np.float64]
+Place = Callable[[Wheel, float, float], tuple[float, float]]
+CASES = {
+    "creeping": (1e-3, 0.5, (0.1, 0.02)),
+    "sliding": (1e-3, 2.0, (3.0, -2.0)),
+    "sliding back": (1e-3, -2.5, (-3.0, 4.0)),
+    "leaving fast": (1e-5, 0.3, (3.0, 1.0)),
+    "free": (-1e-3, 0.3, (3.0, 1.0)),
+}
+
+
+@pytest.fixture(params=list(CASES.values()), ids=list(CASES))
+def state(request: pytest.FixtureRequest, wheel: Wheel, place: Place) -> FloatArray:
+    """Position and velocity of a point, shape (4,)."""
+    penetration, angle, velocity = request.param
+    return np.array([*place(wheel, penetration, angle), *velocity])
+
+
+def point(state: FloatArray, wheel: Wheel) -> Approach:
+    x, y, velocity_x, velocity_y = state
+    return approach(x, y, velocity_x, velocity_y, wheel)
+
+
+def act(state: FloatArray, wheel: Wheel, law: ContactLaw) -> FloatArray:
+    """Force and moment."""
+    here = point(state, wheel)
+    force = point_force(here, wheel, law)
+    return np.array([force.x, force.y, pulley_moment(here, force.friction)])
+
+
+def difference(state: FloatArray, change: FloatArray, wheel: Wheel, law: ContactLaw) -> FloatArray:
+    return np.asarray((act(state + change, wheel, law) - act(state - change, wheel, law)) / 2)
+
+
+def test_force_is_made_of_normal_and_friction(state: FloatArray, wheel: Wheel, law: ContactLaw) -> None:
+    here = point(state, wheel)
+    force = point_force(here, wheel, law)
+    normal, tangent = (here.normal_x, here.normal_y), (-here.normal_y, here.normal_x)
+    assert force.x * normal[0] + force.y * normal[1] == pytest.approx(force.normal, abs=1e-10)
+    assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(force.friction, abs=1e-10)
+    assert abs(force.friction) <= law.friction * force.normal * (1 + 1e-15)
+
+
+@pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (0.0, 1.0), (1.0, 250.0)])
+def test_tangent(state: FloatArray, wheel: Wheel, law: ContactLaw, by_position: float, by_velocity: float) -> None:
+    here = point(state, wheel)
+    tangent = point_tangent(here, point_force(here, wheel, law), law, by_position, by_velocity)
+    columns, step = [], 1e-9 if by_position else 1e-6
+    for axis in range(2):
+        change = np.zeros(4)
+        change[axis], change[2 + axis] = step * by_position, step * by_velocity
+        columns.append(difference(state, change, wheel, law) / step)
+    given = [[tangent.xx, tangent.xy], [tangent.yx, tangent.yy], [tangent.moment_x, tangent.moment_y]]
+    scale = law.stiffness * by_position + law.damping * by_velocity
+    np.testing.assert_allclose(given, np.array(columns).T, atol=1e-6 * scale)  # rounding of 1e3 N/m over the step
+
+
+def test_tangent_with_respect_to_the_speed_of_the_pulley(state: FloatArray, wheel: Wheel, law: ContactLaw) -> None:
+    here = point(state, wheel)
+    by_speed = -point_force(here, wheel, law).by_slip * wheel.radius
+    faster, slower = (act(state, wheel._replace(speed=wheel.speed + s), law) for s in (1e-5, -1e-5))
+    expected = np.array([-here.normal_y, here.normal_x, -here.distance]) * by_speed
+    np.testing.assert_allclose((faster - slower) / 2e-5, expected, atol=1e-6 * law.creep)  # rounding over the step

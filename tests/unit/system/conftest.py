@@ -1,0 +1,84 @@
+"""Small drives in every combination of laws, random states of them in real contact, and dense matrices."""
+
+from collections.abc import Callable
+from itertools import product
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.model import Drive
+from beltdyn.solve import find_equilibrium
+from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.build import drive_system
+from beltdyn.system.state import State, laid
+
+FloatArray = NDArray[np.float64]
+
+FRICTION: dict[str, dict[str, Any]] = {
+    "force_slope": {"creep_rate_factor": 300.0},
+    "coefficient_slope": {"friction_law": "coefficient_slope", "creep_velocity": 0.05},
+}
+CONTACT = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2}
+VARIANTS = list(product(FRICTION, ["zone", "fixed"], ["shared_node", "multipliers"]))
+
+
+@pytest.fixture(scope="session")
+def make_drive(drive: Drive) -> Callable[[str, str, str], Drive]:
+    """The paper's drive with ten elements and chosen laws."""
+
+    def make(friction: str, integration: str, joint: str) -> Drive:
+        data = drive.model_dump(by_alias=True, exclude_none=True)
+        data["belt"]["elements"] = 10
+        data["contact"] = CONTACT | FRICTION[friction] | {"integration": integration}
+        data["simulation"]["joint"] = joint
+        return Drive(**data)
+
+    return make
+
+
+@pytest.fixture(scope="session", params=VARIANTS, ids="-".join)
+def small(request: pytest.FixtureRequest, make_drive: Callable[[str, str, str], Drive]) -> Drive:
+    return make_drive(*request.param)
+
+
+@pytest.fixture(scope="session")
+def system(small: Drive) -> System:
+    return drive_system(small)
+
+
+@pytest.fixture(scope="session")
+def scale(system: System) -> FloatArray:
+    """Coordinates that make a metre, shape (6 N + P,)."""
+    gradient = 1.0 / system.length[0]
+    return np.concatenate([np.tile([1.0, 1.0, *[gradient] * 4], system.nodes), 1.0 / system.pulleys.radius])
+
+
+@pytest.fixture(scope="session")
+def moving(small: Drive, system: System, scale: FloatArray) -> State:
+    """A deformed belt in contact: equilibrium, disturbed by 0.3 mm, 0.1 m/s and 10 m/s^2."""
+    rest = find_equilibrium(system, laid(system, small.path)).state.position
+    noise = np.random.default_rng(1).normal(size=(3, rest.size)) * scale
+    return State(rest + 3e-4 * noise[0], 0.1 * noise[1], 10.0 * noise[2])
+
+
+@pytest.fixture(scope="session")
+def dense() -> Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]:
+    """Matrix and right-hand side of a ring matrix, the nodes first."""
+
+    def unfold(ring: RingMatrix, closed: bool) -> tuple[FloatArray, FloatArray]:
+        nodes, size = ring.diagonal.shape[0], ring.node_side.size
+        matrix = np.zeros((size + ring.border_side.size,) * 2)
+        for k in range(nodes):
+            own = slice(NODE * k, NODE * (k + 1))
+            matrix[own, own] += ring.diagonal[k]
+            matrix[own, size:], matrix[size:, own] = ring.column[k], ring.row[k]
+            if closed or k < nodes - 1:
+                after = slice(NODE * ((k + 1) % nodes), NODE * ((k + 1) % nodes) + NODE)
+                matrix[own, after] += ring.upper[k]
+                matrix[after, own] += ring.lower[k]
+        matrix[size:, size:] = ring.corner
+        return matrix, np.concatenate([ring.node_side.ravel(), ring.border_side])
+
+    return unfold

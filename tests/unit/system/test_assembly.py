@@ -1,0 +1,105 @@
+"""The assembled tangent against central differences of the residual, in real contact and for every law and joint."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.assembly import assemble, border_size
+from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.state import State
+
+FloatArray = NDArray[np.float64]
+Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
+MULTIPLIERS = np.array([9.0, -4.0, 0.3, 0.2, -0.1, 0.5])
+STEP = 1e-8
+"""m; rounding and truncation of central differences are then both near 1e-8 of the largest entry."""
+
+
+@pytest.fixture
+def equations(system: System) -> Equations:
+    return new_equations(system)
+
+
+@pytest.fixture
+def linear(system: System, equations: Equations, dense: Dense) -> Callable[..., tuple[FloatArray, FloatArray]]:
+    """Dense tangent and residual at a state."""
+
+    def at(
+        state: State, multipliers: FloatArray, factors: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    ) -> tuple[FloatArray, FloatArray]:
+        motion = (state.position, state.velocity, state.acceleration)
+        assemble(system, 0.3, *motion, multipliers, *factors, equations.work, equations.matrix, equations.loads)
+        return dense(equations.matrix, system.closed)
+
+    return at
+
+
+@pytest.mark.parametrize(
+    "factors",
+    [(1.0, 0.0, 1e-9), (0.0, 1.0, 1e-9), (0.0, 0.0, 1.0), (1.0, 2e3, 1e6)],
+    ids=["position", "velocity", "acceleration", "step"],
+)
+def test_tangent(
+    system: System,
+    moving: State,
+    scale: FloatArray,
+    linear: Callable[..., tuple[FloatArray, FloatArray]],
+    factors: tuple[float, float, float],
+) -> None:
+    tangent = linear(moving, MULTIPLIERS, factors)[0]
+    unknowns = np.concatenate(
+        [np.arange(NODE * system.nodes), NODE * system.nodes + np.flatnonzero(system.pulleys.unknown >= 0)]
+    )
+    step = STEP / max(factors[0], factors[1] / 1e3, factors[2] / 1e6)
+
+    def residual(unknown: int, side: float) -> FloatArray:
+        change = np.zeros_like(scale)
+        change[unknown] = side * step * scale[unknown]
+        moved = State(
+            moving.position + factors[0] * change,
+            moving.velocity + factors[1] * change,
+            moving.acceleration + factors[2] * change,
+        )
+        return np.asarray(linear(moved, MULTIPLIERS)[1])
+
+    found = [(residual(k, 1.0) - residual(k, -1.0)) / (2 * step * scale[k]) for k in unknowns]
+    rounding = 1e-7 * np.max(np.abs(tangent))
+    np.testing.assert_allclose(tangent[:, : len(unknowns)], np.transpose(found), atol=rounding, rtol=0)
+
+
+def test_residual_is_linear_in_the_multipliers(
+    system: System, moving: State, linear: Callable[..., tuple[FloatArray, FloatArray]]
+) -> None:
+    tangent, with_them = linear(moving, MULTIPLIERS, (0.0, 0.0, 1.0))
+    without = linear(moving, 0.0 * MULTIPLIERS)[1]
+    columns = tangent[:, tangent.shape[1] - NODE :] if system.joint else np.zeros((tangent.shape[0], NODE))
+    np.testing.assert_allclose(with_them - without, columns @ MULTIPLIERS, atol=1e-9)  # rounding of 1e5 N
+
+
+def test_border(system: System) -> None:
+    assert border_size(system) == (7 if system.joint else 1)
+
+
+def test_belt_and_hubs_push_each_other(system: System, moving: State, equations: Equations) -> None:
+    """Elastic forces balance within the belt: what its residual lacks at rest is the force on the hubs."""
+    still = 0.0 * moving.acceleration
+    assemble(
+        system,
+        0.3,
+        moving.position,
+        moving.velocity,
+        still,
+        0.0 * MULTIPLIERS,
+        0.0,
+        0.0,
+        0.0,
+        equations.work,
+        equations.matrix,
+        equations.loads,
+    )
+    hubs = equations.loads.hub.sum(axis=0)
+    assert np.linalg.norm(hubs) > 1.0
+    np.testing.assert_allclose(equations.matrix.node_side[:, :2].sum(axis=0), hubs, rtol=1e-9, atol=1e-8)

@@ -1,0 +1,61 @@
+"""The first-order form: rates against `accelerate`, its Jacobian against central differences."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.system.arrays import NODE, POWERS, System
+from beltdyn.system.first_order import FirstOrder
+from beltdyn.system.motion import accelerate, new_equations
+from beltdyn.system.state import State
+
+FloatArray = NDArray[np.float64]
+TIME = 0.3
+
+
+@pytest.fixture(scope="module")
+def equations(system: System) -> FirstOrder:
+    return FirstOrder(system)
+
+
+def test_pack_and_unpack(equations: FirstOrder, moving: State) -> None:
+    position, velocity, work = equations.unpack(np.stack([equations.pack(moving)] * 3))
+    np.testing.assert_array_equal(position, [moving.position] * 3)
+    np.testing.assert_array_equal(velocity, [moving.velocity] * 3)
+    np.testing.assert_array_equal(work, np.zeros((3, len(POWERS))))
+
+
+def test_rates_are_the_accelerations_of_the_system(system: System, equations: FirstOrder, moving: State) -> None:
+    """Inverse mass matrix (Eq. 27) or brackets of Eq. 26 against the solution of Eq. 25 by the ring solver."""
+    work = new_equations(system)
+    velocity, acceleration = moving.velocity.copy(), np.empty_like(moving.velocity)
+    accelerate(system, TIME, moving.position, velocity, acceleration, np.empty(NODE), work)
+    rates = equations.unpack(equations.rates(TIME, equations.pack(moving)))
+    np.testing.assert_array_equal(rates[0], velocity)
+    np.testing.assert_allclose(rates[1], acceleration, atol=1e-9 * np.max(np.abs(acceleration)))  # rounding
+    np.testing.assert_allclose(rates[2], work.loads.power, rtol=1e-9)
+
+
+def test_jacobian(system: System, equations: FirstOrder, moving: State, scale: FloatArray) -> None:
+    y, size = equations.pack(moving), 2 * moving.position.size
+    jacobian = equations.jacobian(TIME, y)
+    steps = np.concatenate([1e-8 * scale, 1e-5 * scale])
+    columns = []
+    for k in range(size):
+        change = np.zeros_like(y)
+        change[k] = steps[k]
+        columns.append((equations.rates(TIME, y + change) - equations.rates(TIME, y - change))[:size] / (2 * steps[k]))
+    by_metre, found = steps / np.repeat([1e-8, 1e-5], size // 2), np.transpose(columns)
+    for part in (slice(0, size // 2), slice(size // 2, size)):
+        expected, given = found[:, part] * by_metre[part], jacobian[:size, part] * by_metre[part]
+        np.testing.assert_allclose(given, expected, atol=1e-6 * np.max(np.abs(expected)))  # rounding of differences
+
+
+def test_tolerances_are_lengths(system: System, equations: FirstOrder) -> None:
+    tolerances = equations.tolerances(1e-3, 0.1)
+    position, velocity, work = equations.unpack(tolerances)
+    element, radius = system.length[0], system.pulleys.radius
+    np.testing.assert_allclose(velocity[:6], [1e-3] * 2 + [1e-3 / element] * 4)
+    np.testing.assert_allclose(velocity[-2:] * radius, 1e-3)
+    np.testing.assert_allclose(position, 0.1 * velocity)
+    assert np.all(work > 1e5)

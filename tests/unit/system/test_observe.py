@@ -1,0 +1,112 @@
+"""Observed quantities of states whose tension, wrap, speed and energy are known by hand or from sums over the belt."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.model import Drive, Path, install
+from beltdyn.solve import find_equilibrium
+from beltdyn.system.arrays import NODE, System
+from beltdyn.system.build import drive_system
+from beltdyn.system.observe import Observations, observe
+from beltdyn.system.state import State, laid
+
+FloatArray = NDArray[np.float64]
+SPEED = 3.0
+
+
+def see(system: System, position: FloatArray, velocity: FloatArray) -> Observations:
+    return observe(system, np.zeros(1), position[None], velocity[None])
+
+
+@pytest.fixture(scope="module")
+def fine(drive: Drive) -> Drive:
+    """The paper's drive with so many elements that its arcs are round."""
+    return Drive(**drive.model_dump(by_alias=True) | {"belt": drive.belt.model_dump() | {"elements": 80}})
+
+
+@pytest.fixture(scope="module", params=[0.0, SPEED], ids=["at rest", "shifting"])
+def seen(request: pytest.FixtureRequest, fine: Drive) -> tuple[float, Observations]:
+    """The belt in equilibrium on its pulleys, with a velocity of the whole belt to the right."""
+    system = drive_system(fine)
+    state = find_equilibrium(system, laid(system, fine.path)).state
+    velocity = np.zeros_like(state.velocity)
+    velocity[: NODE * system.nodes : NODE] = request.param
+    return request.param, see(system, state.position, velocity)
+
+
+def test_tension(fine: Drive, seen: tuple[float, Observations]) -> None:
+    expected = install(fine).tension
+    estimate = 5e-3  # bending stiffness and round corners, which the estimate leaves out
+    np.testing.assert_allclose(seen[1].span_tension[0], expected, rtol=estimate)
+    np.testing.assert_allclose(seen[1].belt_tension[0], expected, rtol=0.05)  # spread of a cubic belt over its arcs
+
+
+def test_hub_loads_at_rest_are_twice_the_tension(seen: tuple[float, Observations]) -> None:
+    speed, here = seen
+    twice = 2.0 * here.span_tension[0]
+    expected = np.stack([twice * [1.0, -1.0], [0.0, 0.0]], axis=1)
+    if speed == 0.0:
+        np.testing.assert_allclose(here.hub_force[0], expected, atol=2e-3 * twice[0])  # shear of bent spans
+        np.testing.assert_allclose(here.pulley_torque, 0.0, atol=1e-9)
+
+
+def test_wrap_angles(fine: Drive, seen: tuple[float, Observations]) -> None:
+    np.testing.assert_allclose(
+        seen[1].wrap_angle[0], fine.path.wrap_angles, rtol=0.03
+    )  # bending lifts the ends of the arcs
+
+
+def test_belt_speed_is_measured_along_the_belt(seen: tuple[float, Observations]) -> None:
+    np.testing.assert_allclose(
+        seen[1].belt_speed[0], [seen[0], -seen[0]], rtol=1e-4
+    )  # the spans are straight to 1e-2 rad
+
+
+def test_kinetic_energy_of_a_translation(fine: Drive, seen: tuple[float, Observations]) -> None:
+    mass = fine.belt.mass_per_length * fine.belt.length
+    np.testing.assert_allclose(seen[1].kinetic_energy, 0.5 * mass * seen[0] ** 2, rtol=1e-12)
+
+
+def test_points_know_their_pulley(fine: Drive, seen: tuple[float, Observations]) -> None:
+    here = seen[1]
+    position, touched = here.contact_position[0], here.contact_pulley[0]
+    for number, pulley in enumerate(fine.pulleys):
+        inside = np.linalg.norm(position - pulley.center, axis=1) <= pulley.radius
+        np.testing.assert_array_equal(touched == number, inside)
+    free = touched < 0
+    assert not np.any(here.normal_force[0, free])
+    assert not np.any(here.friction_force[0, free])
+    assert not np.any(here.slip_velocity[0, free])
+
+
+def test_spinning_pulleys_have_kinetic_energy(system: System, moving: State) -> None:
+    still, turning = 0.0 * moving.velocity, 0.0 * moving.velocity
+    turning[-1] = 5.0
+    energies = [float(see(system, moving.position, velocity).kinetic_energy[0]) for velocity in (still, turning)]
+    assert energies == pytest.approx([0.0, 0.5 * system.pulleys.inertia[1] * 25.0])
+
+
+@pytest.fixture(scope="module")
+def fixed_points(make_drive: Callable[[str, str, str], Drive]) -> System:
+    return drive_system(make_drive("force_slope", "fixed", "shared_node"))
+
+
+def test_forces_at_points_add_up_to_hub_forces_and_torques(fixed_points: System) -> None:
+    """With fixed points the observed distributions are the very integrands of Eqs. 23 and 24."""
+    system = fixed_points
+    sunk = laid(system, Path(system.pulleys.center, system.pulleys.radius - 4e-4)).position
+    seen = see(system, sunk, 0.5 * np.random.default_rng(2).normal(size=sunk.size))
+    share = np.outer(system.length, system.contact.weights).ravel()
+    assert np.any(seen.friction_force)
+    for number, center in enumerate(system.pulleys.center):
+        here = seen.contact_pulley[0] == number
+        arm = seen.contact_position[0, here] - center
+        normal = arm / np.linalg.norm(arm, axis=1)[:, None]
+        tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+        force = seen.normal_force[0, here, None] * normal + seen.friction_force[0, here, None] * tangent
+        torque = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+        np.testing.assert_allclose(seen.hub_force[0, number], -share[here] @ force, rtol=1e-10)
+        assert seen.pulley_torque[0, number] == pytest.approx(-share[here] @ torque, rel=1e-10)

@@ -1,0 +1,83 @@
+"""The O(n) solver against LAPACK's dense one (numpy.linalg.solve)."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from beltdyn.system.arrays import NODE, RingMatrix
+from beltdyn.system.ring_matrix import clear, ring_matrix, solve_ring
+
+FloatArray = NDArray[np.float64]
+Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
+PARTS = ("diagonal", "upper", "lower", "column", "row", "corner", "node_side", "border_side")
+
+
+def random_ring(nodes: int, border: int, seed: int) -> RingMatrix:
+    """Random blocks with diagonals heavy enough for a condition number below 1e3."""
+    ring, random = ring_matrix(nodes, border), np.random.default_rng(seed)
+    for name in PARTS:
+        part = getattr(ring, name)
+        part[:] = random.normal(size=part.shape)
+    ring.diagonal[:] += 20.0 * np.eye(NODE)
+    ring.corner[:] += 20.0 * np.eye(border)
+    return ring
+
+
+def solution(ring: RingMatrix, closed: bool) -> FloatArray:
+    node_part, border_part = np.empty_like(ring.node_side), np.empty_like(ring.border_side)
+    assert solve_ring(ring, closed, node_part, border_part)
+    return np.concatenate([node_part.ravel(), border_part])
+
+
+@given(st.integers(3, 12), st.integers(0, 10), st.booleans(), st.integers(0, 2**32 - 1))
+def test_solves_what_lapack_solves(dense: Dense, nodes: int, border: int, closed: bool, seed: int) -> None:
+    ring = random_ring(nodes, border, seed)
+    expected = np.linalg.solve(*dense(ring, closed))
+    np.testing.assert_allclose(solution(ring, closed), expected, atol=1e-12)  # rounding times the condition number
+
+
+@pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
+def test_long_rings(dense: Dense, closed: bool) -> None:
+    ring = random_ring(300, 2, 0)
+    np.testing.assert_allclose(solution(ring, closed), np.linalg.solve(*dense(ring, closed)), atol=1e-12)
+
+
+def test_keeps_the_matrix() -> None:
+    ring, same = random_ring(5, 3, 4), random_ring(5, 3, 4)
+    solution(ring, True)
+    for name in PARTS:
+        np.testing.assert_array_equal(getattr(ring, name), getattr(same, name))
+
+
+def test_pivots_within_blocks(dense: Dense) -> None:
+    ring = random_ring(4, 1, 5)
+    ring.diagonal[:] = ring.diagonal[:, ::-1]
+    np.testing.assert_allclose(solution(ring, True), np.linalg.solve(*dense(ring, True)), atol=1e-11)
+
+
+@pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
+@pytest.mark.parametrize("place", ["node", "last node", "border"])
+def test_singular_matrix_is_refused(closed: bool, place: str) -> None:
+    ring = random_ring(4, 2, 6)
+    node = {"node": 1, "last node": 3}.get(place)
+    if node is None:
+        ring.corner[0], ring.row[:, 0] = 0.0, 0.0
+    else:
+        ring.diagonal[node, 2] = ring.upper[node, 2] = ring.lower[node - 1, 2] = ring.column[node, 2] = 0.0
+    assert not solve_ring(ring, closed, np.empty((4, NODE)), np.empty(2))
+
+
+def test_nan_is_refused() -> None:
+    ring = random_ring(4, 0, 7)
+    ring.diagonal[0, 0, 0] = np.nan
+    assert not solve_ring(ring, True, np.empty((4, NODE)), np.empty(0))
+
+
+def test_clear() -> None:
+    ring = random_ring(3, 2, 8)
+    clear(ring)
+    assert not any(np.any(getattr(ring, name)) for name in PARTS)

@@ -1,0 +1,85 @@
+"""Small drives on which the verification tests run, and how to change them."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.model import Drive
+from beltdyn.solve.generalized_alpha import REACHED, advance
+from beltdyn.solve.march import REJECTED, STEPS, Settings, empty_outputs, new_march, restart
+from beltdyn.system.arrays import System
+from beltdyn.system.motion import new_equations
+
+FloatArray = NDArray[np.float64]
+Change = Callable[..., Drive]
+
+
+@pytest.fixture(scope="session")
+def change() -> Change:
+    """Make a drive from another one, with changed keys in its groups (None removes one) or with other pulleys."""
+
+    def changed(drive: Drive, pulley: Any = None, **groups: Mapping[str, Any]) -> Drive:
+        data = drive.model_dump(by_alias=True, exclude_none=True)
+        for name, group in groups.items():
+            data[name] = {key: value for key, value in (data[name] | dict(group)).items() if value is not None}
+        return Drive(**data | ({"pulley": pulley} if pulley else {}))
+
+    return changed
+
+
+@pytest.fixture(scope="session")
+def small(drive: Drive, change: Change) -> Drive:
+    """A quick two-pulley drive of ten elements whose nodes fall on themselves when it is mirrored or renumbered.
+
+    The belt of the paper, with the driver brought to speed in 20 ms against a light loaded pulley, over 30 ms.
+    """
+    radius = drive.pulleys[0].radius
+    reach = 0.75 * np.pi * radius
+    return change(
+        drive,
+        pulley=[
+            {
+                "name": "driver",
+                "center": (-reach, 0.0),
+                "radius": radius,
+                "speed": {"kind": "cosine_ramp", "start": 0.0, "end": 0.02, "value": 12.0},
+            },
+            {
+                "name": "driven",
+                "center": (reach, 0.0),
+                "radius": radius,
+                "inertia": 1e-3,
+                "torque": {"kind": "constant", "value": -0.5},
+            },
+        ],
+        belt={"elements": 10},
+        contact={"creep_rate_factor": 1e3},
+        simulation={"duration": 0.03, "output_interval": 1e-3, "start": "equilibrium"},
+    )
+
+
+@pytest.fixture(scope="session")
+def fixed_steps() -> Callable[[System, FloatArray, float, int, FloatArray], tuple[FloatArray, FloatArray]]:
+    """Integrate from rest with equal steps: the error control allows anything, Newton's method 1e-13 m.
+
+    Outputs must be ends of steps; gives position and velocity, shape (k, 6 N + P).
+    """
+
+    def integrate(
+        system: System, start: FloatArray, radius: float, steps: int, times: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        end, anything, count = float(times[-1]), 1e30, times.size
+        step = end / steps
+        settings = Settings(radius, anything, 1e-13 / (anything * step), step, np.array([1.0, 1, 0.1, 0.1, 0.1, 0.1]))
+        march, equations = new_march(0.0, step, start, np.zeros_like(start)), new_equations(system)
+        outputs = empty_outputs(times, start.size)
+        restart(system, march, equations)
+        assert advance(system, settings, march, equations, end, 10 * steps, outputs) == (REACHED, count)
+        assert abs(march.counts[STEPS] - steps) <= 1  # rounding of the clock
+        assert march.counts[REJECTED] == 0
+        return outputs.position[:, 1], outputs.velocity[:, 1]
+
+    return integrate
