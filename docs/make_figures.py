@@ -33,7 +33,7 @@ def draw(run: bd.Run, path: Path) -> None:
         The PNG to write.
     """
     figure = new_figure((8.0, 6.8))
-    panels = figure.subplot_mosaic([["drive", "drive"], ["speeds", "contact"]], height_ratios=(8, 6))
+    panels = figure.subplot_mosaic([["drive", "drive"], ["speeds", "contact"]], height_ratios=(3, 2))
     bd.plot.configuration(run, ax=panels["drive"])
     bd.plot.speeds(run, ax=panels["speeds"])
     bd.plot.contact_forces(run, "driver", ax=panels["contact"])
