@@ -76,8 +76,8 @@ def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, i
         right = (piece + 1.0) / _PIECES
         value_right, slope_right = _value(overlap, right), _slope(overlap, right)
         turn, value_turn = right, value_right
-        if (value_left >= 0.0) == (value_right >= 0.0) and slope_left * slope_right < 0.0:
-            turn = _slope_root(overlap, left, right, slope_left > 0.0)
+        if (value_left >= 0.0) == (value_right >= 0.0) and slope_left * slope_right <= 0.0:
+            turn = _slope_root(overlap, left, right, slope_left > slope_right)
             value_turn = _value(overlap, turn)
         for end, value_end in ((turn, value_turn), (right, value_right)):
             if (value_end >= 0.0) != inside:

@@ -20,6 +20,7 @@ from beltdyn.solve.march import (
     restart,
 )
 from beltdyn.solve.trajectory import Chunk, Task
+from beltdyn.system.arrays import FloatArray
 from beltdyn.system.motion import new_equations
 
 _OUTPUTS = 64
@@ -65,7 +66,7 @@ class GeneralizedAlpha:
         for stop in task.stops:
             restart(system, march, equations)
             while march.clock[0] < stop:
-                outputs = empty_outputs(task.times[written : written + _OUTPUTS], start.position.size)
+                outputs = _room(task.times, written, march)
                 status, filled = advance(system, settings, march, equations, stop, budget, outputs)
                 _count(task, march)
                 yield _chunk(outputs, filled, march)
@@ -74,9 +75,16 @@ class GeneralizedAlpha:
                     raise ConvergenceError(_message(task, march, self.rtol))
 
 
+def _room(times: FloatArray, written: int, march: March) -> Outputs:
+    """Room for the next outputs, at least for all those that the next step can reach."""
+    end = max(written + _OUTPUTS, int(np.searchsorted(times, march.clock.sum(), side="right")) + 1)
+    horizon = float(times[end]) if end < len(times) else np.inf
+    return empty_outputs(times[written:end], march.position.size)._replace(horizon=horizon)
+
+
 def _chunk(outputs: Outputs, filled: int, march: March) -> Chunk:
     """The filled part of a buffer."""
-    arrays = {name: array[:filled] for name, array in outputs._asdict().items()}
+    arrays = {name: array[:filled] for name, array in outputs._asdict().items() if name != "horizon"}
     return Chunk(**arrays, reached=float(march.clock[0]))
 
 

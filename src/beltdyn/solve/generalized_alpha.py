@@ -40,6 +40,8 @@ _GROWTH: Final = 2.0
 _SHRINK: Final = 0.2
 _SAFETY: Final = 0.9
 _SMALLEST_STEP: Final = 1e-11
+_NEARLY: Final = 1.000001
+"""A step may exceed the wanted one by rounding, so that it ends on an instant."""
 
 
 class Method(NamedTuple):
@@ -105,6 +107,8 @@ def advance(
         if clock[0] >= stop or (filled == outputs.time.size and filled > 0):
             break
         step = _next_step(clock, stop, outputs, filled)
+        if clock[0] + step + _SMALLEST_STEP >= outputs.horizon:
+            break
         growth = _newton(system, settings, method, march, step, equations)
         if growth == 0.0:
             march.counts[FAILED] += 1
@@ -135,7 +139,7 @@ def _next_step(clock: FloatArray, stop: float, outputs: Outputs, filled: int) ->
             if k + 1 == outputs.time.size or outputs.time[k + 1] - clock[0] > wanted:
                 break
     left = end - clock[0]
-    if left <= wanted:
+    if left <= wanted * _NEARLY:
         return left
     return 0.5 * left if left < 2.0 * wanted else wanted
 

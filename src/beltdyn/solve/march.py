@@ -73,6 +73,8 @@ class Outputs(NamedTuple):
     """Alike."""
     work: FloatArray
     """Works at the instant, shape (k, 4)."""
+    horizon: float = np.inf
+    """First output instant for which there is no room, s: no step may reach it."""
 
 
 def empty_outputs(times: FloatArray, size: int) -> Outputs:

@@ -117,7 +117,10 @@ class _SciPy:
         self.time = start
 
     def step(self) -> None:
-        message = self._solver.step()
+        try:
+            message = self._solver.step()
+        except ValueError as error:  # infinite forces
+            raise _SolverError(str(error)) from error
         if self._solver.status == "failed":
             raise _SolverError(message)
         self.time = float(self._solver.t)

@@ -13,7 +13,7 @@ import numpy as np
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.system.arrays import NODE, FloatArray, System
-from beltdyn.system.motion import Equations, linearise, new_equations, subtract_solution
+from beltdyn.system.motion import Equations, linearise, new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import State
 
@@ -111,6 +111,7 @@ class _Search:
         still = np.full_like(system.pulleys.unknown, -1)
         self._system = system._replace(pulleys=system.pulleys._replace(unknown=still))
         self._position, self._velocity = start.position.copy(), start.velocity
+        self._multipliers = np.zeros(NODE)
         self._here: Equations = new_equations(self._system)
         self._ahead: Equations = new_equations(self._system)
         self._length = float(np.sum(system.length))
@@ -132,6 +133,7 @@ class _Search:
     def step(self, length: float) -> None:
         """Take the step, or a part of it."""
         subtract_solution(self._system, self._here, length, self._position)
+        subtract_multipliers(self._system, self._here, length, self._multipliers)
 
     def step_naturally(self) -> bool:
         """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""
@@ -151,9 +153,11 @@ class _Search:
 
     def _solve(self, equations: Equations, shift: float) -> None:
         """Linearise and solve; a singular stiffness leaves nan."""
-        at_rest, none = np.zeros_like(self._position), np.zeros(NODE)
+        at_rest = np.zeros_like(self._position)
         shift /= self._time_scale
-        solved = linearise(self._system, 0.0, self._position, self._velocity, at_rest, none, 1.0, 0.0, shift, equations)
+        solved = linearise(
+            self._system, 0.0, self._position, self._velocity, at_rest, self._multipliers, 1.0, 0.0, shift, equations
+        )
         if not solved:
             equations.node_part[:] = np.nan
 

@@ -297,14 +297,15 @@ def _pulleys(
 def _joint(
     system: System, acceleration: FloatArray, multipliers: FloatArray, by_acceleration: float, matrix: RingMatrix
 ) -> None:
-    """Tie the last node to the first (Eq. 25): forces +-lambda on them, and equal accelerations."""
+    """Tie the last node to the first (Eq. 25): forces +-lambda on them, equal accelerations; at rest, equal steps."""
     last = system.nodes - 1
     first_unknown = matrix.corner.shape[0] - NODE
+    tie = by_acceleration if by_acceleration != 0.0 else 1.0
     for c in range(NODE):
         matrix.node_side[0, c] += multipliers[c]
         matrix.node_side[last, c] -= multipliers[c]
         matrix.border_side[first_unknown + c] = acceleration[c] - acceleration[NODE * last + c]
         matrix.column[0, c, first_unknown + c] = 1.0
         matrix.column[last, c, first_unknown + c] = -1.0
-        matrix.row[0, first_unknown + c, c] = by_acceleration
-        matrix.row[last, first_unknown + c, c] = -by_acceleration
+        matrix.row[0, first_unknown + c, c] = tie
+        matrix.row[last, first_unknown + c, c] = -tie
