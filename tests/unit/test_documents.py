@@ -1,17 +1,36 @@
 """What the documents say of drive files is true."""
 
 import re
+import tomllib
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
+import matplotlib.pyplot as plt
 import pytest
+import tomli_w
 
 from beltdyn.model import Belt, Contact, Drive, Pulley, Simulation, loads
 
 ROOT = Path(__file__).parents[2]
+TUTORIAL = ROOT / "docs" / "tutorial.md"
+
+
+def blocks(file: Path, language: str) -> list[str]:
+    """Give the code blocks of a document that are in a language."""
+    return re.findall(rf"```{language}\n(.*?)```", file.read_text(encoding="utf-8"), re.DOTALL)
+
+
+@pytest.fixture
+def new_drive() -> str:
+    """The file that `beltdyn new` writes, cut short enough to be simulated in a test."""
+    text = files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
+    assert text.count("duration = 1.0") == text.count("elements = 60") == 1
+    return text.replace("duration = 1.0", "duration = 0.08").replace("elements = 60", "elements = 20")
 
 
 def test_the_readmes_drive_is_the_papers(drive: Drive) -> None:
-    (example,) = re.findall(r"```toml\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    (example,) = blocks(ROOT / "README.md", "toml")
     mine = loads(example)
     without_load = drive.pulleys[1].replace(torque=None)
     assert mine == drive.replace(pulley=[drive.pulleys[0], without_load])
@@ -23,3 +42,34 @@ def test_every_key_is_documented(part: type[Belt | Pulley | Contact | Simulation
     for key, field in part.model_fields.items():
         description = re.escape(str(field.description)[1:])
         assert re.search(rf"\| `{key}` \| .{description} \|", text)
+
+
+@pytest.mark.parametrize("document", ["README.md", "docs/tutorial.md"])
+def test_python_blocks_run_one_after_another(
+    document: str, new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("drive.toml").write_text(new_drive, encoding="utf-8")
+    codes, names = blocks(ROOT / document, "python"), dict[str, Any]()
+    assert codes
+    plt.switch_backend("agg")
+    try:
+        for code in codes:
+            exec(compile(code, document, "exec"), names)
+    finally:
+        plt.close("all")
+
+
+def test_the_tutorials_pulleys_fit_the_new_drive(new_drive: str, tmp_path: Path) -> None:
+    (table,) = blocks(TUTORIAL, "text")
+    (tmp_path / "speed.csv").write_text(table, encoding="utf-8")
+    changes = blocks(TUTORIAL, "toml")
+    assert len(changes) == 2
+    for change in changes:
+        data = tomllib.loads(new_drive)
+        (pulley,) = tomllib.loads(change)["pulley"]
+        others = [other for other in data["pulley"] if other["name"] != pulley["name"]]
+        assert len(others) == 1
+        pulleys = sorted([pulley, *others], key=lambda item: str(item["name"]), reverse=True)
+        changed = loads(tomli_w.dumps(data | {"pulley": pulleys}), base=tmp_path)
+        assert changed != loads(new_drive)

@@ -70,7 +70,7 @@ def contact_workspace() -> ContactWorkspace:
         np.zeros(8),
         np.zeros(8),
         np.zeros((MAX_INTERVALS, 2)),
-        np.zeros(7),
+        np.zeros((3, 7)),
         np.zeros((2, 9)),
     )
 

@@ -56,8 +56,8 @@ def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, i
         Control points, m.
     wheel
         The pulley.
-    overlap : ndarray, shape (7,)
-        Scratch for the polynomial R^2 - |r - O|^2.
+    overlap : ndarray, shape (3, 7)
+        Scratch for the polynomial R^2 - |r - O|^2 and its derivatives.
     intervals : ndarray, shape (MAX_INTERVALS, 2)
         The first rows are overwritten by the ends of the intervals, in the element coordinate 0 to 1.
 
@@ -68,20 +68,20 @@ def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, i
     """
     _fill_overlap(control, wheel, overlap)
     count = 0
-    left, value_left = 0.0, _value(overlap, 0.0)
-    slope_left = _slope(overlap, 0.0)
+    left, value_left = 0.0, _value(overlap, 0, 0.0)
+    slope_left = _value(overlap, 1, 0.0)
     inside = value_left >= 0.0
     start = 0.0
     for piece in range(_PIECES):
         right = (piece + 1.0) / _PIECES
-        value_right, slope_right = _value(overlap, right), _slope(overlap, right)
+        value_right, slope_right = _value(overlap, 0, right), _value(overlap, 1, right)
         turn, value_turn = right, value_right
         if (value_left >= 0.0) == (value_right >= 0.0) and slope_left * slope_right <= 0.0:
-            turn = _slope_root(overlap, left, right, slope_left > slope_right)
-            value_turn = _value(overlap, turn)
+            turn = _root(overlap, 1, left, right, slope_left > slope_right)
+            value_turn = _value(overlap, 0, turn)
         for end, value_end in ((turn, value_turn), (right, value_right)):
             if (value_end >= 0.0) != inside:
-                root = _value_root(overlap, left, end, inside)
+                root = _root(overlap, 0, left, end, inside)
                 if inside and count < MAX_INTERVALS:
                     intervals[count, 0], intervals[count, 1] = start, root
                     count += 1
@@ -96,9 +96,9 @@ def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, i
 
 @kernel
 def _fill_overlap(control: FloatArray, wheel: Wheel, overlap: FloatArray) -> None:
-    """Coefficients of R^2 - |r(xi) - O|^2 in powers of xi."""
+    """Coefficients of R^2 - |r(xi) - O|^2 and its first two derivatives, in powers of xi."""
     overlap[:] = 0.0
-    overlap[0] = wheel.radius * wheel.radius
+    overlap[0, 0] = wheel.radius * wheel.radius
     for axis in range(2):
         center = wheel.center_x if axis == 0 else wheel.center_y
         p0, p1 = control[0, axis] - center, control[1, axis] - center
@@ -106,68 +106,36 @@ def _fill_overlap(control: FloatArray, wheel: Wheel, overlap: FloatArray) -> Non
         cubic = (p0, 3.0 * (p1 - p0), 3.0 * (p2 - 2.0 * p1 + p0), p3 - 3.0 * (p2 - p1) - p0)
         for i in range(4):
             for j in range(4):
-                overlap[i + j] -= cubic[i] * cubic[j]
+                overlap[0, i + j] -= cubic[i] * cubic[j]
+    for order in range(2):
+        for power in range(6):
+            overlap[order + 1, power] = (power + 1.0) * overlap[order, power + 1]
 
 
 @kernel
-def _value(overlap: FloatArray, xi: float) -> float:
-    """The polynomial at xi."""
-    total = overlap[6]
+def _value(overlap: FloatArray, order: int, xi: float) -> float:
+    """The polynomial, or its derivative of the given order, at xi."""
+    total = overlap[order, 6]
     for power in range(5, -1, -1):
-        total = total * xi + overlap[power]
+        total = total * xi + overlap[order, power]
     return total
 
 
 @kernel
-def _slope(overlap: FloatArray, xi: float) -> float:
-    """Its derivative at xi."""
-    total = 6.0 * overlap[6]
-    for power in range(5, 0, -1):
-        total = total * xi + power * overlap[power]
-    return total
+def _root(overlap: FloatArray, order: int, left: float, right: float, falling: bool) -> float:
+    """The root of the polynomial, or of its derivative, between two points at which it has opposite signs.
 
-
-@kernel
-def _slope_rate(overlap: FloatArray, xi: float) -> float:
-    """Its second derivative at xi."""
-    total = 30.0 * overlap[6]
-    for power in range(5, 1, -1):
-        total = total * xi + power * (power - 1) * overlap[power]
-    return total
-
-
-@kernel
-def _value_root(overlap: FloatArray, left: float, right: float, falling: bool) -> float:
-    """The root between two points of opposite sign; Newton, and halving where Newton would leave the bracket."""
+    Newton's method, and halving where that would leave the bracket.
+    """
     xi = 0.5 * (left + right)
     for _ in range(_STEPS):
-        value = _value(overlap, xi)
+        value = _value(overlap, order, xi)
         if (value >= 0.0) == falling:
             left = xi
         else:
             right = xi
-        slope = _slope(overlap, xi)
+        slope = _value(overlap, order + 1, xi)
         trial = xi - value / slope if slope != 0.0 else left
-        if not left < trial < right:
-            trial = 0.5 * (left + right)
-        if abs(trial - xi) < _RESOLUTION:
-            return trial
-        xi = trial
-    return xi
-
-
-@kernel
-def _slope_root(overlap: FloatArray, left: float, right: float, falling: bool) -> float:
-    """The extremum between two points whose slopes have opposite sign, found as `_value_root` finds a root."""
-    xi = 0.5 * (left + right)
-    for _ in range(_STEPS):
-        slope = _slope(overlap, xi)
-        if (slope >= 0.0) == falling:
-            left = xi
-        else:
-            right = xi
-        rate = _slope_rate(overlap, xi)
-        trial = xi - slope / rate if rate != 0.0 else left
         if not left < trial < right:
             trial = 0.5 * (left + right)
         if abs(trial - xi) < _RESOLUTION:

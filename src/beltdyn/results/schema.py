@@ -9,9 +9,6 @@ COORDINATE_NAMES = ("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy")
 AXIS_NAMES = ("x", "y")
 """Names of the two directions of the plane."""
 
-NO_PULLEY = -1
-"""Value of ``contact_pulley`` at a point that touches no pulley."""
-
 
 @dataclass(frozen=True, slots=True)
 class Variable:

@@ -123,11 +123,19 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
         control=np.zeros((4, 2)),
         control_velocity=np.zeros((4, 2)),
         intervals=np.zeros((MAX_INTERVALS, 2)),
-        overlap=np.zeros(7),
+        overlap=np.zeros((3, 7)),
         acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
         multipliers=np.zeros(NODE),
     )
-    fill_observations(system, time, position, velocity, new_equations(system), samples, result)
+    fill_observations(
+        system,
+        np.ascontiguousarray(time),
+        np.ascontiguousarray(position),
+        np.ascontiguousarray(velocity),
+        new_equations(system),
+        samples,
+        result,
+    )
     return result
 
 

@@ -26,7 +26,7 @@ def overlap(control: FloatArray) -> FloatArray:
 
 def intervals(control: FloatArray, wheel: Wheel = UNIT) -> FloatArray:
     found = np.zeros((MAX_INTERVALS, 2))
-    return found[: touching_intervals(control, wheel, np.zeros(7), found)]
+    return found[: touching_intervals(control, wheel, np.zeros((3, 7)), found)]
 
 
 @given(st.data())
