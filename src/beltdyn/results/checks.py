@@ -81,5 +81,5 @@ def _coarse_elements(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
                 f"contact forces on {pulley.name} are not resolved: "
                 f"an element spans {math.degrees(angle):.0f} degrees and "
                 f"misses the circle by {miss:.1e} m, against a penetration of {penetration:.1e} m. "
-                f"Speeds and tensions converge earlier; for contact forces set belt.elements to {needed} or more."
+                f"Speeds converge earlier; for contact forces and tensions set belt.elements to {needed} or more."
             )

@@ -92,7 +92,7 @@ class Summary:
     compile_time : float
         Time taken by compilation, s; NaN when the run's end was not recorded.
     real_time_factor : float
-        Simulated time over wall time; NaN when the run's end was not recorded.
+        Time taken over simulated time; NaN when the run's end was not recorded.
     warnings : tuple of str
         What a reader of the results has to know.
     """

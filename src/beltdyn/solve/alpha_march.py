@@ -26,7 +26,7 @@ from beltdyn.system.motion import new_equations
 _OUTPUTS = 64
 _STEPS_AT_ONCE = 8000
 _FIRST_STEP = 1e-6
-_NEWTON_FRACTION = 0.05
+_NEWTON_FRACTION = 0.01
 
 
 @dataclass(frozen=True)
