@@ -61,10 +61,7 @@ class Recording:
         self._begun = self._compiled = self._last_write = time.perf_counter()
 
     def __enter__(self) -> Self:
-        """Compile the kernels, so that the time taken is that of the simulation."""
-        self.tell(0.0, "compiling")
-        compile_kernels(self._system, laid(self._system, self._drive.path))
-        self._compiled = time.perf_counter()
+        """Begin; see the class."""
         return self
 
     def __exit__(
@@ -76,6 +73,12 @@ class Recording:
         status: Status = "interrupted" if interrupted else "completed" if kind is None else "failed"
         self._recorder.close(status, self._attributes())
         return interrupted
+
+    def prepare(self) -> None:
+        """Compile the kernels, so that the time taken is that of the simulation."""
+        self.tell(0.0, "compiling")
+        compile_kernels(self._system, laid(self._system, self._drive.path))
+        self._compiled = time.perf_counter()
 
     def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
         """Take states; they are recorded a few at a time."""

@@ -40,6 +40,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
     """
     system, settings = drive_system(drive), drive.simulation
     with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress) as recording:
+        recording.prepare()
         state = laid(system, drive.path)
         if settings.start == "equilibrium":
             recording.tell(0.0, "equilibrium")
@@ -72,6 +73,7 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
     """
     system = drive_system(drive)
     with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:
+        recording.prepare()
         recording.tell(0.0, "equilibrium")
         state = find_equilibrium(system, laid(system, drive.path)).state
         recording.take(Chunk.start(0.0, state), "equilibrium")

@@ -53,10 +53,10 @@ def find_equilibrium(
     method: Literal["globalised", "newton"] = "globalised",
     max_iterations: int = 500,
 ) -> Equilibrium:
-    """Find the static equilibrium that a belt falls into from a start.
+    """Find a static equilibrium of a belt from a start.
 
     Pulleys do not move: the belt slides on them without friction, unless `start` gives them speeds, which then rub
-    the belt at rest.
+    the belt at rest.  Forces are in balance there; whether the balance is stable is not looked at.
 
     Parameters
     ----------
