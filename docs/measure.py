@@ -66,9 +66,10 @@ def changed(
 
 
 def case_1(elements: int = 20, *, contact: Changes | None = None, **simulation: Any) -> bd.Drive:
-    """The two-pulley drive of Table 1 and Eq. 28, contact on the zone, from equilibrium."""
+    """The two-pulley drive of Table 1 and Eq. 28, contact by default, from equilibrium."""
     settings = {"start": "equilibrium"} | simulation
-    return changed(two_pulley(elements), contact={"integration": "zone"} | dict(contact or {}), **settings)
+    default = {"integration": "zone", "normal_law": "no_pull"}
+    return changed(two_pulley(elements), contact=default | dict(contact or {}), **settings)
 
 
 def case_2(*, contact: Changes | None = None, **simulation: Any) -> bd.Drive:
@@ -258,6 +259,31 @@ def torque_profile() -> Iterator[Row]:
     yield "difference of the driven speed", f"{rms(error):.2f} rad/s rms, {abs(error).max():.2f} largest"
     yield "in the last 0.2 s", f"{rms(error[800:]):.1e} rad/s rms"
     yield "lowest driven speed, printed and smooth", ", ".join(f"{driven_speed(run).min():.1e} rad/s" for run in runs)
+
+
+@measurement("normal-force")
+def normal_force() -> Iterator[Row]:
+    """What the published normal force, which may pull, changes at `rtol` 1e-4."""
+    yield "case", "speed [rad/s]", "driven torque [N m]", "span tension [N]", "strongest pull [N/m]"
+    drives: dict[str, Callable[..., bd.Drive]] = {
+        "1, equilibrium": lambda **law: case_1(contact=law, rtol=1e-4),
+        "1, laid": lambda **law: case_1(contact=law, rtol=1e-4, start="laid"),
+        "2, 1e4": lambda **law: case_2(contact=law, rtol=1e-4),
+        "2, 1e5": lambda **law: case_2(contact={"creep_rate_factor": 1e5, **law}, rtol=1e-4),
+        "2, 1e5, c_p = 1000": lambda **law: case_2(
+            contact={"creep_rate_factor": 1e5, "damping": 1e3, **law}, rtol=1e-4
+        ),
+    }
+    for name, drive in drives.items():
+        one, other = bd.simulate(drive(normal_law="no_pull")), bd.simulate(drive(normal_law="published"))
+        yield (
+            name,
+            *(
+                f"{rms(np.asarray(one.dataset[key] - other.dataset[key])[:, -1]):.0e}"
+                for key in ("pulley_speed", "pulley_torque", "span_tension")
+            ),
+            f"{max(0.0, -float(other.dataset['normal_force'].min())):.3g}",
+        )
 
 
 @measurement("shear-correction")

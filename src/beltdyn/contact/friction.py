@@ -13,7 +13,7 @@ def friction_force(slip: float, normal: float, law: ContactLaw) -> tuple[float, 
     slip
         Slip velocity v_t = t . dr/dt - omega R (Eq. 22), m/s.
     normal
-        Normal force f_n, N/m.
+        Normal force f_n, N/m; friction depends on its magnitude.
     law
         Contact constants, with the choice of law.
 
@@ -22,9 +22,12 @@ def friction_force(slip: float, normal: float, law: ContactLaw) -> tuple[float, 
     tuple of 3 floats
         f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n.
     """
+    pressure, sign = (normal, 1.0) if normal >= 0.0 else (-normal, -1.0)
     if law.friction_law == COEFFICIENT_SLOPE:
-        return coefficient_slope(slip, normal, law.friction, law.creep)
-    return force_slope(slip, normal, law.friction, law.creep)
+        force, by_slip, by_pressure = coefficient_slope(slip, pressure, law.friction, law.creep)
+    else:
+        force, by_slip, by_pressure = force_slope(slip, pressure, law.friction, law.creep)
+    return force, by_slip, sign * by_pressure
 
 
 @kernel

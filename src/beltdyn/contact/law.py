@@ -22,6 +22,8 @@ class ContactLaw(NamedTuple):
     """`FORCE_SLOPE` or `COEFFICIENT_SLOPE`."""
     creep: float
     """nu_s in kg/(m s) for `FORCE_SLOPE`, the creep velocity in m/s for `COEFFICIENT_SLOPE`."""
+    may_pull: bool
+    """Whether f_n may become negative, as Eq. 17 is printed."""
     follow_zone: bool
     """Integrate over the touching part of an element only; False is the published rule, over the whole element."""
 

@@ -8,7 +8,7 @@ from beltdyn.kernel import kernel
 def normal_force(penetration: float, penetration_rate: float, law: ContactLaw) -> tuple[float, float]:
     """Penalty force f_n = max(k_p d + c_p dd/dt, 0) for d >= 0, else 0 (Eq. 17).
 
-    The printed law has no max: a belt that leaves fast would then be pulled back into the pulley by the damper.
+    The printed law has no max: a belt that leaves fast is then pulled back by the damper, which `law.may_pull` allows.
 
     Parameters
     ----------
@@ -27,6 +27,6 @@ def normal_force(penetration: float, penetration_rate: float, law: ContactLaw) -
         1 where the force acts and 0 where it does not; the derivatives are active k_p and active c_p.
     """
     force = law.stiffness * penetration + law.damping * penetration_rate
-    if penetration < 0.0 or force <= 0.0:
+    if penetration < 0.0 or (force <= 0.0 and not law.may_pull):
         return 0.0, 0.0
     return force, 1.0

@@ -24,6 +24,9 @@ class Contact(Part):
     damping: LineDamping = Field(
         0.0, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
     )
+    normal_law: Literal["no_pull", "published"] = Field(
+        "no_pull", description="the normal force: never pulling, or as published, which may pull where the belt leaves"
+    )
     friction: Ratio = Field(ge=0, description="the coefficient of friction")
     friction_law: Literal["force_slope", "coefficient_slope"] = Field("force_slope", description="the friction law")
     creep_rate_factor: CreepRate | None = Field(

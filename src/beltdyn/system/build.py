@@ -129,7 +129,7 @@ def _control_points(length: float) -> FloatArray:
 def _contact_law(contact: Contact | None) -> ContactLaw:
     """Constants of contact; a law that is never used where there is none."""
     if contact is None:
-        return ContactLaw(1.0, 0.0, 0.0, FORCE_SLOPE, 1.0, True)
+        return ContactLaw(1.0, 0.0, 0.0, FORCE_SLOPE, 1.0, False, True)
     by_force = contact.friction_law == "force_slope"
     creep = contact.creep_rate_factor if by_force else contact.creep_velocity
     assert creep is not None
@@ -139,6 +139,7 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
         friction=contact.friction,
         friction_law=FORCE_SLOPE if by_force else COEFFICIENT_SLOPE,
         creep=creep,
+        may_pull=contact.normal_law == "published",
         follow_zone=contact.integration == "zone",
     )
 

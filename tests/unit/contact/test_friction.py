@@ -58,3 +58,12 @@ def test_derivatives(law: ContactLaw, ratio: float) -> None:
     rounding = 1e-8  # 1e-16 over the step
     assert difference(share, 0.0) / (2 * share) == pytest.approx(by_slip, rel=rounding, abs=1e-5)
     assert difference(0.0, share) / (2 * share) == pytest.approx(by_normal, rel=rounding, abs=1e-5)
+
+
+@given(SLIPS, NORMALS)
+def test_depends_on_the_magnitude_of_the_normal_force(law: ContactLaw, slip: float, normal: float) -> None:
+    pushed, pulled = friction_force(slip, normal, law), friction_force(slip, -normal, law)
+    assert pulled[:2] == pushed[:2]
+    assert abs(pulled[2]) == abs(pushed[2])
+    if normal > 0.0:
+        assert pulled[2] == -pushed[2]

@@ -27,3 +27,10 @@ def test_force_has_no_jump_where_the_damper_lets_go(law: ContactLaw) -> None:
     penetration = 1e-4
     rate = -law.stiffness * penetration / law.damping
     assert normal_force(penetration, rate * (1 - 1e-9), law)[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_published_law_pulls_a_belt_that_leaves_fast(law: ContactLaw) -> None:
+    published = law._replace(may_pull=True)
+    assert normal_force(1e-4, -2.6, published) == pytest.approx((-4.0, 1.0))
+    assert normal_force(1e-4, -2.0, published) == normal_force(1e-4, -2.0, law)
+    assert normal_force(-1e-9, -2.6, published) == (0.0, 0.0)

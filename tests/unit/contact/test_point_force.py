@@ -29,6 +29,12 @@ def state(request: pytest.FixtureRequest, wheel: Wheel, place: Place) -> FloatAr
     return np.array([*place(wheel, penetration, angle), *velocity])
 
 
+@pytest.fixture(params=[False, True], ids=["no_pull", "published"])
+def law(request: pytest.FixtureRequest, law: ContactLaw) -> ContactLaw:
+    """Either normal law, with either friction law."""
+    return law._replace(may_pull=request.param)
+
+
 def point(state: FloatArray, wheel: Wheel) -> Approach:
     x, y, velocity_x, velocity_y = state
     return approach(x, y, velocity_x, velocity_y, wheel)
@@ -51,7 +57,7 @@ def test_force_is_made_of_normal_and_friction(state: FloatArray, wheel: Wheel, l
     normal, tangent = (here.normal_x, here.normal_y), (-here.normal_y, here.normal_x)
     assert force.x * normal[0] + force.y * normal[1] == pytest.approx(force.normal, abs=1e-10)
     assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(force.friction, abs=1e-10)
-    assert abs(force.friction) <= law.friction * force.normal * (1 + 1e-15)
+    assert abs(force.friction) <= law.friction * abs(force.normal) * (1 + 1e-15)
 
 
 @pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (0.0, 1.0), (1.0, 250.0)])
