@@ -20,8 +20,9 @@ from beltdyn.solve.march import (
     restart,
 )
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import FloatArray
+from beltdyn.system.arrays import NODE, FloatArray
 from beltdyn.system.motion import new_equations
+from beltdyn.system.state import coordinate_lengths
 
 _OUTPUTS = 64
 _STEPS_AT_ONCE = 8000
@@ -50,15 +51,15 @@ class GeneralizedAlpha:
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
         system, start = task.system, task.start
-        element = float(np.max(system.length))
         settings = Settings(
             spectral_radius=self.spectral_radius,
             velocity_tolerance=self.rtol * task.velocity_scale,
             newton_fraction=_NEWTON_FRACTION,
             max_step=self.max_step or float(task.times[-1] - task.times[0]),
-            length_scale=np.array([1.0, 1.0, element, element, element, element]),
+            length_scale=coordinate_lengths(system),
         )
-        march = new_march(float(task.times[0]), _FIRST_STEP, start.position, start.velocity)
+        first_step = min(_FIRST_STEP, settings.max_step)
+        march = new_march(float(task.times[0]), first_step, start.position, start.velocity)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
         yield Chunk.start(float(task.times[0]), start)
@@ -97,9 +98,9 @@ def _count(task: Task, march: March) -> None:
 
 def _message(task: Task, march: March, rtol: float) -> str:
     """Where and when the march ended, and what to try."""
-    nodes = march.acceleration[: 6 * task.system.nodes].reshape(-1, 6)
+    nodes = march.acceleration[: NODE * task.system.nodes].reshape(-1, NODE)
     worst = int(np.argmax(np.hypot(nodes[:, 0], nodes[:, 1])))
-    x, y = march.position[6 * worst : 6 * worst + 2]
+    x, y = march.position[NODE * worst : NODE * worst + 2]
     return (
         f"the simulation cannot go on at t = {march.clock[0]:.6g} s: no time step above 1e-11 s converges. "
         f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try more elements, a larger "

@@ -49,7 +49,7 @@ class StandardIntegrator:
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy
-            solver: _Solver = make(self, equations, tolerances, time, y, stop)
+            solver: _Solver = make(_Leg(self, equations, tolerances, time, y, stop))
             while solver.time < stop:
                 before = solver.time
                 try:
@@ -73,6 +73,23 @@ class StandardIntegrator:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class _Leg:
+    """The way from one stop to the next, for a library's solver."""
+
+    method: StandardIntegrator
+    equations: FirstOrder
+    tolerances: FloatArray
+    start: float
+    y: FloatArray
+    stop: float
+
+    @property
+    def begin(self) -> float:
+        """Instant just after the start, where profiles have jumped, s."""
+        return float(np.nextafter(self.start, np.inf))
+
+
 class _SolverError(Exception):
     """A library's solver has given up; the message is its own."""
 
@@ -92,29 +109,21 @@ class _Solver(Protocol):
 class _SciPy:
     """An implicit method of SciPy."""
 
-    def __init__(
-        self,
-        method: StandardIntegrator,
-        equations: FirstOrder,
-        tolerances: FloatArray,
-        start: float,
-        y: FloatArray,
-        stop: float,
-    ) -> None:
+    def __init__(self, leg: _Leg) -> None:
         from scipy.integrate import BDF, Radau
 
-        kind = BDF if method.name == "bdf" else Radau
+        kind = BDF if leg.method.name == "bdf" else Radau
         self._solver = kind(
-            equations.rates,
-            np.nextafter(start, np.inf),
-            y,
-            stop,
-            max_step=method.max_step or np.inf,
+            leg.equations.rates,
+            leg.begin,
+            leg.y,
+            leg.stop,
+            max_step=leg.method.max_step or np.inf,
             rtol=_RELATIVE,
-            atol=tolerances,
-            jac=equations.jacobian,
+            atol=leg.tolerances,
+            jac=leg.equations.jacobian,
         )
-        self.time = start
+        self.time = leg.start
 
     def step(self) -> None:
         try:
@@ -132,20 +141,15 @@ class _SciPy:
 class _Sundials:
     """CVODE or IDA, with the exact dense Jacobian."""
 
-    def __init__(
-        self,
-        method: StandardIntegrator,
-        equations: FirstOrder,
-        tolerances: FloatArray,
-        start: float,
-        y: FloatArray,
-        stop: float,
-    ) -> None:
-        options = {"rtol": _RELATIVE, "atol": tolerances, "max_step": method.max_step or 0.0}
-        self._solver = _cvode(equations, options) if method.name == "cvode" else _ida(equations, options)
-        begin = float(np.nextafter(start, np.inf))
-        self._solver.init_step(begin, y, *([] if method.name == "cvode" else [equations.rates(begin, y)]))
-        self.time, self._stop = start, stop
+    def __init__(self, leg: _Leg) -> None:
+        options = {"rtol": _RELATIVE, "atol": leg.tolerances, "max_step": leg.method.max_step or 0.0}
+        if leg.method.name == "cvode":
+            self._solver = _cvode(leg.equations, options)
+            self._solver.init_step(leg.begin, leg.y)
+        else:
+            self._solver = _ida(leg.equations, options)
+            self._solver.init_step(leg.begin, leg.y, leg.equations.rates(leg.begin, leg.y))
+        self.time, self._stop = leg.start, leg.stop
 
     def step(self) -> None:
         result = self._solver.step(self._stop, method="onestep", tstop=self._stop)

@@ -15,7 +15,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.motion import Equations, linearise, new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring
-from beltdyn.system.state import State
+from beltdyn.system.state import State, coordinate_lengths
 
 _TOLERANCE = 1e-11
 _SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
@@ -116,8 +116,7 @@ class _Search:
         self._ahead: Equations = new_equations(self._system)
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.section.mass / system.section.axial
-        element = self._length / system.length.size
-        self._scale = np.array([1.0, 1.0, element, element, element, element])
+        self._scale = coordinate_lengths(system)
 
     @property
     def nodes(self) -> FloatArray:

@@ -82,6 +82,22 @@ def straight(system: System) -> State:
     return at_rest(system, coordinates)
 
 
+def coordinate_lengths(system: System) -> FloatArray:
+    """Lengths that turn changes of a node's coordinates into m: 1 for r, the longest element for its gradients.
+
+    Parameters
+    ----------
+    system
+        The system.
+
+    Returns
+    -------
+    ndarray, shape (6,)
+    """
+    element = float(np.max(system.length))
+    return np.array([1.0, 1.0, element, element, element, element])
+
+
 def _left(vectors: FloatArray) -> FloatArray:
     """Vectors turned by +90 degrees, shape (k, 2)."""
     return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)
