@@ -1,4 +1,4 @@
-"""Gauss-Legendre quadrature on the unit interval."""
+"""Quadrature on the unit interval."""
 
 from functools import cache
 
@@ -6,9 +6,11 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+FloatArray = NDArray[np.float64]
+
 
 @cache
-def gauss_points(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def gauss_points(count: int) -> tuple[FloatArray, FloatArray]:
     """Points and weights of Gauss-Legendre quadrature on [0, 1].
 
     Parameters
@@ -22,6 +24,15 @@ def gauss_points(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         Dimensionless and read-only; the weights add up to 1.
     """
     points, weights = leggauss(count)
-    points, weights = 0.5 * (points + 1.0), 0.5 * weights
-    points.flags.writeable = weights.flags.writeable = False
-    return points, weights
+    return _read_only(0.5 * (points + 1.0)), _read_only(0.5 * weights)
+
+
+@cache
+def trapezoid_points() -> tuple[FloatArray, FloatArray]:
+    """Points and weights of the trapezoidal rule on [0, 1]: its two ends, half each; shapes (2,), read-only."""
+    return _read_only(np.array([0.0, 1.0])), _read_only(np.array([0.5, 0.5]))
+
+
+def _read_only(values: FloatArray) -> FloatArray:
+    values.flags.writeable = False
+    return values

@@ -1,9 +1,15 @@
 """The belt: a closed loop of rectangular section."""
 
-from pydantic import Field
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
 
 from beltdyn.model.part import Part
 from beltdyn.model.quantity import Count, Density, Length, Ratio, Stress
+
+_LINKS = {"truss": 1, "three-node-beam": 2}
+_GROUP = 3
+_FEWEST_LINKS = 9
 
 
 class Belt(Part):
@@ -27,9 +33,32 @@ class Belt(Part):
         description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
     )
     elements: Count = Field(20, ge=3, le=100_000, description="the number of belt elements")
+    discretization: Literal["ancf", "truss", "three-node-beam"] = Field(
+        "ancf",
+        description="the kind of elements: the paper's, or for comparison straight links without bending stiffness, "
+        "or pairs of links with torsional springs",
+    )
     quadrature_points: Count = Field(
         4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces"
     )
+
+    @model_validator(mode="after")
+    def _links_come_in_threes(self) -> Self:
+        links, each = self.links, _LINKS.get(self.discretization, 0)
+        if each and (links % _GROUP or links < _FEWEST_LINKS):
+            fewest = -(-_FEWEST_LINKS // (_GROUP * each)) * _GROUP
+            fewer = self.elements // _GROUP * _GROUP
+            choice = f"{fewer} or {fewer + _GROUP}" if fewer >= fewest else f"{fewest}"
+            raise ValueError(
+                f'elements = {self.elements} does not fit discretization = "{self.discretization}", whose number of '
+                f"elements is a multiple of {_GROUP}, at least {fewest}. Choose {choice}"
+            )
+        return self
+
+    @property
+    def links(self) -> int:
+        """Number of straight links, one of a truss element and two of a three-node beam element; zero for "ancf"."""
+        return self.elements * _LINKS.get(self.discretization, 0)
 
     @property
     def area(self) -> float:

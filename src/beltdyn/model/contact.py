@@ -35,11 +35,16 @@ class Contact(Part):
     creep_velocity: Speed | None = Field(
         None, gt=0, description="the slip velocity at which friction is fully used, in m/s"
     )
+    sampling: Literal["distributed", "nodal"] = Field(
+        "distributed",
+        description="the places of contact: all along an element, or for comparison its end nodes only",
+    )
     integration: Literal["zone", "fixed"] = Field(
-        "zone", description="the place where the contact forces are integrated: the touching zone, or the whole element"
+        "zone",
+        description="the place where distributed contact is integrated: the touching zone, or the whole element",
     )
     quadrature_points: Count = Field(
-        5, ge=1, le=64, description="the number of Gauss points an element for the contact forces"
+        5, ge=1, le=64, description="the number of Gauss points an element for distributed contact forces"
     )
 
     @model_validator(mode="after")

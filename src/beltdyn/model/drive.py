@@ -46,6 +46,15 @@ class Drive(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _joint_fits_the_belt(self) -> Self:
+        if self.simulation.joint == "multipliers" and self.belt.discretization != "ancf":
+            raise ValueError(
+                f'simulation.joint = "multipliers" does not fit belt.discretization = "{self.belt.discretization}": '
+                'only the element "ancf" has ends to tie. Choose joint = "shared_node", or discretization = "ancf".'
+            )
+        return self
+
     @cached_property
     def path(self) -> Path:
         """The path of the belt around its pulleys."""

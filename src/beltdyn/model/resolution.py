@@ -1,4 +1,4 @@
-"""How many elements smooth contact forces need, from what a cubic element misses the circle of a pulley by."""
+"""How many elements smooth contact forces need, from what an element misses the circle of a pulley by."""
 
 import math
 
@@ -14,7 +14,12 @@ def arc_angle(belt: Belt, radius: float) -> float:
 
 
 def arc_error(belt: Belt, radius: float) -> float:
-    """Distance by which a cubic Hermite curve over the angle phi misses the circle, R phi^4 / 384, m."""
+    """Distance by which a cubic Hermite curve over the angle phi misses the circle, R phi^4 / 384, m.
+
+    A straight link misses it by R phi^2 / 8.
+    """
+    if belt.links:
+        return radius * (belt.length / (belt.links * radius)) ** 2 / 8
     return radius * arc_angle(belt, radius) ** 4 / 384
 
 
@@ -29,4 +34,4 @@ def elements_needed(belt: Belt, radius: float, penetration: float) -> int:
         Of the pulley and of the belt in it, m.
     """
     ratio = arc_error(belt, radius) / (MISS_LIMIT * penetration)
-    return math.ceil(belt.elements * float(ratio**0.25))
+    return math.ceil(belt.elements * float(ratio ** (0.5 if belt.links else 0.25)))

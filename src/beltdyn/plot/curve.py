@@ -30,12 +30,12 @@ def element_lengths(dataset: xr.Dataset, belt_length: float) -> FloatArray:
 
 
 def centerline(coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
-    """Interpolate the centreline by the element's cubic Hermite polynomials (Eq. 6).
+    """Interpolate the centreline by the element's cubic Hermite polynomials (Eq. 6), or by straight links.
 
     Parameters
     ----------
-    coordinates : ndarray, shape (nodes, 6)
-        Nodal coordinates: positions (m) and slopes along the belt first.
+    coordinates : ndarray, shape (nodes, 6) or (nodes, 2)
+        Nodal coordinates: positions (m) and, but for links, slopes along the belt first.
     lengths : ndarray, shape (nodes,)
         Reference length from each node to the next around the belt, m.
     points : int
@@ -47,8 +47,12 @@ def centerline(coordinates: FloatArray, lengths: FloatArray, points: int = POINT
         Points on the element that begins at each node, m.
     """
     xi = np.linspace(0.0, 1.0, points)[None, :, None]
-    position, slope = coordinates[:, None, 0:2], coordinates[:, None, 2:4]
-    next_position, next_slope = np.roll(position, -1, axis=0), np.roll(slope, -1, axis=0)
+    position = coordinates[:, None, 0:2]
+    next_position = np.roll(position, -1, axis=0)
+    if coordinates.shape[1] == 2:
+        return (1 - xi) * position + xi * next_position
+    slope = coordinates[:, None, 2:4]
+    next_slope = np.roll(slope, -1, axis=0)
     length = lengths[:, None, None]
     return (
         (1 - 3 * xi**2 + 2 * xi**3) * position

@@ -4,12 +4,13 @@ from beltdyn.results.layout import Layout
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
 from beltdyn.results.run import Run, open_run
-from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
+from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.summary import PulleySummary, SpanSummary, Summary, summarize
 from beltdyn.results.tables import write_csv
 
 __all__ = [
     "COORDINATES",
+    "COORDINATE_NAMES",
     "RECORDED",
     "VARIABLES",
     "FileRecorder",

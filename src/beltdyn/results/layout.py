@@ -28,6 +28,8 @@ class Layout:
         Belt coordinate of the elements' middles in the unstretched belt, m.
     belt_coordinate : ndarray, shape (contact_points,)
         Belt coordinate of the contact points in the unstretched belt, m.
+    coordinate_names : tuple of str
+        Names of the coordinates of a node.
     """
 
     pulleys: tuple[str, ...]
@@ -35,6 +37,7 @@ class Layout:
     node_coordinate: FloatArray
     element_coordinate: FloatArray
     belt_coordinate: FloatArray
+    coordinate_names: tuple[str, ...] = COORDINATE_NAMES
 
     @property
     def nodes(self) -> int:
@@ -58,7 +61,7 @@ class Layout:
             "pulley": self.pulleys,
             "span": self.spans,
             "axis": AXIS_NAMES,
-            "coordinate": COORDINATE_NAMES,
+            "coordinate": self.coordinate_names,
             "node_coordinate": self.node_coordinate,
             "element_coordinate": self.element_coordinate,
             "belt_coordinate": self.belt_coordinate,
@@ -72,7 +75,7 @@ class Layout:
             "pulley": len(self.pulleys),
             "span": len(self.spans),
             "axis": len(AXIS_NAMES),
-            "coordinate": len(COORDINATE_NAMES),
+            "coordinate": len(self.coordinate_names),
             "node": self.nodes,
             "element": self.elements,
             "contact_point": self.contact_points,

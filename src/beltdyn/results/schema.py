@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 COORDINATE_NAMES = ("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy")
-"""Order of the six nodal coordinates."""
+"""Order of the nodal coordinates; the nodes of a chain of links have the first two only."""
 
 AXIS_NAMES = ("x", "y")
 """Names of the two directions of the plane."""

@@ -22,7 +22,6 @@ from beltdyn.solve.march import (
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import NODE, FloatArray
 from beltdyn.system.motion import new_equations
-from beltdyn.system.state import coordinate_lengths
 
 _OUTPUTS = 64
 _STEPS_AT_ONCE = 8000
@@ -56,7 +55,7 @@ class GeneralizedAlpha:
             velocity_tolerance=self.rtol * task.velocity_scale,
             newton_fraction=_NEWTON_FRACTION,
             max_step=self.max_step or float(task.times[-1] - task.times[0]),
-            length_scale=coordinate_lengths(system),
+            length_scale=system.scale,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
         march = new_march(float(task.times[0]), first_step, start.position, start.velocity)
@@ -98,9 +97,12 @@ def _count(task: Task, march: March) -> None:
 
 def _message(task: Task, march: March, rtol: float) -> str:
     """Where and when the march ended, and what to try."""
-    nodes = march.acceleration[: NODE * task.system.nodes].reshape(-1, NODE)
-    worst = int(np.argmax(np.hypot(nodes[:, 0], nodes[:, 1])))
-    x, y = march.position[NODE * worst : NODE * worst + 2]
+    places, accelerations = (
+        vector[: NODE * task.system.nodes].reshape(-1, NODE // task.system.points)[:, :2]
+        for vector in (march.position, march.acceleration)
+    )
+    worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))
+    x, y = places[worst]
     return (
         f"the simulation cannot go on at t = {march.clock[0]:.6g} s: no time step above 1e-11 s converges. "
         f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try more elements, a larger "

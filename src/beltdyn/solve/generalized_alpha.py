@@ -225,10 +225,10 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
     """Local error of the positions over what is allowed: of nodes in the root mean square, of each pulley's rim."""
     auxiliary, total = march.trial[3], 0.0
     for node in range(system.nodes):
-        for c in range(2):
+        for c in range(2 * system.points):
             i = NODE * node + c
             total += (auxiliary[i] - march.auxiliary[i]) ** 2
-    largest = sqrt(total / system.nodes)
+    largest = sqrt(total / (system.nodes * system.points))
     for p in range(system.pulleys.radius.size):
         if system.pulleys.unknown[p] >= 0:
             i = NODE * system.nodes + p

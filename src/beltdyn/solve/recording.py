@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
-from beltdyn.results import FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
+from beltdyn.results import COORDINATE_NAMES, FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
 from beltdyn.system.arrays import NODE, POWERS, System
+from beltdyn.system.discretization import curve_lengths, point_coordinates
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
 
@@ -116,7 +117,7 @@ class Recording:
         seen = observe_chunk(system, chunk)
         position, velocity = chunk.interpolate()
         nodes = NODE * system.nodes
-        coordinates = position[:, :nodes].reshape(count, -1, NODE)
+        coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
         stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
         return {
             **seen,
@@ -126,7 +127,7 @@ class Recording:
             "pulley_angle": position[:, nodes:],
             "node_position": coordinates[..., :2],
             "nodal_coordinates": coordinates,
-            "nodal_velocities": velocity[:, :nodes].reshape(count, -1, NODE),
+            "nodal_velocities": velocity[:, :nodes].reshape(coordinates.shape),
             "energy_closure": self._energy.closure(stored, chunk.work),
             "step_size": chunk.step,
         }
@@ -190,11 +191,13 @@ def result_layout(drive: Drive, system: System) -> Layout:
     """
     names = tuple(pulley.name for pulley in drive.pulleys)
     spans = tuple(f"{a}-{b}" for a, b in zip(names, (*names[1:], names[0]), strict=True))
-    starts = np.concatenate([[0.0], np.cumsum(system.length)])
+    lengths = curve_lengths(system)
+    starts = np.cumsum(lengths) - lengths
     return Layout(
         pulleys=names,
         spans=spans,
-        node_coordinate=starts[: system.nodes],
-        element_coordinate=starts[:-1] + 0.5 * system.length,
-        belt_coordinate=(starts[:-1, None] + system.length[:, None] * system.contact.points).ravel(),
+        node_coordinate=point_coordinates(system),
+        element_coordinate=starts + 0.5 * lengths,
+        belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
+        coordinate_names=COORDINATE_NAMES[: NODE // system.points],
     )

@@ -3,7 +3,9 @@
 A belt is so much stiffer in tension than in bending that neither the energy nor the residual falls along a good path to
 equilibrium.  What must fall is the next correction as the present stiffness sees it (Deuflhard 2011, section 2.1):
 a step of length d is taken if |K^-1 r(q - d x)| <= (1 - d / 4) |x| with x = K^-1 r(q).  Where no length will do, or
-the stiffness is singular, a multiple of the mass matrix is added to the stiffness for a while.
+the stiffness is singular, a multiple of the mass matrix is added to the stiffness for a while.  A belt of many short
+links slides around its pulleys almost without resistance, which leaves steps that mean nothing; there the forces tell
+that the search is over.
 """
 
 from dataclasses import dataclass
@@ -15,9 +17,11 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.motion import Equations, linearise, new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring
-from beltdyn.system.state import State, coordinate_lengths
+from beltdyn.system.state import State
 
 _TOLERANCE = 1e-11
+_FORCE_TOLERANCE = 1e-11
+"""Of nodal forces over E A alpha1."""
 _SMALLEST_SHIFT, _LARGEST_SHIFT = 1e-6, 1e12
 _SMALLEST_LENGTH = 1e-2
 
@@ -88,8 +92,10 @@ def find_equilibrium(
         if method == "newton" or converged:
             search.step(1.0)
         elif not search.step_naturally():
-            shift = max(10.0 * shift, _SMALLEST_SHIFT)
-            continue
+            converged = search.force < _FORCE_TOLERANCE
+            if not converged:
+                shift = max(10.0 * shift, _SMALLEST_SHIFT)
+                continue
         iterates.append(search.nodes.copy())
         norms.append(norm)
         if converged:
@@ -116,12 +122,18 @@ class _Search:
         self._ahead: Equations = new_equations(self._system)
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.section.mass / system.section.axial
-        self._scale = coordinate_lengths(system)
+        self._scale = system.scale
 
     @property
     def nodes(self) -> FloatArray:
         """Nodal coordinates, shape (N, 6)."""
         return self._position[: NODE * self._system.nodes].reshape(-1, NODE)
+
+    @property
+    def force(self) -> float:
+        """Largest force out of balance where the equations were linearised last, over E A alpha1."""
+        forces = self._here.matrix.node_side / self._scale
+        return float(np.max(np.abs(forces))) / self._system.section.axial
 
     def linearise(self, shift: float) -> float:
         """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step."""

@@ -1,7 +1,8 @@
 """What the kernels of the system work on: named tuples of arrays and scalars, nothing else.
 
 The state of a system with N nodes and P pulleys is the vector of 6 N nodal coordinates followed by P pulley angles;
-velocities and accelerations are ordered alike.
+velocities and accelerations are ordered alike.  Elements couple a node with the next one only, and the centreline of
+an element is made of one or several curves; beyond that the system does not ask how a belt is discretised.
 """
 
 from typing import NamedTuple
@@ -16,7 +17,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 NODE = 6
-"""Coordinates of a node: r, r_x, r_y (Eq. 6)."""
+"""Coordinates of a node: r, r_x, r_y (Eq. 6), or the places of three points of a chain of links."""
 
 
 class Quadrature(NamedTuple):
@@ -65,12 +66,20 @@ class System(NamedTuple):
     """Whether the last element ends at the first node (Eq. 27)."""
     joint: bool
     """Whether the last node is tied to the first by Lagrange multipliers (Eq. 25)."""
+    chain: bool
+    """Whether an element is a piece of chain (`beltdyn.chain`), or the paper's (`beltdyn.ancf`)."""
+    points: int
+    """Material points whose places are the first coordinates of a node: 1, or 3 of a chain."""
+    scale: FloatArray
+    """Lengths that turn changes of the coordinates of a node into m, shape (6,)."""
     length: FloatArray
     """Reference lengths of the elements, m, shape (elements,)."""
     mass: FloatArray
     """Mass matrices of the elements, shape (elements, 12, 12)."""
+    vectors: tuple[int, int, int, int]
+    """Where among the 12 coordinates of an element the four vectors begin that carry its centreline."""
     control: FloatArray
-    """Control points of the centreline from the four vectors r_i, r_x,i, r_j, r_x,j, shape (elements, 4, 4)."""
+    """Control points of the curves of the centreline from these vectors, shape (elements, curves, 4, 4)."""
     section: Section
     elastic: Quadrature
     law: ContactLaw

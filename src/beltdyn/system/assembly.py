@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import ElasticWorkspace, elastic_workspace, element_force
+from beltdyn.chain.chain_force import chain_force
 from beltdyn.contact.contact_force import ContactWorkspace, contact_force, contact_workspace
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.contact.law import Wheel
@@ -31,7 +32,7 @@ class AssemblyWorkspace(NamedTuple):
     coordinates: FloatArray
     """Position, velocity and acceleration of one element, shape (3, 12)."""
     control: FloatArray
-    """Control points of the centreline, shape (4, 2)."""
+    """Control points of a curve of the centreline, shape (4, 2)."""
     control_velocity: FloatArray
     gradient: FloatArray
     """Residual of one element, shape (12,)."""
@@ -109,7 +110,8 @@ def assemble(
         node_j = (element + 1) % system.nodes
         _gather(element, node_j, position, velocity, acceleration, work)
         _elastic_and_inertia(system, element, by_position, by_acceleration, work)
-        _contact(system, element, node_j, velocity, by_position, by_velocity, work, matrix, loads)
+        for curve in range(system.control.shape[1]):
+            _contact(system, element, curve, node_j, velocity, by_position, by_velocity, work, matrix, loads)
         _scatter(element, node_j, work, matrix)
     _pulleys(system, time, velocity, acceleration, by_acceleration, matrix, loads)
     if system.joint:
@@ -138,16 +140,20 @@ def _elastic_and_inertia(
     system: System, element: int, by_position: float, by_acceleration: float, work: AssemblyWorkspace
 ) -> None:
     """Overwrite residual and tangent of the element by those of elasticity and inertia."""
-    element_force(
-        work.coordinates[0],
-        system.section,
-        system.length[element],
-        system.elastic.points,
-        system.elastic.weights,
-        work.elastic,
-        work.gradient,
-        work.tangent,
-    )
+    section, length = system.section, system.length[element]
+    if system.chain:
+        chain_force(work.coordinates[0], section.axial, section.bending, length, work.gradient, work.tangent)
+    else:
+        element_force(
+            work.coordinates[0],
+            section,
+            length,
+            system.elastic.points,
+            system.elastic.weights,
+            work.elastic,
+            work.gradient,
+            work.tangent,
+        )
     mass, acceleration = system.mass[element], work.coordinates[2]
     for row in range(2 * NODE):
         total = 0.0
@@ -158,25 +164,28 @@ def _elastic_and_inertia(
 
 
 @kernel
-def fill_control(control: FloatArray, coordinates: FloatArray, points: FloatArray) -> None:
-    """Control points of the centreline from the coordinates of an element.
+def fill_control(system: System, element: int, curve: int, coordinates: FloatArray, points: FloatArray) -> None:
+    """Control points of a curve of the centreline from the coordinates of its element.
 
     Parameters
     ----------
-    control : ndarray, shape (4, 4)
-        Control points from the vectors r_i, r_x,i, r_j, r_x,j.
+    system
+        The system.
+    element, curve
+        Which curve of which element.
     coordinates : ndarray, shape (12,)
         Nodal coordinates (or velocities) of the element.
     points : ndarray, shape (4, 2)
         Overwritten.
     """
+    control, vectors = system.control[element, curve], system.vectors
     for a in range(4):
         for axis in range(2):
             points[a, axis] = (
-                control[a, 0] * coordinates[axis]
-                + control[a, 1] * coordinates[2 + axis]
-                + control[a, 2] * coordinates[6 + axis]
-                + control[a, 3] * coordinates[8 + axis]
+                control[a, 0] * coordinates[vectors[0] + axis]
+                + control[a, 1] * coordinates[vectors[1] + axis]
+                + control[a, 2] * coordinates[vectors[2] + axis]
+                + control[a, 3] * coordinates[vectors[3] + axis]
             )
 
 
@@ -184,6 +193,7 @@ def fill_control(control: FloatArray, coordinates: FloatArray, points: FloatArra
 def _contact(
     system: System,
     element: int,
+    curve: int,
     node_j: int,
     velocity: FloatArray,
     by_position: float,
@@ -192,10 +202,10 @@ def _contact(
     matrix: RingMatrix,
     loads: Loads,
 ) -> None:
-    """Take the contact forces of the element off its residual, and couple it to the pulleys that it touches."""
-    pulleys, control = system.pulleys, system.control[element]
-    fill_control(control, work.coordinates[0], work.control)
-    fill_control(control, work.coordinates[1], work.control_velocity)
+    """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
+    pulleys = system.pulleys
+    fill_control(system, element, curve, work.coordinates[0], work.control)
+    fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
     first = velocity.size - pulleys.radius.size
     for p in range(pulleys.radius.size):
         wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], velocity[first + p])
@@ -204,17 +214,17 @@ def _contact(
         totals = contact_force(
             work.control,
             work.control_velocity,
-            control,
+            system.control[element, curve],
             wheel,
             system.law,
-            system.length[element],
+            system.length[element] / system.control.shape[1],
             system.contact.points,
             system.contact.weights,
             by_position,
             by_velocity,
             work.contact,
         )
-        _take_contact(work)
+        _take_contact(system, work)
         loads.moment[p] += totals.moment
         loads.hub[p, 0] += totals.hub_x
         loads.hub[p, 1] += totals.hub_y
@@ -224,19 +234,19 @@ def _contact(
         unknown = pulleys.unknown[p]
         if unknown >= 0:
             matrix.corner[unknown, unknown] -= by_velocity * totals.moment_by_speed
-            _couple(element, node_j, unknown, by_velocity, work.contact, matrix)
+            _couple(system, element, node_j, unknown, by_velocity, work.contact, matrix)
 
 
 @kernel
-def _take_contact(work: AssemblyWorkspace) -> None:
+def _take_contact(system: System, work: AssemblyWorkspace) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
     contact, tangent = work.contact, work.tangent
     for a in range(4):
-        row = 6 * (a // 2) + 2 * (a % 2)
+        row = system.vectors[a]
         work.gradient[row] -= contact.force[2 * a]
         work.gradient[row + 1] -= contact.force[2 * a + 1]
         for b in range(4):
-            column = 6 * (b // 2) + 2 * (b % 2)
+            column = system.vectors[b]
             tangent[row, column] -= contact.xx[a, b]
             tangent[row, column + 1] -= contact.xy[a, b]
             tangent[row + 1, column] -= contact.yx[a, b]
@@ -245,14 +255,21 @@ def _take_contact(work: AssemblyWorkspace) -> None:
 
 @kernel
 def _couple(
-    node_i: int, node_j: int, unknown: int, by_velocity: float, contact: ContactWorkspace, matrix: RingMatrix
+    system: System,
+    node_i: int,
+    node_j: int,
+    unknown: int,
+    by_velocity: float,
+    contact: ContactWorkspace,
+    matrix: RingMatrix,
 ) -> None:
     """Coupling of the element with the speed of a free pulley."""
-    for c in range(4):
-        matrix.column[node_i, c, unknown] -= by_velocity * contact.by_speed[c]
-        matrix.column[node_j, c, unknown] -= by_velocity * contact.by_speed[4 + c]
-        matrix.row[node_i, unknown, c] -= contact.moment[c]
-        matrix.row[node_j, unknown, c] -= contact.moment[4 + c]
+    for a in range(4):
+        first = system.vectors[a]
+        node, c = (node_i, first) if first < NODE else (node_j, first - NODE)
+        for axis in range(2):
+            matrix.column[node, c + axis, unknown] -= by_velocity * contact.by_speed[2 * a + axis]
+            matrix.row[node, unknown, c + axis] -= contact.moment[2 * a + axis]
 
 
 @kernel

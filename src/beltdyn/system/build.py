@@ -5,13 +5,13 @@ from typing import Literal
 
 import numpy as np
 
-from beltdyn.ancf.inertia import element_mass
 from beltdyn.ancf.section import Section
 from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Contact, Drive, Pulley
-from beltdyn.quadrature import gauss_points
-from beltdyn.system.arrays import NODE, FloatArray, Pulleys, Quadrature, Supports, System
+from beltdyn.quadrature import gauss_points, trapezoid_points
+from beltdyn.system.arrays import NODE, Pulleys, Quadrature, Supports, System
+from beltdyn.system.discretization import discretize
 
 Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
@@ -54,7 +54,7 @@ def belt_system(
     contact
         Contact constants; needed where there are pulleys.
     closure
-        How the ends meet.
+        How the ends meet; those of a chain of links share a node, since nothing moves the end of an open one.
     fixed
         Pairs (node, coordinate) that do not move; coordinates 0 to 5 are r, r_x, r_y (Eq. 6).
     forces
@@ -74,21 +74,19 @@ def belt_system(
     """
     if pulleys and contact is None:
         raise ModelError("contact is missing: a belt on pulleys needs its constants. Give a Contact.")
-    elements = belt.elements
-    nodes = elements if closure == "shared_node" else elements + 1
     section = belt_section(belt)
-    length = belt.length / elements
+    mesh = discretize(belt, section)
+    elements = mesh.length.size
+    nodes = elements if closure == "shared_node" else elements + 1
     return System(
         nodes=nodes,
         closed=closure == "shared_node",
         joint=closure == "multipliers",
-        length=np.full(elements, length),
-        mass=np.tile(element_mass(section, length), (elements, 1, 1)),
-        control=np.tile(_control_points(length), (elements, 1, 1)),
+        **mesh._asdict(),
         section=section,
         elastic=Quadrature(*gauss_points(belt.quadrature_points)),
         law=_contact_law(contact),
-        contact=Quadrature(*gauss_points(contact.quadrature_points if contact else 1)),
+        contact=_contact_points(contact),
         pulleys=_pulley_arrays(pulleys),
         supports=_supports(nodes, fixed, forces, moments),
     )
@@ -105,12 +103,12 @@ def belt_section(belt: Belt) -> Section:
     Returns
     -------
     Section
-        Factors of Eqs. 14 and 15, integrated over the section.
+        Factors of Eqs. 14 and 15, integrated over the section; a truss does not resist bending.
     """
     shear = belt.shear_coefficient * belt.shear_modulus * belt.bending_factor
     return Section(
         axial=belt.axial_stiffness,
-        bending=belt.bending_stiffness,
+        bending=0.0 if belt.discretization == "truss" else belt.bending_stiffness,
         quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
         shear=shear * belt.area,
         shear_gradient=shear * belt.second_moment,
@@ -120,10 +118,13 @@ def belt_section(belt: Belt) -> Section:
     )
 
 
-def _control_points(length: float) -> FloatArray:
-    """Control points of a cubic Hermite curve from r_i, r_x,i, r_j, r_x,j, shape (4, 4)."""
-    third = length / 3.0
-    return np.array([[1, 0, 0, 0], [1, third, 0, 0], [0, 0, 1, -third], [0, 0, 1, 0]], dtype=float)
+def _contact_points(contact: Contact | None) -> Quadrature:
+    """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone."""
+    if contact is None:
+        return Quadrature(*gauss_points(1))
+    if contact.sampling == "nodal":
+        return Quadrature(*trapezoid_points())
+    return Quadrature(*gauss_points(contact.quadrature_points))
 
 
 def _contact_law(contact: Contact | None) -> ContactLaw:
@@ -140,7 +141,7 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
         friction_law=FORCE_SLOPE if by_force else COEFFICIENT_SLOPE,
         creep=creep,
         may_pull=contact.normal_law == "published",
-        follow_zone=contact.integration == "zone",
+        follow_zone=contact.sampling == "distributed" and contact.integration == "zone",
     )
 
 

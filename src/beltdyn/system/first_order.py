@@ -10,7 +10,7 @@ from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
 from beltdyn.system.motion import new_equations
-from beltdyn.system.state import State, coordinate_lengths
+from beltdyn.system.state import State
 
 
 class FirstOrder:
@@ -60,7 +60,7 @@ class FirstOrder:
         ndarray, shape (size,)
             The length of an element turns gradients into m, the radius angles; works are not controlled.
         """
-        nodes = np.tile(coordinate_lengths(self._system), self._system.nodes)
+        nodes = np.tile(self._system.scale, self._system.nodes)
         lengths = np.concatenate([nodes, self._system.pulleys.radius])
         return np.concatenate([time * velocity / lengths, velocity / lengths, np.full(len(POWERS), np.inf)])
 

@@ -1,16 +1,15 @@
 """What a state means: energies, loads, tensions, contact forces, wrap angles (Eqs. 8, 13, 17-23)."""
 
 from math import atan2, sqrt
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.ancf.elastic_force import centreline, element_energy
-from beltdyn.ancf.shape_functions import slopes
+from beltdyn.ancf.elastic_force import element_energy
 from beltdyn.ancf.strain_energy import axial_force
-from beltdyn.contact.bezier import bernstein, combine
-from beltdyn.contact.contact_zone import MAX_INTERVALS, out_of_reach, touching_intervals
+from beltdyn.chain.chain_force import chain_energy
+from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
+from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
 from beltdyn.contact.law import Wheel
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
@@ -19,81 +18,9 @@ from beltdyn.system.arrays import NODE, System
 from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int8]
-
-
-class Observations(NamedTuple):
-    """Derived quantities at k instants; P pulleys (and spans), n elements with c contact points each."""
-
-    pulley_torque: FloatArray
-    """Moment of the belt on each pulley, N m, shape (k, P)."""
-    shaft_torque: FloatArray
-    """Torque on each pulley from outside, N m, shape (k, P)."""
-    hub_force: FloatArray
-    """Force of the belt on each pulley, N, shape (k, P, 2)."""
-    wrap_angle: FloatArray
-    """rad, shape (k, P)."""
-    belt_tension: FloatArray
-    """Mean axial force of each element, N, shape (k, n)."""
-    span_tension: FloatArray
-    """Mean axial force of the free belt after each pulley, N, shape (k, P); nan where the belt does not leave it."""
-    belt_speed: FloatArray
-    """Mean speed along the belt of the same, m/s, shape (k, P)."""
-    normal_force: FloatArray
-    """N/m, shape (k, n c)."""
-    friction_force: FloatArray
-    slip_velocity: FloatArray
-    """m/s, zero where the belt is free."""
-    contact_position: FloatArray
-    """m, shape (k, n c, 2)."""
-    contact_pulley: IntArray
-    """Number of the pulley that a point touches, -1 where it is free, shape (k, n c)."""
-    kinetic_energy: FloatArray
-    """J, shape (k,)."""
-    strain_energy: FloatArray
-    penalty_energy: FloatArray
-
-
-class Samples(NamedTuple):
-    """Scratch arrays for one state."""
-
-    tension: FloatArray
-    speed: FloatArray
-    weight: FloatArray
-    """Length of the free belt in each span."""
-    element: FloatArray
-    """Coordinates and velocities of one element, shape (2, 12)."""
-    control: FloatArray
-    control_velocity: FloatArray
-    intervals: FloatArray
-    overlap: FloatArray
-    acceleration: FloatArray
-    multipliers: FloatArray
-
-
-def _new_observations(system: System, count: int) -> Observations:
-    """Make empty observations for a number of instants."""
-    pulleys, elements = system.pulleys.radius.size, system.length.size
-    points = elements * system.contact.points.size
-    return Observations(
-        pulley_torque=np.zeros((count, pulleys)),
-        shaft_torque=np.zeros((count, pulleys)),
-        hub_force=np.zeros((count, pulleys, 2)),
-        wrap_angle=np.zeros((count, pulleys)),
-        belt_tension=np.zeros((count, elements)),
-        span_tension=np.zeros((count, pulleys)),
-        belt_speed=np.zeros((count, pulleys)),
-        normal_force=np.zeros((count, points)),
-        friction_force=np.zeros((count, points)),
-        slip_velocity=np.zeros((count, points)),
-        contact_position=np.zeros((count, points, 2)),
-        contact_pulley=np.full((count, points), -1, dtype=np.int8),
-        kinetic_energy=np.zeros(count),
-        strain_energy=np.zeros(count),
-        penalty_energy=np.zeros(count),
-    )
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
@@ -113,27 +40,14 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
     Observations
         Derived quantities at every instant.
     """
-    result = _new_observations(system, time.size)
-    points = system.length.size * system.contact.points.size
-    samples = Samples(
-        tension=np.zeros(points),
-        speed=np.zeros(points),
-        weight=np.zeros(system.pulleys.radius.size),
-        element=np.zeros((2, 2 * NODE)),
-        control=np.zeros((4, 2)),
-        control_velocity=np.zeros((4, 2)),
-        intervals=np.zeros((MAX_INTERVALS, 2)),
-        overlap=np.zeros((3, 7)),
-        acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
-        multipliers=np.zeros(NODE),
-    )
+    result = new_observations(system, time.size)
     fill_observations(
         system,
         np.ascontiguousarray(time),
         np.ascontiguousarray(position),
         np.ascontiguousarray(velocity),
         new_equations(system),
-        samples,
+        new_samples(system),
         result,
     )
     return result
@@ -154,8 +68,14 @@ def fill_observations(
         _observe_loads(system, time[k], position[k], velocity[k], samples, equations, result, k)
         for element in range(system.length.size):
             _gather(system, element, position[k], velocity[k], samples)
-            _observe_element(system, element, samples, result, k)
-            _observe_contact(system, element, velocity[k], samples, result, k)
+            _observe_energy(system, element, samples, result, k)
+            for curve in range(system.control.shape[1]):
+                fill_control(system, element, curve, samples.element[0], samples.control)
+                fill_control(system, element, curve, samples.element[1], samples.control_velocity)
+                number = element * system.control.shape[1] + curve
+                length = system.length[element] / system.control.shape[1]
+                _observe_tension(system, length, number, samples, result, k)
+                _observe_contact(system, length, number, velocity[k], samples, result, k)
         _observe_spans(system, samples, result, k)
         _observe_pulleys(system, velocity[k], result, k)
 
@@ -199,49 +119,62 @@ def _observe_loads(
 
 @kernel
 def _gather(system: System, element: int, position: FloatArray, velocity: FloatArray, samples: Samples) -> None:
-    """Coordinates, velocities and control points of an element."""
+    """Coordinates and velocities of an element."""
     node_j = (element + 1) % system.nodes
     for c in range(NODE):
         samples.element[0, c] = position[NODE * element + c]
         samples.element[0, NODE + c] = position[NODE * node_j + c]
         samples.element[1, c] = velocity[NODE * element + c]
         samples.element[1, NODE + c] = velocity[NODE * node_j + c]
-    fill_control(system.control[element], samples.element[0], samples.control)
-    fill_control(system.control[element], samples.element[1], samples.control_velocity)
 
 
 @kernel
-def _observe_element(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
-    """Energies and mean axial force of an element."""
-    e, v, length = samples.element[0], samples.element[1], system.length[element]
+def _observe_energy(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
+    """Energies of an element."""
+    e, v, section, length = samples.element[0], samples.element[1], system.section, system.length[element]
     if element == 0:
         result.kinetic_energy[k] = result.strain_energy[k] = 0.0
-    result.strain_energy[k] += element_energy(e, system.section, length, system.elastic.points, system.elastic.weights)
+    if system.chain:
+        result.strain_energy[k] += chain_energy(e, section.axial, section.bending, length)
+    else:
+        result.strain_energy[k] += element_energy(e, section, length, system.elastic.points, system.elastic.weights)
     for row in range(2 * NODE):
         for column in range(2 * NODE):
             result.kinetic_energy[k] += 0.5 * v[row] * system.mass[element, row, column] * v[column]
+
+
+@kernel
+def _slope(samples: Samples, xi: float, length: float) -> tuple[float, float]:
+    """Derivative of the centreline with respect to the belt coordinate."""
+    x, y = combine(samples.control, bernstein_rates(xi))
+    return x / length, y / length
+
+
+@kernel
+def _observe_tension(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
+    """Mean axial force of a curve."""
     mean = 0.0
     for point in range(system.elastic.points.size):
-        qx, qy = centreline(e, slopes(system.elastic.points[point], length))
+        qx, qy = _slope(samples, system.elastic.points[point], length)
         mean += system.elastic.weights[point] * axial_force(qx * qx + qy * qy, system.section)
-    result.belt_tension[k, element] = mean
+    result.belt_tension[k, curve] = mean
 
 
 @kernel
 def _observe_contact(
-    system: System, element: int, velocity: FloatArray, samples: Samples, result: Observations, k: int
+    system: System, length: float, curve: int, velocity: FloatArray, samples: Samples, result: Observations, k: int
 ) -> None:
-    """Contact at the Gauss points of an element, and the angle over which it touches each pulley."""
-    pulleys, length = system.pulleys, system.length[element]
+    """Contact at the sampling points of a curve, and the angle over which it touches each pulley."""
+    pulleys = system.pulleys
     first = velocity.size - pulleys.radius.size
     count = system.contact.points.size
     for point in range(count):
-        row = element * count + point
+        row = curve * count + point
         xi = system.contact.points[point]
         weights = bernstein(xi)
         x, y = combine(samples.control, weights)
         vx, vy = combine(samples.control_velocity, weights)
-        qx, qy = centreline(samples.element[0], slopes(xi, length))
+        qx, qy = _slope(samples, xi, length)
         metric = qx * qx + qy * qy
         samples.tension[row] = axial_force(metric, system.section)
         samples.speed[row] = (qx * vx + qy * vy) / sqrt(metric)
@@ -284,27 +217,30 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
     touched is another.
     """
     spans = system.pulleys.radius.size
-    touched = result.contact_pulley[k]
-    count, points = touched.size, system.contact.points.size
-    weight = samples.weight
+    touched, weight = result.contact_pulley[k], samples.weight
     for p in range(spans):
         weight[p] = result.span_tension[k, p] = result.belt_speed[k, p] = 0.0
+    count, points, curves = touched.size, system.contact.points.size, system.control.shape[1]
+    before, first = -1, 0
     for row in range(count):
         if touched[row] >= 0:
+            before, first = touched[row], row
+            break
+    length = tension = speed = 0.0
+    for walk in range(first + 1, first + 1 + count):
+        row = walk % count
+        after = touched[row]
+        if after < 0:
+            share = system.length[row // (points * curves)] * system.contact.weights[row % points]
+            length += share
+            tension += share * samples.tension[row]
+            speed += share * samples.speed[row]
             continue
-        before, after = -1, -1
-        for shift in range(1, count):
-            if before < 0:
-                before = touched[(row - shift) % count]
-            if after < 0:
-                after = touched[(row + shift) % count]
-            if before >= 0 and after >= 0:
-                break
-        if before >= 0 and before != after:
-            share = system.length[row // points] * system.contact.weights[row % points]
-            weight[before] += share
-            result.span_tension[k, before] += share * samples.tension[row]
-            result.belt_speed[k, before] += share * samples.speed[row]
+        if before != after:
+            weight[before] += length
+            result.span_tension[k, before] += tension
+            result.belt_speed[k, before] += speed
+        before, length, tension, speed = after, 0.0, 0.0, 0.0
     for p in range(spans):
         result.span_tension[k, p] = result.span_tension[k, p] / weight[p] if weight[p] > 0.0 else np.nan
         result.belt_speed[k, p] = result.belt_speed[k, p] / weight[p] if weight[p] > 0.0 else np.nan

@@ -6,6 +6,7 @@ import numpy as np
 
 from beltdyn.model import Path
 from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,38 +67,14 @@ def laid(system: System, path: Path) -> State:
     State
         Out of balance: the belt is bent and stretched, and does not yet press on the pulleys.
     """
-    unstretched = np.concatenate([[0.0], np.cumsum(system.length)])[: system.nodes]
     stretch = path.length / float(np.sum(system.length))
-    tangent = path.tangent(stretch * unstretched)
-    coordinates = np.hstack([path.position(stretch * unstretched), stretch * tangent, _left(tangent)])
-    return at_rest(system, coordinates)
+    along = stretch * point_coordinates(system)
+    return at_rest(system, nodal_coordinates(system, path.position(along), stretch * path.tangent(along)))
 
 
 def straight(system: System) -> State:
     """The undeformed belt along the x axis from the origin, at rest."""
-    along = np.concatenate([[0.0], np.cumsum(system.length)])[: system.nodes]
-    coordinates = np.zeros((system.nodes, NODE))
-    coordinates[:, 0] = along
-    coordinates[:, 2] = coordinates[:, 5] = 1.0
-    return at_rest(system, coordinates)
-
-
-def coordinate_lengths(system: System) -> FloatArray:
-    """Lengths that turn changes of a node's coordinates into m: 1 for r, the longest element for its gradients.
-
-    Parameters
-    ----------
-    system
-        The system.
-
-    Returns
-    -------
-    ndarray, shape (6,)
-    """
-    element = float(np.max(system.length))
-    return np.array([1.0, 1.0, element, element, element, element])
-
-
-def _left(vectors: FloatArray) -> FloatArray:
-    """Vectors turned by +90 degrees, shape (k, 2)."""
-    return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)
+    along = point_coordinates(system)
+    flat = np.zeros_like(along)
+    place, slope = np.stack([along, flat], axis=1), np.stack([flat + 1.0, flat], axis=1)
+    return at_rest(system, nodal_coordinates(system, place, slope))

@@ -43,7 +43,7 @@ def test_slopes_are_those_of_the_hermite_shape_functions(xi: float) -> None:
         poissons_ratio=0.3,
         elements=3,
     )
-    basis = belt_system(belt).control[0]
+    basis = belt_system(belt).control[0, 0]
     rates = shape_functions(basis, bernstein_rates(xi))
     np.testing.assert_allclose(rates, length * np.array(slopes(xi, length)), atol=ROUNDING)
     assert shape_functions(basis, bernstein(0.0)) == (1.0, 0.0, 0.0, 0.0)

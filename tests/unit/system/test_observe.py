@@ -10,7 +10,8 @@ from beltdyn.model import Drive, Path, install
 from beltdyn.solve import find_equilibrium
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.build import drive_system
-from beltdyn.system.observe import Observations, observe
+from beltdyn.system.observations import Observations
+from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
 
 FloatArray = NDArray[np.float64]

@@ -1,0 +1,101 @@
+"""Arrays for what is observed at states, and scratch arrays for observing one."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.contact.contact_zone import MAX_INTERVALS
+from beltdyn.system.arrays import NODE, System
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int8]
+
+
+class Observations(NamedTuple):
+    """Derived quantities at k instants; P pulleys (and spans), n curves of the belt with c contact points each."""
+
+    pulley_torque: FloatArray
+    """Moment of the belt on each pulley, N m, shape (k, P)."""
+    shaft_torque: FloatArray
+    """Torque on each pulley from outside, N m, shape (k, P)."""
+    hub_force: FloatArray
+    """Force of the belt on each pulley, N, shape (k, P, 2)."""
+    wrap_angle: FloatArray
+    """rad, shape (k, P)."""
+    belt_tension: FloatArray
+    """Mean axial force of each curve, N, shape (k, n)."""
+    span_tension: FloatArray
+    """Mean axial force of the free belt after each pulley, N, shape (k, P); nan where the belt does not leave it."""
+    belt_speed: FloatArray
+    """Mean speed along the belt of the same, m/s, shape (k, P)."""
+    normal_force: FloatArray
+    """N/m, shape (k, n c)."""
+    friction_force: FloatArray
+    slip_velocity: FloatArray
+    """m/s, zero where the belt is free."""
+    contact_position: FloatArray
+    """m, shape (k, n c, 2)."""
+    contact_pulley: IntArray
+    """Number of the pulley that a point touches, -1 where it is free, shape (k, n c)."""
+    kinetic_energy: FloatArray
+    """J, shape (k,)."""
+    strain_energy: FloatArray
+    penalty_energy: FloatArray
+
+
+class Samples(NamedTuple):
+    """Scratch arrays for one state."""
+
+    tension: FloatArray
+    speed: FloatArray
+    weight: FloatArray
+    """Length of the free belt in each span."""
+    element: FloatArray
+    """Coordinates and velocities of one element, shape (2, 12)."""
+    control: FloatArray
+    control_velocity: FloatArray
+    intervals: FloatArray
+    overlap: FloatArray
+    acceleration: FloatArray
+    multipliers: FloatArray
+
+
+def new_observations(system: System, count: int) -> Observations:
+    """Make empty observations for a number of instants."""
+    pulleys, curves = system.pulleys.radius.size, system.length.size * system.control.shape[1]
+    points = curves * system.contact.points.size
+    return Observations(
+        pulley_torque=np.zeros((count, pulleys)),
+        shaft_torque=np.zeros((count, pulleys)),
+        hub_force=np.zeros((count, pulleys, 2)),
+        wrap_angle=np.zeros((count, pulleys)),
+        belt_tension=np.zeros((count, curves)),
+        span_tension=np.zeros((count, pulleys)),
+        belt_speed=np.zeros((count, pulleys)),
+        normal_force=np.zeros((count, points)),
+        friction_force=np.zeros((count, points)),
+        slip_velocity=np.zeros((count, points)),
+        contact_position=np.zeros((count, points, 2)),
+        contact_pulley=np.full((count, points), -1, dtype=np.int8),
+        kinetic_energy=np.zeros(count),
+        strain_energy=np.zeros(count),
+        penalty_energy=np.zeros(count),
+    )
+
+
+def new_samples(system: System) -> Samples:
+    """Make scratch arrays for a system."""
+    points = system.length.size * system.control.shape[1] * system.contact.points.size
+    return Samples(
+        tension=np.zeros(points),
+        speed=np.zeros(points),
+        weight=np.zeros(system.pulleys.radius.size),
+        element=np.zeros((2, 2 * NODE)),
+        control=np.zeros((4, 2)),
+        control_velocity=np.zeros((4, 2)),
+        intervals=np.zeros((MAX_INTERVALS, 2)),
+        overlap=np.zeros((3, 7)),
+        acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
+        multipliers=np.zeros(NODE),
+    )
