@@ -94,11 +94,8 @@ class RingScratch(NamedTuple):
     rows: FloatArray
     """Rows of the node in hand, shape (6, width)."""
     panels: FloatArray
-    """Eliminated rows of every node, shape (N, 6, width)."""
-    rim: FloatArray
-    """Rows of the border, shape (b, width)."""
-    left: FloatArray
-    """Columns of the node in hand in the rows of the border, shape (b, 6)."""
+    """Eliminated rows of every node: block towards the next node, columns of the border, right-hand side, padding;
+    shape (N, 6, width)."""
     dense: FloatArray
     """What elimination leaves of the border, shape (b, b)."""
     answer: FloatArray

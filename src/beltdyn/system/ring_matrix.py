@@ -1,8 +1,8 @@
 """Linear algebra of the belt: a block-tridiagonal matrix, cyclic or open, with a border, solved in O(n).
 
-A closed ring is cut open by moving its last node to the border.  The chain that remains is eliminated block by
-block; what it leaves in the border is a small dense system.  Rows are kept as [own block | border | right-hand
-side], so that eliminating a node is one small matrix product for the next node and one for the border.
+A closed ring is cut open by moving its last node to the border.  The chain that remains is solved for the right-hand
+side and for all columns of the border at once; what the border's own equations leave of these solutions is a small
+dense system.  An equation of the border touches few nodes, so that the cost is linear in nodes times border.
 """
 
 import numpy as np
@@ -46,8 +46,6 @@ def ring_matrix(nodes: int, border: int) -> RingMatrix:
         scratch=RingScratch(
             rows=np.zeros((NODE, width)),
             panels=np.zeros((nodes, NODE, width)),
-            rim=np.zeros((size, width)),
-            left=np.zeros((size, NODE)),
             dense=np.zeros((size, size)),
             answer=np.zeros((size, 1)),
         ),
@@ -90,29 +88,37 @@ def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
     nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
     cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
     border = cut + extra
-    rows, rim, left, answer = matrix.scratch.rows, matrix.scratch.rim, matrix.scratch.left, matrix.scratch.answer
-    _load_node(matrix, 0, closed, chain, rows)
-    _load_border(matrix, closed, rim)
-    _load_coupling(matrix, 0, closed, chain, rim)
+    rows, panels, dense, answer = matrix.scratch
     for k in range(chain):
-        panel = matrix.scratch.panels[k]
-        _split(rows, matrix.upper[k], k < chain - 1, panel)
-        if not _eliminate(rows, panel, NODE):
+        _load_node(matrix, k, closed, chain, rows)
+        if k > 0:
+            _subtract_product(matrix.lower[k - 1], panels[k - 1], rows)
+        _split(rows, matrix.upper[k], k < chain - 1, panels[k])
+        if not _eliminate(rows, panels[k], NODE):
             return False
-        _copy_columns(rim, left, border)
-        if k < chain - 1:
-            _load_node(matrix, k + 1, closed, chain, rows)
-            _load_coupling(matrix, k + 1, closed, chain, rim)
-            _subtract_product(matrix.lower[k], panel, rows, NODE)
-        _subtract_product(left, panel, rim, border)
-    if not _solve_border(rim, matrix.scratch.dense, answer, border):
+    for k in range(chain - 2, -1, -1):
+        _subtract_product(panels[k, :, :NODE], panels[k + 1], panels[k])
+        panels[k, :, :NODE] = 0.0  # so that the next product, over whole rows, leaves its left factor alone
+    _load_border(matrix, closed, dense, answer)
+    if closed:
+        for i in range(NODE):
+            _reduce(matrix.upper[chain, i], panels[0], border, i, dense, answer)
+            _reduce(matrix.lower[chain - 1, i], panels[chain - 1], border, i, dense, answer)
+    for k in range(chain):
+        for i in range(extra):
+            _reduce(matrix.row[k, i], panels[k], border, cut + i, dense, answer)
+    if not _eliminate(dense, answer, border):
         return False
     for i in range(extra):
         border_part[i] = answer[cut + i, 0]
     for i in range(cut):
         node_part[chain, i] = answer[i, 0]
-    for k in range(chain - 1, -1, -1):
-        _back_substitute(matrix.scratch.panels[k], answer, border, node_part, k, k < chain - 1)
+    for k in range(chain):
+        for i in range(NODE):
+            total = panels[k, i, NODE + border]
+            for j in range(border):
+                total -= panels[k, i, NODE + j] * answer[j, 0]
+            node_part[k, i] = total
     return True
 
 
@@ -137,39 +143,23 @@ def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: Float
 
 
 @kernel
-def _load_coupling(matrix: RingMatrix, k: int, closed: bool, chain: int, rim: FloatArray) -> None:
-    """Columns of node k in the rows of the border."""
-    cut = NODE if closed else 0
-    for j in range(NODE):
-        for i in range(cut):
-            rim[i, j] = 0.0
-            if k == 0:
-                rim[i, j] += matrix.upper[chain, i, j]
-            if k == chain - 1:
-                rim[i, j] += matrix.lower[k, i, j]
-        for i in range(matrix.corner.shape[0]):
-            rim[cut + i, j] = matrix.row[k, i, j]
-
-
-@kernel
-def _load_border(matrix: RingMatrix, closed: bool, rim: FloatArray) -> None:
-    """Rows of the border: [columns of a node, loaded later | border with itself | right-hand side]."""
+def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray, answer: FloatArray) -> None:
+    """The border with itself: the last node of a closed ring, then the given border."""
     extra = matrix.corner.shape[0]
     cut = NODE if closed else 0
-    start = NODE + cut
     for i in range(extra):
         for j in range(extra):
-            rim[cut + i, start + j] = matrix.corner[i, j]
-        rim[cut + i, start + extra] = matrix.border_side[i]
+            dense[cut + i, cut + j] = matrix.corner[i, j]
+        answer[cut + i, 0] = matrix.border_side[i]
     if closed:
         last = matrix.diagonal.shape[0] - 1
         for i in range(NODE):
             for j in range(NODE):
-                rim[i, NODE + j] = matrix.diagonal[last, i, j]
+                dense[i, j] = matrix.diagonal[last, i, j]
             for j in range(extra):
-                rim[i, start + j] = matrix.column[last, i, j]
-                rim[cut + j, NODE + i] = matrix.row[last, j, i]
-            rim[i, start + extra] = matrix.node_side[last, i]
+                dense[i, NODE + j] = matrix.column[last, i, j]
+                dense[NODE + j, i] = matrix.row[last, j, i]
+            answer[i, 0] = matrix.node_side[last, i]
 
 
 @kernel
@@ -180,14 +170,6 @@ def _split(rows: FloatArray, upper: FloatArray, coupled: bool, panel: FloatArray
             panel[i, j] = rows[i, j]
         for j in range(NODE):
             panel[i, j] = upper[i, j] if coupled else 0.0
-
-
-@kernel
-def _copy_columns(rim: FloatArray, left: FloatArray, border: int) -> None:
-    """Take the columns of the current node out of the rows of the border."""
-    for i in range(border):
-        for j in range(NODE):
-            left[i, j] = rim[i, j]
 
 
 @kernel
@@ -226,9 +208,9 @@ def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
 
 
 @kernel
-def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray, count: int) -> None:
-    """Target -= left right in the first rows, for a left factor of six columns."""
-    for i in range(count):
+def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -> None:
+    """Target -= left right, for factors of six columns and of six rows."""
+    for i in range(NODE):
         for k in range(NODE):
             factor = left[i, k]
             for j in range(target.shape[1]):
@@ -236,25 +218,13 @@ def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray, c
 
 
 @kernel
-def _solve_border(rim: FloatArray, dense: FloatArray, answer: FloatArray, border: int) -> bool:
-    """Solve the dense system that is left in the border; False if it is singular."""
-    for i in range(border):
-        answer[i, 0] = rim[i, NODE + border]
-        for j in range(border):
-            dense[i, j] = rim[i, NODE + j]
-    return _eliminate(dense, answer, border)
-
-
-@kernel
-def _back_substitute(
-    panel: FloatArray, answer: FloatArray, border: int, node_part: FloatArray, k: int, coupled: bool
+def _reduce(
+    coupling: FloatArray, panel: FloatArray, border: int, row: int, dense: FloatArray, answer: FloatArray
 ) -> None:
-    """Unknowns of node k from those of the border and of the next node."""
-    for i in range(NODE):
-        total = panel[i, NODE + border]
-        for j in range(border):
-            total -= panel[i, NODE + j] * answer[j, 0]
-        if coupled:
-            for j in range(NODE):
-                total -= panel[i, j] * node_part[k + 1, j]
-        node_part[k, i] = total
+    """Put the solutions of a node into an equation of the border that couples to it."""
+    for k in range(NODE):
+        factor = coupling[k]
+        if factor != 0.0:
+            for j in range(border):
+                dense[row, j] -= factor * panel[k, NODE + j]
+            answer[row, 0] -= factor * panel[k, NODE + border]
