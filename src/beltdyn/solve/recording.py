@@ -20,6 +20,8 @@ from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
 
 _SECONDS_BETWEEN_WRITES = 0.25
+_DECIMALS = 12
+"""Of a time in s; ends of steps that agree in them are the same, and are observed once."""
 
 
 class Recording:
@@ -163,17 +165,19 @@ def observe_chunk(system: System, chunk: Chunk) -> dict[str, NDArray[Any]]:
         The fields of `Observations`.  An instant inside a step gets the mean of what is seen at its ends, weighted by
         its place; the pulley that a point touches is that of the nearer end.
     """
-    x = chunk.fraction
-    after = observe(system, chunk.time + (1.0 - x) * chunk.step, chunk.position[:, 1], chunk.velocity[:, 1])._asdict()
+    x, step = chunk.fraction, chunk.step
     inside = np.flatnonzero(x < 1.0)
-    if inside.size:
-        starts = chunk.time[inside] - x[inside] * chunk.step[inside]
-        before = observe(system, starts, chunk.position[inside, 0], chunk.velocity[inside, 0])._asdict()
-        for name, values in after.items():
-            weight = x[inside].reshape(-1, *[1] * (values.ndim - 1))
-            weight = np.round(weight) if values.dtype.kind == "i" else weight
-            values[inside] = (1.0 - weight) * before[name] + weight * values[inside]
-    return after
+    instants = np.concatenate([chunk.time + (1.0 - x) * step, chunk.time[inside] - x[inside] * step[inside]])
+    position = np.concatenate([chunk.position[:, 1], chunk.position[inside, 0]])
+    velocity = np.concatenate([chunk.velocity[:, 1], chunk.velocity[inside, 0]])
+    _, first, place = np.unique(np.round(instants, _DECIMALS), return_index=True, return_inverse=True)
+    seen = observe(system, instants[first], position[first], velocity[first])._asdict()
+    result = {name: values[place[: len(x)]] for name, values in seen.items()}
+    for name, values in result.items():
+        weight = x[inside].reshape(-1, *[1] * (values.ndim - 1))
+        weight = np.round(weight) if values.dtype.kind == "i" else weight
+        values[inside] = (1.0 - weight) * seen[name][place[len(x) :]] + weight * values[inside]
+    return result
 
 
 def result_layout(drive: Drive, system: System) -> Layout:

@@ -17,7 +17,7 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.contact.law import Wheel
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
-from beltdyn.system.excitation import profile_value
+from beltdyn.system.loads import add_contact, clear_loads, take_shafts
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
 
@@ -51,11 +51,6 @@ def assembly_workspace() -> AssemblyWorkspace:
         np.zeros(12),
         np.zeros((12, 12)),
     )
-
-
-def new_loads(pulleys: int) -> Loads:
-    """Make zero loads for a number of pulleys."""
-    return Loads(np.zeros(pulleys), np.zeros((pulleys, 2)), np.zeros(pulleys), np.zeros(4), np.zeros(1))
 
 
 def border_size(system: System) -> int:
@@ -102,10 +97,7 @@ def assemble(
         Overwritten: moments, hub forces, powers.
     """
     clear(matrix)
-    loads.moment[:] = 0.0
-    loads.hub[:] = 0.0
-    loads.power[:] = 0.0
-    loads.penalty[:] = 0.0
+    clear_loads(loads)
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
         _gather(element, node_j, position, velocity, acceleration, work)
@@ -113,7 +105,8 @@ def assemble(
         for curve in range(system.control.shape[1]):
             _contact(system, element, curve, node_j, velocity, by_position, by_velocity, work, matrix, loads)
         _scatter(element, node_j, work, matrix)
-    _pulleys(system, time, velocity, acceleration, by_acceleration, matrix, loads)
+    take_shafts(system, time, velocity, acceleration, loads)
+    _pulleys(system, acceleration, by_acceleration, matrix, loads)
     if system.joint:
         _joint(system, acceleration, multipliers, by_acceleration, matrix)
     add_nodal_loads(system, position, by_position, matrix)
@@ -225,12 +218,7 @@ def _contact(
             work.contact,
         )
         _take_contact(system, work)
-        loads.moment[p] += totals.moment
-        loads.hub[p, 0] += totals.hub_x
-        loads.hub[p, 1] += totals.hub_y
-        loads.penalty[0] += totals.penalty_energy
-        loads.power[2] += totals.friction_power
-        loads.power[3] += totals.damping_power
+        add_contact(loads, p, totals)
         unknown = pulleys.unknown[p]
         if unknown >= 0:
             matrix.corner[unknown, unknown] -= by_velocity * totals.moment_by_speed
@@ -287,27 +275,18 @@ def _scatter(i: int, j: int, work: AssemblyWorkspace, matrix: RingMatrix) -> Non
 
 @kernel
 def _pulleys(
-    system: System,
-    time: float,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    by_acceleration: float,
-    matrix: RingMatrix,
-    loads: Loads,
+    system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads
 ) -> None:
-    """Rotation of the pulleys (Eq. 23): equation of free ones, reaction of prescribed ones, power of both."""
+    """Rotation of the free pulleys (Eq. 23)."""
     pulleys = system.pulleys
-    first = velocity.size - pulleys.radius.size
+    first = acceleration.size - pulleys.radius.size
     for p in range(pulleys.radius.size):
-        unknown, inertia = pulleys.unknown[p], pulleys.inertia[p] * acceleration[first + p]
-        if unknown < 0:
-            loads.shaft[p] = inertia - loads.moment[p]
-            loads.power[0] += loads.shaft[p] * velocity[first + p]
-        else:
-            loads.shaft[p] = profile_value(pulleys, p, time)[0]
-            loads.power[1] += loads.shaft[p] * velocity[first + p]
+        unknown = pulleys.unknown[p]
+        if unknown >= 0:
             matrix.corner[unknown, unknown] += by_acceleration * pulleys.inertia[p]
-            matrix.border_side[unknown] = inertia - loads.moment[p] - loads.shaft[p]
+            matrix.border_side[unknown] = (
+                pulleys.inertia[p] * acceleration[first + p] - loads.moment[p] - loads.shaft[p]
+            )
 
 
 @kernel

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
-from beltdyn.system.assembly import AssemblyWorkspace, assemble, assembly_workspace, border_size, new_loads
+from beltdyn.system.assembly import AssemblyWorkspace, assemble, assembly_workspace, border_size
 from beltdyn.system.excitation import prescribe
+from beltdyn.system.loads import new_loads
 from beltdyn.system.ring_matrix import ring_matrix, solve_ring
 
 FloatArray = NDArray[np.float64]

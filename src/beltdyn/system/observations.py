@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.contact.contact_force import ContactWorkspace, contact_workspace
 from beltdyn.contact.contact_zone import MAX_INTERVALS
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import NODE, Loads, System
+from beltdyn.system.loads import new_loads
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int8]
@@ -58,7 +60,8 @@ class Samples(NamedTuple):
     intervals: FloatArray
     overlap: FloatArray
     acceleration: FloatArray
-    multipliers: FloatArray
+    contact: ContactWorkspace
+    loads: Loads
 
 
 def new_observations(system: System, count: int) -> Observations:
@@ -97,5 +100,6 @@ def new_samples(system: System) -> Samples:
         intervals=np.zeros((MAX_INTERVALS, 2)),
         overlap=np.zeros((3, 7)),
         acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
-        multipliers=np.zeros(NODE),
+        contact=contact_workspace(),
+        loads=new_loads(system.pulleys.radius.size),
     )

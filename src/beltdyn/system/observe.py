@@ -9,15 +9,16 @@ from beltdyn.ancf.elastic_force import element_energy
 from beltdyn.ancf.strain_energy import axial_force
 from beltdyn.chain.chain_force import chain_energy
 from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
+from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
 from beltdyn.contact.law import Wheel
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, System
-from beltdyn.system.assembly import assemble, fill_control
+from beltdyn.system.arrays import NODE, Loads, System
+from beltdyn.system.assembly import fill_control
 from beltdyn.system.excitation import prescribe
-from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.loads import add_contact, clear_loads, take_shafts
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 
 FloatArray = NDArray[np.float64]
@@ -46,7 +47,6 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
         np.ascontiguousarray(time),
         np.ascontiguousarray(position),
         np.ascontiguousarray(velocity),
-        new_equations(system),
         new_samples(system),
         result,
     )
@@ -59,13 +59,15 @@ def fill_observations(
     time: FloatArray,
     position: FloatArray,
     velocity: FloatArray,
-    equations: Equations,
     samples: Samples,
     result: Observations,
 ) -> None:
     """Fill the observations."""
     for k in range(time.size):
-        _observe_loads(system, time[k], position[k], velocity[k], samples, equations, result, k)
+        clear_loads(samples.loads)
+        result.kinetic_energy[k] = result.strain_energy[k] = 0.0
+        result.wrap_angle[k] = 0.0
+        prescribe(system, time[k], velocity[k], samples.acceleration)
         for element in range(system.length.size):
             _gather(system, element, position[k], velocity[k], samples)
             _observe_energy(system, element, samples, result, k)
@@ -75,46 +77,23 @@ def fill_observations(
                 number = element * system.control.shape[1] + curve
                 length = system.length[element] / system.control.shape[1]
                 _observe_tension(system, length, number, samples, result, k)
-                _observe_contact(system, length, number, velocity[k], samples, result, k)
+                _observe_points(system, length, number, velocity[k], samples, result, k)
+                _observe_contact(system, element, curve, length, velocity[k], samples, result, k)
+        take_shafts(system, time[k], velocity[k], samples.acceleration, samples.loads)
+        _keep_loads(samples.loads, result, k)
         _observe_spans(system, samples, result, k)
         _observe_pulleys(system, velocity[k], result, k)
 
 
 @kernel
-def _observe_loads(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    samples: Samples,
-    equations: Equations,
-    result: Observations,
-    k: int,
-) -> None:
-    """Torques, hub forces and penalty energy, from the same assembly that moves the system."""
-    prescribe(system, time, velocity, samples.acceleration)
-    assemble(
-        system,
-        time,
-        position,
-        velocity,
-        samples.acceleration,
-        samples.multipliers,
-        0.0,
-        0.0,
-        0.0,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
-    loads = equations.loads
+def _keep_loads(loads: Loads, result: Observations, k: int) -> None:
+    """Torques, hub forces and penalty energy."""
     result.penalty_energy[k] = loads.penalty[0]
-    for p in range(system.pulleys.radius.size):
+    for p in range(loads.moment.size):
         result.pulley_torque[k, p] = loads.moment[p]
         result.shaft_torque[k, p] = loads.shaft[p]
         result.hub_force[k, p, 0] = loads.hub[p, 0]
         result.hub_force[k, p, 1] = loads.hub[p, 1]
-        result.wrap_angle[k, p] = 0.0
 
 
 @kernel
@@ -132,8 +111,6 @@ def _gather(system: System, element: int, position: FloatArray, velocity: FloatA
 def _observe_energy(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
     """Energies of an element."""
     e, v, section, length = samples.element[0], samples.element[1], system.section, system.length[element]
-    if element == 0:
-        result.kinetic_energy[k] = result.strain_energy[k] = 0.0
     if system.chain:
         result.strain_energy[k] += chain_energy(e, section.axial, section.bending, length)
     else:
@@ -161,10 +138,10 @@ def _observe_tension(system: System, length: float, curve: int, samples: Samples
 
 
 @kernel
-def _observe_contact(
+def _observe_points(
     system: System, length: float, curve: int, velocity: FloatArray, samples: Samples, result: Observations, k: int
 ) -> None:
-    """Contact at the sampling points of a curve, and the angle over which it touches each pulley."""
+    """Contact at the sampling points of a curve."""
     pulleys = system.pulleys
     first = velocity.size - pulleys.radius.size
     count = system.contact.points.size
@@ -191,13 +168,42 @@ def _observe_contact(
                 result.normal_force[k, row] = force.normal
                 result.friction_force[k, row] = force.friction
                 result.slip_velocity[k, row] = slip_velocity(here, wheel)
+
+
+@kernel
+def _observe_contact(
+    system: System,
+    element: int,
+    curve: int,
+    length: float,
+    velocity: FloatArray,
+    samples: Samples,
+    result: Observations,
+    k: int,
+) -> None:
+    """Contact of a curve as it moves the system, and the angle over which it touches each pulley."""
+    pulleys, intervals = system.pulleys, samples.intervals
+    first = velocity.size - pulleys.radius.size
     for p in range(pulleys.radius.size):
         wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], velocity[first + p])
-        if not out_of_reach(samples.control, wheel):
-            for interval in range(touching_intervals(samples.control, wheel, samples.overlap, samples.intervals)):
-                result.wrap_angle[k, p] += _angle(
-                    samples.control, wheel, samples.intervals[interval, 0], samples.intervals[interval, 1]
-                )
+        if out_of_reach(samples.control, wheel):
+            continue
+        totals = contact_force(
+            samples.control,
+            samples.control_velocity,
+            system.control[element, curve],
+            wheel,
+            system.law,
+            length,
+            system.contact.points,
+            system.contact.weights,
+            0.0,
+            0.0,
+            samples.contact,
+        )
+        add_contact(samples.loads, p, totals)
+        for interval in range(touching_intervals(samples.control, wheel, samples.overlap, intervals)):
+            result.wrap_angle[k, p] += _angle(samples.control, wheel, intervals[interval, 0], intervals[interval, 1])
 
 
 @kernel

@@ -1,0 +1,208 @@
+"""Error against time of beltdyn and of Exudyn on the paper's drives.
+
+Both run in turn, several times over, one thread each; compilation is apart, and so is Exudyn's static equilibrium.
+The error is that of the driven speed against the same program's own converged solution (240 elements, tight
+tolerance), root mean square over the run, so that the slight difference of the two theories does not count.
+References are kept in a folder (`--references`), since those of Exudyn take minutes.
+"""
+
+import argparse
+import statistics
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+
+from beltdyn import simulate
+from beltdyn.model import Drive
+from beltdyn.published import two_pulley
+
+FloatArray = NDArray[np.float64]
+Solution = tuple[FloatArray, float]
+"""Driven speed at the output instants, rad/s, and seconds of computing."""
+
+REFERENCE_ELEMENTS = 240
+CONSOLE = Console()
+
+
+def started(drive: Drive, rtol: float = 1e-3) -> Drive:
+    """A published drive from equilibrium, with contact by default."""
+    return drive.replace(
+        contact=drive.contact.replace(integration="zone", normal_law="no_pull"),
+        simulation=drive.simulation.replace(start="equilibrium", rtol=rtol),
+    )
+
+
+def case_1(elements: int, rtol: float) -> Drive:
+    """Table 1 and Eq. 28."""
+    return started(two_pulley(elements), rtol)
+
+
+def case_2(creep_rate_factor: float) -> Callable[[int, float], Drive]:
+    """The drive of the force distributions, Eq. 29."""
+
+    def drive(elements: int, rtol: float) -> Drive:
+        first = case_1(elements, rtol)
+        driver, driven = first.pulleys
+        rise = {"start": 0.05, "end": 0.6}
+        return first.replace(
+            belt=first.belt.replace(length=1.2443, bending_factor=0.001, youngs_modulus=1e9),
+            pulley=[
+                driver.replace(speed={"kind": "ramp", "value": 120.0, **rise}),
+                driven.replace(torque={"kind": "cosine_ramp", "value": -45.0, **rise}),
+            ],
+            contact=first.contact.replace(creep_rate_factor=creep_rate_factor),
+        )
+
+    return drive
+
+
+@dataclass(frozen=True)
+class Case:
+    """A drive, and what to run on it: meshes and tolerances of beltdyn; meshes, steps and segments of Exudyn."""
+
+    drive: Callable[[int, float], Drive]
+    own_elements: tuple[int, ...]
+    elements: tuple[int, ...]
+    rtol: tuple[float, ...] = (1e-2, 3e-3, 1e-3)
+    steps: tuple[float, ...] = (2e-3, 1e-3, 5e-4)
+    segments: int = 12
+
+
+CASES = {
+    "case-1": Case(case_1, (20, 22, 24, 30, 32), (20, 30)),
+    "case-2-1e4": Case(case_2(1e4), (24, 30), (30,)),
+    "case-2-1e5": Case(case_2(1e5), (24, 30), (30,)),
+}
+
+
+def ours(case: Case, elements: int, rtol: float) -> Solution:
+    """Simulate with beltdyn; the time is that of the whole run, equilibrium and observation of results included."""
+    run = simulate(case.drive(elements, rtol))
+    return run.dataset["pulley_speed"].values[:, 1], float(run.dataset.attrs["wall_time"])
+
+
+def theirs(case: Case, elements: int, step: float, segments: int) -> Solution:
+    """Simulate with Exudyn; nan where it gives up."""
+    from peers.exudyn_drive import Settings
+    from peers.exudyn_drive import simulate as simulate_in_exudyn
+
+    drive = case.drive(elements, 1e-3)
+    times = np.linspace(0.0, drive.simulation.duration, 1001)
+    try:
+        run = simulate_in_exudyn(drive, Settings(step, segments))
+    except (RuntimeError, ValueError):
+        return np.full_like(times, np.nan), float("nan")
+    return np.interp(times, run.time, run.speed), run.seconds
+
+
+def reference(folder: Path, name: str, make: Callable[[], Solution]) -> FloatArray:
+    """A converged solution, from its file or computed now."""
+    path = folder / f"{name}.npy"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        CONSOLE.print(f"computing {path} …")
+        np.save(path, make()[0])
+    return np.asarray(np.load(path))
+
+
+@dataclass
+class Entry:
+    """One program with one setting."""
+
+    program: str
+    elements: int
+    setting: str
+    run: Callable[[], Solution]
+    reference: FloatArray
+    seconds: list[float] = field(default_factory=list)
+    error: float = float("nan")
+
+    @property
+    def median(self) -> float:
+        """Median of the times so far, s."""
+        return statistics.median(self.seconds)
+
+    def take_turn(self) -> None:
+        """Run once."""
+        speed, seconds = self.run()
+        self.seconds.append(seconds)
+        self.error = float(np.sqrt(np.mean((speed - self.reference) ** 2)))
+
+
+def entries(name: str, case: Case, folder: Path, with_peer: bool) -> list[Entry]:
+    """Everything to run on a case."""
+    own = reference(folder, f"beltdyn-{name}", lambda: ours(case, REFERENCE_ELEMENTS, 1e-5))
+    made = [
+        Entry("beltdyn", n, f"rtol {rtol:g}", lambda n=n, rtol=rtol: ours(case, n, rtol), own)  # type: ignore[misc]
+        for n in case.own_elements
+        for rtol in case.rtol
+    ]
+    if with_peer:
+        peer = reference(folder, f"exudyn-{name}", lambda: theirs(case, REFERENCE_ELEMENTS, 2e-4, 4))
+        made += [
+            Entry("Exudyn", n, f"step {step:g} s", lambda n=n, h=step: theirs(case, n, h, case.segments), peer)  # type: ignore[misc]
+            for n in case.elements
+            for step in case.steps
+        ]
+    return made
+
+
+def table(name: str, rows: list[Entry]) -> Table:
+    """Error and median time of every entry."""
+    result = Table("program", "elements", "setting", "error, rad/s", "time, s", "spread, s", title=name)
+    for row in rows:
+        spread = f"{min(row.seconds):.3f} to {max(row.seconds):.3f}"
+        result.add_row(row.program, str(row.elements), row.setting, f"{row.error:.4f}", f"{row.median:.3f}", spread)
+    return result
+
+
+def verdicts(rows: list[Entry]) -> Iterator[str]:
+    """For every mesh of Exudyn, how much faster beltdyn is at no larger an error.
+
+    Exudyn's best accurate setting on a mesh is its fastest whose error is within a tenth of its smallest there.
+    """
+    ours = [row for row in rows if row.program == "beltdyn"]
+    for elements in sorted({row.elements for row in rows if row.program == "Exudyn"}):
+        peers = [row for row in rows if row.program == "Exudyn" and row.elements == elements]
+        accurate = 1.1 * min(row.error for row in peers)
+        best = min((row for row in peers if row.error <= accurate), key=lambda row: row.median)
+        rivals = [row for row in ours if row.error <= best.error]
+        if not rivals:
+            yield f"No setting of beltdyn reaches {best.error:.4f} rad/s, as Exudyn does with {elements} elements."
+            continue
+        own = min(rivals, key=lambda row: row.median)
+        yield (
+            f"Exudyn, {elements} elements: {best.error:.4f} rad/s in {best.median:.3f} s ({best.setting}). beltdyn, "
+            f"{own.elements} elements: {own.error:.4f} rad/s in {own.median:.3f} s ({own.setting}), "
+            f"{best.median / own.median:.1f} times faster."
+        )
+
+
+def main() -> None:
+    """Run and print."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("cases", nargs="*", default=list(CASES), choices=list(CASES), metavar="CASE")
+    parser.add_argument("--references", type=Path, default=Path("exudyn-references"))
+    parser.add_argument("--rounds", type=int, default=5)
+    arguments = parser.parse_args()
+    with_peer = find_spec("exudyn") is not None
+    if not with_peer:
+        CONSOLE.print("exudyn is not installed (pip install exudyn): beltdyn runs alone.")
+    for name in arguments.cases:
+        rows = entries(name, CASES[name], arguments.references, with_peer)
+        for _ in range(arguments.rounds):
+            for row in rows:
+                row.take_turn()
+        CONSOLE.print(table(name, rows))
+        for line in verdicts(rows) if with_peer else ():
+            CONSOLE.print(line)
+
+
+if __name__ == "__main__":
+    main()
