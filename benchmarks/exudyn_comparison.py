@@ -187,14 +187,14 @@ def verdicts(rows: list[Entry]) -> Iterator[str]:
 def main() -> None:
     """Run and print."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("cases", nargs="*", default=list(CASES), choices=list(CASES), metavar="CASE")
+    parser.add_argument("cases", nargs="*", choices=[*CASES, []], default=[], metavar="CASE")
     parser.add_argument("--references", type=Path, default=Path("exudyn-references"))
     parser.add_argument("--rounds", type=int, default=5)
     arguments = parser.parse_args()
     with_peer = find_spec("exudyn") is not None
     if not with_peer:
         CONSOLE.print("exudyn is not installed (pip install exudyn): beltdyn runs alone.")
-    for name in arguments.cases:
+    for name in arguments.cases or CASES:
         rows = entries(name, CASES[name], arguments.references, with_peer)
         for _ in range(arguments.rounds):
             for row in rows:

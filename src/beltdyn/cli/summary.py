@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from beltdyn.cli.console import show, show_facts, show_table, show_warnings
 
 if TYPE_CHECKING:
-    from beltdyn.results import Run, Summary
+    from beltdyn.results import Resolution, Run, Summary
 
 
 def show_summary(run: "Run") -> None:
@@ -46,6 +46,7 @@ def show_summary(run: "Run") -> None:
 def _facts(summary: "Summary") -> list[tuple[str, str]]:
     """What the solver did; of a static equilibrium, which takes no steps, nothing but the time."""
     facts = [
+        ("mesh", _mesh(summary.resolution)),
         ("energy closure", f"within {abs(summary.energy_closure):.1e} of the energy put in"),
         ("outputs", f"{summary.outputs}"),
         ("steps", f"{summary.steps}, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"),
@@ -54,3 +55,10 @@ def _facts(summary: "Summary") -> list[tuple[str, str]]:
     took = f"{summary.wall_time:.3g} s, and {summary.compile_time:.3g} s to prepare kernels"
     known = not math.isnan(summary.wall_time)
     return [*(facts if summary.steps else []), *([("time taken", took)] if known else [])]
+
+
+def _mesh(resolution: "Resolution") -> str:
+    """The estimated errors of the mesh; without contact there are none of forces."""
+    known = [error for error in resolution.force_errors if math.isfinite(error)]
+    forces = f"contact forces ripple by {max(known):.1%} of their mean, " if known else ""
+    return f"{forces}tension is about {resolution.tension_error:.1%} too high"

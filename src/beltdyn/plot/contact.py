@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection
 
 from beltdyn.errors import ModelError
 from beltdyn.plot.instant import at
-from beltdyn.plot.style import INK, axes_or_new, color, dash, label, styled, unit
+from beltdyn.plot.style import INK, axes_or_new, color, dash, label, mark, styled, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Run
 
@@ -23,7 +23,7 @@ def contact_forces(
     """Draw the contact forces on the belt from where it enters a pulley to where it leaves.
 
     Dashed lines beside the friction force are what Coulomb friction allows: the belt slides where the
-    force reaches them.
+    force reaches them. Forces that the mesh does not resolve are marked.
 
     Parameters
     ----------
@@ -66,6 +66,8 @@ def contact_forces(
     coordinate_unit = unit(run.dataset["belt_coordinate"])
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(instant['time']):.4g} s")
+    if not run.resolution.resolves(number):
+        mark(ax, f"not resolved by {run.drive.belt.elements} elements")
     return ax
 
 

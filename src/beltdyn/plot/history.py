@@ -3,7 +3,7 @@
 import xarray as xr
 from matplotlib.axes import Axes
 
-from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, styled, unit
+from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, mark, styled, unit
 from beltdyn.results import Run
 
 _ENERGIES = (
@@ -57,7 +57,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
 
 @styled
 def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the tensions of the spans over time.
+    """Draw the tensions of the spans over time, marked where the mesh does not resolve them.
 
     Parameters
     ----------
@@ -71,7 +71,10 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
     """
-    return _lines(run.dataset["span_tension"], axes_or_new(ax))
+    ax = _lines(run.dataset["span_tension"], axes_or_new(ax))
+    if not run.resolution.resolves_tension:
+        mark(ax, f"about {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
+    return ax
 
 
 @styled

@@ -149,6 +149,23 @@ def label(variable: xr.DataArray) -> str:
     return f"{variable.attrs['long_name']} [{unit(variable)}]"
 
 
+def mark(ax: Axes, text: str) -> None:
+    """Write a reservation about what is drawn into the lower right corner."""
+    box = {"boxstyle": "round,pad=0.3", "facecolor": "white", "edgecolor": COLORS[1], "alpha": 0.9}
+    ax.text(
+        0.985,
+        0.03,
+        text,
+        transform=ax.transAxes,
+        ha="right",
+        va="bottom",
+        fontsize=9,
+        color=COLORS[1],
+        bbox=box,
+        zorder=6,
+    )
+
+
 def dash(number: int) -> Dash:
     """Give the line style of the line of this number, counted from 0."""
     return DASHES[number % len(DASHES)]

@@ -3,6 +3,7 @@
 from beltdyn.results.layout import Layout
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
+from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run, open_run
 from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.summary import PulleySummary, SpanSummary, Summary, summarize
@@ -18,6 +19,7 @@ __all__ = [
     "MemoryRecorder",
     "PulleySummary",
     "Recorder",
+    "Resolution",
     "Run",
     "SpanSummary",
     "Status",

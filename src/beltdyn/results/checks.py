@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import xarray as xr
 
 from beltdyn.model import Drive
-from beltdyn.model.resolution import arc_angle, arc_error, elements_needed
+from beltdyn.results.resolution import FORCE_LIMIT, estimate_resolution
 
 CLOSURE_LIMIT = 0.01
 """Largest closure error of the energy account that passes without a warning."""
@@ -33,7 +33,7 @@ def find_warnings(dataset: xr.Dataset, drive: Drive) -> list[str]:
         *_unfinished(dataset, drive),
         *_open_energy_account(dataset, drive),
         *_slack_spans(dataset),
-        *_coarse_elements(dataset, drive),
+        *_unresolved(dataset, drive),
     ]
 
 
@@ -66,22 +66,19 @@ def _slack_spans(dataset: xr.Dataset) -> Iterator[str]:
             )
 
 
-def _coarse_elements(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
-    """Compare how far an element misses the circle with the penetration f_n / k_p; nodes alone do not miss it."""
-    if drive.contact.sampling == "nodal":
-        return
-    last = dataset.isel(time=-1)
-    for number, pulley in enumerate(drive.pulleys):
-        force = last["normal_force"].where(last["contact_pulley"] == number)
-        if not float(force.max()) > 0.0:
-            continue
-        penetration = float(force.mean()) / drive.contact.stiffness
-        needed = elements_needed(drive.belt, pulley.radius, penetration)
-        if needed > drive.belt.elements:
-            angle, miss = arc_angle(drive.belt, pulley.radius), arc_error(drive.belt, pulley.radius)
-            yield (
-                f"contact forces on {pulley.name} are not resolved: "
-                f"an element spans {math.degrees(angle):.0f} degrees and "
-                f"misses the circle by {miss:.1e} m, against a penetration of {penetration:.1e} m. "
-                f"Speeds converge earlier; for contact forces and tensions set belt.elements to {needed} or more."
-            )
+def _unresolved(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
+    """Say what the mesh does not resolve, and which one would."""
+    resolution = estimate_resolution(dataset, drive)
+    names = [pulley.name for number, pulley in enumerate(drive.pulleys) if not resolution.resolves(number)]
+    worst = max((error for error in resolution.force_errors if math.isfinite(error)), default=math.nan)
+    said = []
+    if names:
+        ripple = f" (they ripple by {worst:.0%} of their mean)" if worst > FORCE_LIMIT else ""
+        said.append(f"the contact forces along {' and '.join(names)}{ripple}")
+    if not resolution.resolves_tension:
+        said.append(f"the tension (about {resolution.tension_error:.0%} too high)")
+    if said:
+        yield (
+            f"the mesh does not resolve {', and '.join(said)}. Speeds converge earlier. "
+            f"Set belt.elements = {resolution.elements} or more, in place of {drive.belt.elements}."
+        )

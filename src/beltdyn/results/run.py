@@ -10,6 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.results.checks import find_warnings
 from beltdyn.results.dataset import open_dataset
+from beltdyn.results.resolution import Resolution, estimate_resolution
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,18 @@ class Run:
     def warnings(self) -> list[str]:
         """What a reader of the results has to know; empty when all is well."""
         return find_warnings(self.dataset, self.drive)
+
+    @cached_property
+    def resolution(self) -> Resolution:
+        """How well the mesh resolves tension and contact.
+
+        Raises
+        ------
+        ModelError
+            If the run holds no output.
+        """
+        self.require_output()
+        return estimate_resolution(self.dataset, self.drive)
 
     def require_output(self) -> None:
         """Make sure that there is something to look at.

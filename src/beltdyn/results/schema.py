@@ -70,6 +70,7 @@ VARIABLES = MappingProxyType(
         "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
         "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities"),
         "belt_tension": Variable(("time", "element"), "N", "Belt tension"),
+        "tension_variation": Variable(("time", "element"), "N", "Variation of the tension within an element"),
         "span_tension": Variable(_SPAN, "N", "Span tension"),
         "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
         "normal_force": Variable(_POINT, "N/m", "Normal force on the belt"),

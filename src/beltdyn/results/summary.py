@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
 
 WINDOW = 0.1
@@ -81,6 +82,8 @@ class Summary:
         One for each pulley.
     spans : tuple of SpanSummary
         One for each span.
+    resolution : Resolution
+        How well the mesh resolves tension and contact.
     energy_closure : float
         Closure error of the energy account at the end, relative to the energy put in.
     integrator : str
@@ -103,6 +106,7 @@ class Summary:
     outputs: int
     pulleys: tuple[PulleySummary, ...]
     spans: tuple[SpanSummary, ...]
+    resolution: Resolution
     energy_closure: float
     integrator: str
     steps: int
@@ -144,6 +148,7 @@ def summarize(run: Run) -> Summary:
         outputs=len(time),
         pulleys=_pulleys(window, np.array([pulley.radius for pulley in run.drive.pulleys])),
         spans=_spans(window),
+        resolution=run.resolution,
         energy_closure=float(dataset["energy_closure"][-1]),
         integrator=str(attributes.get("integrator", "")),
         steps=int(attributes.get("steps", 0)),

@@ -27,6 +27,8 @@ class Observations(NamedTuple):
     """rad, shape (k, P)."""
     belt_tension: FloatArray
     """Mean axial force of each curve, N, shape (k, n)."""
+    tension_variation: FloatArray
+    """Root mean square deviation of the axial force within each curve from that mean, N, shape (k, n)."""
     span_tension: FloatArray
     """Mean axial force of the free belt after each pulley, N, shape (k, P); nan where the belt does not leave it."""
     belt_speed: FloatArray
@@ -74,6 +76,7 @@ def new_observations(system: System, count: int) -> Observations:
         hub_force=np.zeros((count, pulleys, 2)),
         wrap_angle=np.zeros((count, pulleys)),
         belt_tension=np.zeros((count, curves)),
+        tension_variation=np.zeros((count, curves)),
         span_tension=np.zeros((count, pulleys)),
         belt_speed=np.zeros((count, pulleys)),
         normal_force=np.zeros((count, points)),

@@ -129,12 +129,16 @@ def _slope(samples: Samples, xi: float, length: float) -> tuple[float, float]:
 
 @kernel
 def _observe_tension(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
-    """Mean axial force of a curve."""
-    mean = 0.0
+    """Axial force of a curve: its mean, and how much it varies."""
+    mean = square = 0.0
     for point in range(system.elastic.points.size):
+        weight = system.elastic.weights[point]
         qx, qy = _slope(samples, system.elastic.points[point], length)
-        mean += system.elastic.weights[point] * axial_force(qx * qx + qy * qy, system.section)
+        force = axial_force(qx * qx + qy * qy, system.section)
+        mean += weight * force
+        square += weight * force * force
     result.belt_tension[k, curve] = mean
+    result.tension_variation[k, curve] = sqrt(max(0.0, square - mean * mean))
 
 
 @kernel
