@@ -26,6 +26,10 @@ STATISTICS = {
 }
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--curves", metavar="FILE", help="write the curves of docs/verification to a JSON file")
+
+
 @pytest.fixture(scope="session")
 def layout(drive: Drive) -> Layout:
     elements, length = drive.belt.elements, drive.belt.length

@@ -1,12 +1,15 @@
 """Belts and elements to verify; the numbers that tests measure are listed by ``pytest -v`` at the end."""
 
+import json
 from collections.abc import Callable, Sequence
 from importlib.resources import files
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import settings
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
 from beltdyn.model import Belt, Drive, loads
@@ -21,6 +24,7 @@ settings.register_profile("patient", deadline=None)  # a kernel is compiled at i
 settings.load_profile("patient")
 
 MEASURED = pytest.StashKey[list[str]]()
+CURVES = pytest.StashKey[dict[str, list[dict[str, Any]]]]()
 SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
 """A clamp holds the place and the section r_y; the tangent r_x is free to stretch and to shear against it."""
 
@@ -31,9 +35,27 @@ def measured(request: pytest.FixtureRequest) -> Callable[..., None]:
     notes = request.config.stash.setdefault(MEASURED, [])
 
     def note(**values: float) -> None:
-        notes.append(f"{request.node.name}: " + ", ".join(f"{key} = {value:.3g}" for key, value in values.items()))
+        notes.append(f"{request.node.name}: " + ", ".join(f"{key} = {value:.5g}" for key, value in values.items()))
 
     return note
+
+
+@pytest.fixture
+def curve(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """Note a curve for a panel "figure/panel" of docs/verification; ``--curves FILE`` collects them."""
+    notes = request.config.stash.setdefault(CURVES, {})
+
+    def note(panel: str, x: ArrayLike, y: ArrayLike, label: str, style: str = "o-") -> None:
+        values = {"x": np.asarray(x, float).tolist(), "y": np.asarray(y, float).tolist()}
+        notes.setdefault(panel, []).append({"label": label, "style": style, **values})
+
+    return note
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    file = session.config.getoption("--curves", None)
+    if file is not None:
+        Path(file).write_text(json.dumps(session.config.stash.get(CURVES, {})), encoding="utf-8")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

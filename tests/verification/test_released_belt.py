@@ -88,6 +88,7 @@ def test_the_papers_belt_becomes_a_circle(
     released: Callable[[int], Belt],
     on_pulleys: Start,
     measured: Callable[..., None],
+    curve: Callable[..., None],
     method: Method,
     iterations: int,
 ) -> None:
@@ -99,6 +100,7 @@ def test_the_papers_belt_becomes_a_circle(
     np.testing.assert_array_equal(found.iterates[0], on_pulleys(system).nodes(system))
     np.testing.assert_array_equal(found.iterates[-1], nodes)
     assert len(found.iterates) == found.iterations + 1
+    curve("released_belt/iteration", np.arange(1, found.iterations + 1), found.norms, method)
     seen = around_center(nodes)
     measured(
         iterations=found.iterations,
@@ -108,7 +110,11 @@ def test_the_papers_belt_becomes_a_circle(
 
 
 def test_radius_converges_to_that_of_pure_bending(
-    released: Callable[[int], Belt], on_pulleys: Start, order: Callable[..., float], measured: Callable[..., None]
+    released: Callable[[int], Belt],
+    on_pulleys: Start,
+    order: Callable[..., float],
+    measured: Callable[..., None],
+    curve: Callable[..., None],
 ) -> None:
     """At order 4, that of cubics in the energy of second derivatives."""
     meshes = [10, 20, 40, 80]
@@ -119,6 +125,7 @@ def test_radius_converges_to_that_of_pure_bending(
         errors.append(around_center(found.state.nodes(system))[0, 0] / circle_radius(belt) - 1.0)
     fitted = order(meshes, errors)
     measured(**{f"error_{n}": error for n, error in zip(meshes, errors, strict=True)}, order=fitted)
+    curve("released_belt/radius", meshes, errors, "radius")
     assert fitted == pytest.approx(4.0, abs=0.05)
 
 

@@ -72,6 +72,7 @@ def test_order_against_the_closed_form(
     roll_up: Callable[[float, int], tuple[Belt, FloatArray]],
     order: Callable[..., float],
     measured: Callable[..., None],
+    curve: Callable[..., None],
     thickness: float,
 ) -> None:
     errors = []
@@ -80,6 +81,7 @@ def test_order_against_the_closed_form(
         errors.append(arc_error(belt, nodes, *pure_bending(belt, FULL_CIRCLE * belt.bending_stiffness)))
     coarse, fine = order(MESHES[:3], errors[:3]), order(MESHES[1:], errors[1:])
     measured(**{f"error_{n}": error for n, error in zip(MESHES, errors, strict=True)}, coarse=coarse, fine=fine)
+    curve("roll_up", MESHES, errors, f"h/L = {thickness:g}")
     assert coarse == pytest.approx(3.7, abs=0.1)  # at 4 elements, 90 degrees each, not yet asymptotic
     assert fine == pytest.approx(4.0, abs=0.15)
     assert errors[-1] < 1e-5

@@ -73,10 +73,13 @@ def test_elliptic_integrals_give_the_published_table(load: int) -> None:
 
 
 def test_thin_belt_bends_as_published(
-    tips: Callable[[float, int], dict[int, FloatArray]], measured: Callable[..., None]
+    tips: Callable[[float, int], dict[int, FloatArray]], measured: Callable[..., None], curve: Callable[..., None]
 ) -> None:
     """At h / L = 1e-3 shear, stretch and the mesh of 64 elements together miss the elastica by less than 1e-6."""
     found = tips(1e-3, 64)
+    for k, name in enumerate(("shortening u/L", "deflection w/L")):
+        curve("elastica/tip", LOADS, [elastica(load)[k] for load in LOADS], f"{name}, elastica", "-")
+        curve("elastica/tip", LOADS, [found[load][k] for load in LOADS], f"{name}, 64 elements", "o")
     for load in LOADS:
         exact = elastica(load)
         u, w, slope = found[load] - exact
@@ -87,12 +90,16 @@ def test_thin_belt_bends_as_published(
 
 
 def test_converges_with_the_mesh(
-    tips: Callable[[float, int], dict[int, FloatArray]], order: Callable[..., float], measured: Callable[..., None]
+    tips: Callable[[float, int], dict[int, FloatArray]],
+    order: Callable[..., float],
+    measured: Callable[..., None],
+    curve: Callable[..., None],
 ) -> None:
     """A cubic cannot bend far without stretching: order 2 while a thin belt resists (membrane locking), then 4."""
     meshes, exact = [8, 16, 32, 64], np.array([elastica(load) for load in LOADS])
     errors = [float(np.abs(np.array(list(tips(1e-3, n).values())) - exact).max()) for n in meshes]
     measured(**{f"error_{n}": error for n, error in zip(meshes, errors, strict=True)})
+    curve("elastica/mesh", meshes, errors, "thin belt, h/L = 0.001")
     assert order(meshes[:2], errors[:2]) > 2.0
     assert order(meshes[1:3], errors[1:3]) > 3.0
     assert order(meshes[2:], errors[2:]) > 4.0

@@ -19,6 +19,8 @@ Name = Literal["cvode", "ida", "bdf", "radau"]
 
 _POSITION_TIME = 1e-3
 _RELATIVE = 1e-9
+_HIGHEST_A_STABLE_ORDER = 2
+"""Of the backward differentiation formulas: higher orders feed the belt's fast vibrations, which nothing damps."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class StandardIntegrator:
                     solver.step()
                 except _SolverError as error:
                     raise self._give_up(before, error) from error
-                task.statistics.steps += 1
+                task.statistics.steps += solver.time > before  # SUNDIALS returns once more where it has interpolated
                 task.statistics.evaluations = equations.evaluations
                 count = int(np.searchsorted(task.times, solver.time, side="right"))
                 instants = task.times[written:count]
@@ -142,7 +144,12 @@ class _Sundials:
     """CVODE or IDA, with the exact dense Jacobian."""
 
     def __init__(self, leg: _Leg) -> None:
-        options = {"rtol": _RELATIVE, "atol": leg.tolerances, "max_step": leg.method.max_step or 0.0}
+        options = {
+            "rtol": _RELATIVE,
+            "atol": leg.tolerances,
+            "max_step": leg.method.max_step or 0.0,
+            "max_order": _HIGHEST_A_STABLE_ORDER,
+        }
         if leg.method.name == "cvode":
             self._solver = _cvode(leg.equations, options)
             self._solver.init_step(leg.begin, leg.y)

@@ -21,11 +21,13 @@ def closure(run: xr.Dataset) -> float:
 @pytest.mark.parametrize("contact", [{}, SLOPE_OF_COEFFICIENT], ids=["force_slope", "coefficient_slope"])
 @pytest.mark.parametrize("integration", ["zone", "fixed"])
 def test_closes_better_with_tighter_tolerance(
-    small: Drive, change: Change, measured: Measured, contact: dict[str, object], integration: str
+    small: Drive, change: Change, measured: Measured, curve: Measured, contact: dict[str, object], integration: str
 ) -> None:
     drive = change(small, contact=contact | {"integration": integration})
     errors = [closure(simulate(change(drive, simulation={"rtol": rtol})).dataset) for rtol in (1e-3, 1e-4, 1e-5)]
     measured(rtol_1e3=errors[0], rtol_1e4=errors[1], rtol_1e5=errors[2])
+    law = "coefficient slope" if contact else "force slope"
+    curve("energy/small", (1e-3, 1e-4, 1e-5), errors, f"{law}, {integration}")
     assert errors[0] < 1e-3
     assert errors[1] < 0.3 * errors[0]
     assert errors[2] < 0.3 * errors[1]

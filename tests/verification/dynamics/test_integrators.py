@@ -62,6 +62,7 @@ def test_second_order(
     stretched: FloatArray,
     order: Callable[[Sequence[int], Sequence[float]], float],
     measured: Measured,
+    curve: Measured,
     radius: float,
 ) -> None:
     def places(steps: int) -> FloatArray:
@@ -70,6 +71,7 @@ def test_second_order(
     converged, steps = places(6400), [200, 400, 800]
     errors = [float(np.max(np.abs(places(n) - converged))) for n in steps]
     measured(order=order(steps, errors), coarsest=errors[0])
+    curve("generalized_alpha/order", steps, np.array(errors) / (STRAIN * LENGTH), f"ρ∞ = {radius:g}")
     assert order(steps, errors) == pytest.approx(2.0, abs=0.1)  # the third order is not gone yet at rho = 0
 
 
@@ -81,7 +83,7 @@ def test_converges_to_the_axial_mode(fixed_steps: FixedSteps, bar: System, stret
 
 
 @pytest.mark.parametrize("radius", [0.0, 0.3, 0.6, 0.8, 1.0])
-def test_spectral_radius_at_infinite_frequency(measured: Measured, radius: float) -> None:
+def test_spectral_radius_at_infinite_frequency(measured: Measured, curve: Measured, radius: float) -> None:
     """Amplification of the thickness stretch of a node, the only free coordinate, by steps 1e5 over its frequency."""
     free = (1, 5)
     held = [(node, c) for node in range(4) for c in range(6) if (node, c) != free]
@@ -103,6 +105,7 @@ def test_spectral_radius_at_infinite_frequency(measured: Measured, radius: float
         amplification[:, column] = state / (small * scales)
     found = float(np.max(np.abs(np.linalg.eigvals(amplification))))
     measured(radius=found)
+    curve("generalized_alpha/radius", [radius], [found], "", "ko")
     assert found == pytest.approx(radius, abs=0.01)  # the root is threefold: the cube root of a rounding of 1e-7
 
 
@@ -155,7 +158,13 @@ def converged(short: Drive, change: Change) -> xr.Dataset:
     ],
 )
 def test_integrators_agree_and_approach_each_other(
-    short: Drive, change: Change, converged: xr.Dataset, measured: Measured, integrator: str, rtols: tuple[float, ...]
+    short: Drive,
+    change: Change,
+    converged: xr.Dataset,
+    measured: Measured,
+    curve: Measured,
+    integrator: str,
+    rtols: tuple[float, ...],
 ) -> None:
     errors = {}
     for rtol in rtols:
@@ -164,6 +173,7 @@ def test_integrators_agree_and_approach_each_other(
         place = float(np.max(np.abs(run.node_position - converged.node_position))) / short.belt.length
         errors[rtol] = max(speed, place)
     measured(**{f"rtol_{rtol:.0e}": error for rtol, error in errors.items()})
+    curve("integrators", list(errors), list(errors.values()), integrator)
     for rtol, error in errors.items():
         assert error < 2.0 * rtol, (
             f"{integrator} at {rtol}"

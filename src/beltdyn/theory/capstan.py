@@ -1,0 +1,52 @@
+"""Tension ratio of a belt that slides on a pulley (Euler 1769, Eytelwein 1808), also in motion."""
+
+from math import exp, log
+
+
+def capstan_ratio(friction: float, angle: float) -> float:
+    """Ratio e^(mu theta) of the tensions at the ends of an arc of sliding.
+
+    Parameters
+    ----------
+    friction
+        Coefficient of friction mu.
+    angle
+        theta, rad.
+    """
+    return exp(friction * angle)
+
+
+def tight_tension(
+    slack: float, friction: float, angle: float, *, mass_per_length: float = 0.0, speed: float = 0.0
+) -> float:
+    """Tension T1 at the tight end: (T1 - rho A v^2) = (T2 - rho A v^2) e^(mu theta).
+
+    Parameters
+    ----------
+    slack
+        T2, N.
+    friction, angle
+        mu and theta, rad.
+    mass_per_length
+        rho A, kg/m.
+    speed
+        Speed v of the belt along the arc, m/s; the belt presses by its tension less rho A v^2.
+
+    Returns
+    -------
+    float
+        T1, N.
+    """
+    lifted = mass_per_length * speed**2
+    return lifted + (slack - lifted) * capstan_ratio(friction, angle)
+
+
+def sliding_angle(
+    tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0
+) -> float:
+    """Arc of sliding ln((T1 - rho A v^2) / (T2 - rho A v^2)) / mu that turns one tension into another, rad.
+
+    Parameters are those of `tight_tension`, with the tight tension T1 (N) in place of the angle.
+    """
+    lifted = mass_per_length * speed**2
+    return log((tight - lifted) / (slack - lifted)) / friction

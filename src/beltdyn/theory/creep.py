@@ -1,0 +1,142 @@
+"""Creep-rate friction on a rigid pulley in steady running: f_t = -nu_s (v - omega R), capped at mu f_n (Eq. 22).
+
+A belt that runs along a fixed curve passes every place with the same transport speed c, in reference length per second,
+and has the speed v = c g where its stretch is g.  Along the reference coordinate X of an arc of radius R
+
+    d(T - rho A c^2 g) / dX = -f_t,        f_n = (T - rho A c^2 g) g / R.
+"""
+
+from math import exp, expm1, tanh
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.theory.stretch import stretch, tangent_stiffness
+
+FloatArray = NDArray[np.float64]
+
+
+def layer_length(
+    creep_rate_factor: float, transport_speed: float, axial_stiffness: float, *, mass: float = 0.0, at: float = 1.0
+) -> float:
+    """Reference length (dT/dg - rho A c^2) / (nu_s c) over which a slip velocity grows e-fold along an arc, m.
+
+    Parameters
+    ----------
+    creep_rate_factor
+        nu_s, kg/(m s).
+    transport_speed
+        c, m/s.
+    axial_stiffness
+        EA, N.
+    mass
+        rho A, kg/m.
+    at
+        Stretch at which the law of tension is linearised.
+    """
+    stiffness = float(tangent_stiffness(at, axial_stiffness)) - mass * transport_speed**2
+    return stiffness / (creep_rate_factor * transport_speed)
+
+
+def tension_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
+    """Tension along an arc, linearised and below the cap: T = T_in + (T_out - T_in) (e^(X/l) - 1) / (e^(a/l) - 1).
+
+    Parameters
+    ----------
+    x : ndarray
+        Reference coordinate X from the entry, m.
+    entry, leaving
+        Tensions T_in and T_out, N.
+    arc
+        Reference length a of the arc, m.
+    layer
+        Layer length l, m.
+
+    Returns
+    -------
+    ndarray
+        N.
+    """
+    return np.asarray(entry + (leaving - entry) * np.expm1(x / layer) / np.expm1(arc / layer))
+
+
+def friction_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, layer: float) -> FloatArray:
+    """Friction -dT/dX that belongs to `tension_along_arc`, N/m; it grows towards the exit.  Parameters as there."""
+    return np.asarray((entry - leaving) / layer * np.exp((x - arc) / layer) / -np.expm1(-arc / layer))
+
+
+def creep_speed_loss(tight: float, slack: float, axial_stiffness: float, arc: float, layer: float) -> float:
+    """Loss of speed (omega1 - omega2) / omega1 of a drive with equal pulleys below the cap, linearised.
+
+    With a growing exponential on each arc, (omega1 - omega2) R / c = (g1 - g2) coth(a / 2 l) and
+    omega1 R / c = g1 + (g1 - g2) / (e^(a/l) - 1).  For l << a this is elastic creep, (T1 - T2) / EA; for l >> a it is
+    the slip of an inextensible belt, 2 (T1 - T2) / (nu_s a) over the rim speed.
+
+    Parameters
+    ----------
+    tight, slack
+        T1, T2, N.
+    axial_stiffness
+        EA, N.
+    arc, layer
+        Reference lengths a of each arc and l, m.
+    """
+    first, second = (float(stretch(end, axial_stiffness)) for end in (tight, slack))
+    rim = first + (first - second) * exp(-arc / layer) / -expm1(-arc / layer)
+    return (first - second) / tanh(0.5 * arc / layer) / rim
+
+
+def creeping_arc(
+    x: FloatArray,
+    entry: float,
+    rim_speed: float,
+    transport_speed: float,
+    *,
+    axial_stiffness: float,
+    mass: float,
+    radius: float,
+    friction: float,
+    creep_rate_factor: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Tension and friction along an arc with Green's strain, inertia and the Coulomb cap, integrated from the entry.
+
+    Parameters
+    ----------
+    x : ndarray
+        Reference coordinates from the entry, ascending from zero, m.
+    entry
+        Tension where the belt runs on, N.
+    rim_speed
+        omega R, m/s.
+    transport_speed
+        c, m/s.
+    axial_stiffness, mass
+        EA (N) and rho A (kg/m).
+    radius
+        R, m.
+    friction
+        mu.
+    creep_rate_factor
+        nu_s, kg/(m s).
+
+    Returns
+    -------
+    tension, friction : ndarray
+        N and N/m.
+    """
+    from scipy.integrate import solve_ivp
+
+    def friction_force(force: FloatArray, g: FloatArray) -> FloatArray:
+        pressing = (force - mass * transport_speed**2 * g) * g / radius
+        cap = friction * np.maximum(pressing, 0.0)
+        return np.asarray(-np.clip(creep_rate_factor * (transport_speed * g - rim_speed), -cap, cap))
+
+    def slope(_: float, force: FloatArray) -> FloatArray:
+        g = stretch(force, axial_stiffness)
+        lifted = mass * transport_speed**2 / tangent_stiffness(g, axial_stiffness)
+        return -friction_force(force, g) / (1.0 - lifted)
+
+    found = solve_ivp(slope, (0.0, float(x[-1])), [entry], t_eval=x, method="LSODA", rtol=1e-10, atol=1e-12 * entry).y[
+        0
+    ]
+    return found, friction_force(found, stretch(found, axial_stiffness))

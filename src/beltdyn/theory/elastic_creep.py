@@ -1,0 +1,70 @@
+"""Elastic creep of a two-pulley drive with Coulomb friction (Grashof 1883): adhesion, sliding, loss of speed."""
+
+from math import exp
+
+from beltdyn.theory.capstan import sliding_angle
+from beltdyn.theory.path import open_belt
+from beltdyn.theory.stretch import stretch
+
+
+def speed_loss(tight: float, slack: float, axial_stiffness: float) -> float:
+    """Loss of speed (v1 - v2) / v1 = 1 - g(T2) / g(T1) of the rims, (T1 - T2) / EA at small strain.
+
+    Where the belt runs onto a pulley it adheres and has the speed of the rim: c g(T1) on the driver, c g(T2) on the
+    driven pulley, with the same c, the reference length that passes per second.
+
+    Parameters
+    ----------
+    tight, slack
+        T1, T2, N.
+    axial_stiffness
+        EA, N.
+    """
+    return 1.0 - float(stretch(slack, axial_stiffness) / stretch(tight, axial_stiffness))
+
+
+def slip_arc(tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0) -> float:
+    """Angle over which the belt slides before it leaves a pulley, rad; on the rest of the wrap it adheres.
+
+    Parameters are those of `capstan.sliding_angle`.
+    """
+    return sliding_angle(tight, slack, friction, mass_per_length=mass_per_length, speed=speed)
+
+
+def gross_slip_tensions(
+    installed: float,
+    friction: float,
+    distance: float,
+    radius: float,
+    *,
+    mass_per_length: float = 0.0,
+    speed: float = 0.0,
+) -> tuple[float, float]:
+    """Tight and slack tension of a drive with equal pulleys at the end of its capacity, where all of the wrap slides.
+
+    At small strain the belt's length fixes the mean of the tension over the path: with the lifted tension
+    T0 = rho A v^2, span l, T1 - T0 = (T2 - T0) e^(mu pi), and arcs with the mean (T1 - T2) / (mu pi),
+
+        l (T1 - T0 + T2 - T0) + 2 R (T1 - T2) / mu = (2 l + 2 pi R) (T - T0).
+
+    Parameters
+    ----------
+    installed
+        T, tension at rest, N.
+    friction
+        mu.
+    distance, radius
+        Between the centres, and of both pulleys, m.
+    mass_per_length, speed
+        rho A (kg/m) and v (m/s).
+
+    Returns
+    -------
+    tuple of float
+        T1, T2, N.
+    """
+    belt, lifted = open_belt(distance, (radius, radius)), mass_per_length * speed**2
+    ratio = exp(friction * belt.wrap[0])
+    weight = belt.span * (ratio + 1.0) + 2.0 * radius * (ratio - 1.0) / friction
+    slack = belt.length * (installed - lifted) / weight
+    return lifted + ratio * slack, lifted + slack

@@ -1,0 +1,51 @@
+"""A belt that runs without load: its tension rho A v^2 bends it around any curve without a force from outside."""
+
+from math import sqrt
+
+
+def hoop_tension(mass_per_length: float, speed: float) -> float:
+    """Tension T = rho A v^2 (Routh 1860) of a running belt that nothing presses or holds.
+
+    Parameters
+    ----------
+    mass_per_length
+        rho A of the belt as it runs, kg/m.
+    speed
+        v, m/s.
+
+    Returns
+    -------
+    float
+        T, N.
+    """
+    return mass_per_length * speed**2
+
+
+def hoop_stretch(
+    transport_speed: float,
+    axial_stiffness: float,
+    mass_per_length: float,
+    *,
+    bending_stiffness: float = 0.0,
+    turning: float = 0.0,
+) -> float:
+    """Stretch g of a spinning hoop by Green's strain, exactly: g^2 = 1 + (2 rho A c^2 - 3 EI kappa^2) / EA.
+
+    With v = c g and rho A / g kg in a running metre the hoop tension is rho A c^2 g.  The belt carries it by stretch,
+    EA (g^2 - 1) g / 2, and, as it was straight unstressed, by bending, 3/2 EI kappa^2 g (Eq. 14).
+
+    Parameters
+    ----------
+    transport_speed
+        Reference length that passes per second, c, m/s: angular speed times L / 2 pi.
+    axial_stiffness
+        EA, N.
+    mass_per_length
+        rho A of the unstretched belt, kg/m.
+    bending_stiffness
+        EI, N m^2.
+    turning
+        kappa = 2 pi / L, 1/m.
+    """
+    inertia = 2.0 * mass_per_length * transport_speed**2
+    return sqrt(1.0 + (inertia - 3.0 * bending_stiffness * turning**2) / axial_stiffness)

@@ -1,0 +1,55 @@
+"""Tension and stretch of a belt by Green's strain, N = EA (g^2 - 1) g / 2 (first term of Eq. 14)."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+def tension(stretch: ArrayLike, axial_stiffness: float) -> FloatArray:
+    """Tension N = EA (g^2 - 1) g / 2.
+
+    Parameters
+    ----------
+    stretch
+        g, length over reference length.
+    axial_stiffness
+        EA, N.
+
+    Returns
+    -------
+    ndarray
+        N, N: the force that does the work of a change of g.
+    """
+    g = np.asarray(stretch, dtype=float)
+    return np.asarray(0.5 * axial_stiffness * (g * g - 1.0) * g)
+
+
+def tangent_stiffness(stretch: ArrayLike, axial_stiffness: float) -> FloatArray:
+    """Rate dN/dg = EA (3 g^2 - 1) / 2, N; parameters as for `tension`."""
+    g = np.asarray(stretch, dtype=float)
+    return np.asarray(0.5 * axial_stiffness * (3.0 * g * g - 1.0))
+
+
+def stretch(tension: ArrayLike, axial_stiffness: float) -> FloatArray:
+    """Stretch g under a tension: the root of g^3 - g - 2 N / EA = 0 that is 1 without tension.
+
+    Parameters
+    ----------
+    tension
+        N, N; above -EA / sqrt(27), where a belt of this law gives way.
+    axial_stiffness
+        EA, N.
+
+    Returns
+    -------
+    ndarray
+        g, by Cardano's formula: 2 / sqrt(3) cos(arccos(x) / 3) with x = sqrt(27) N / EA, or with arcosh for x > 1.
+    """
+    x = np.sqrt(27.0) * np.asarray(tension, dtype=float) / axial_stiffness
+    third = np.where(
+        x <= 1.0,
+        np.cos(np.arccos(np.clip(x, -1.0, 1.0)) / 3.0),
+        np.cosh(np.arccosh(np.maximum(x, 1.0)) / 3.0),
+    )
+    return np.asarray(2.0 / np.sqrt(3.0) * third)

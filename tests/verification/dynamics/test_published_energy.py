@@ -1,0 +1,93 @@
+"""The energy account closes in every published case, at order 1 in the tolerance, and with every integrator."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn import simulate
+from beltdyn.model import Drive
+from beltdyn.published import two_pulley
+
+Change = Callable[..., Drive]
+CLOSED = 1e-3
+RISE = {"start": 0.05, "end": 0.6}
+STIFF = {"youngs_modulus": 1e9}
+CASES: dict[str, dict[str, Any]] = {
+    "20 elements": {},
+    "25 elements": {"belt": {"elements": 25}},
+    "30 elements": {"belt": {"elements": 30}},
+    "E = 1e9": {"belt": STIFF},
+    "E = 1e9, slope 1e4": {"belt": STIFF, "contact": {"creep_rate_factor": 1e4}},
+    "unequal radii": {"driven": {"radius": 0.1218}},
+    "loaded, slope 1e4": {"contact": {"creep_rate_factor": 1e4}},
+    "loaded, slope 1e5": {"contact": {"creep_rate_factor": 1e5}},
+}
+LOADED: dict[str, dict[str, Any]] = {
+    "belt": {"length": 1.2443, "bending_factor": 0.001, "elements": 30, **STIFF},
+    "driver": {"speed": {"kind": "ramp", "value": 120.0, **RISE}},
+    "driven": {"torque": {"kind": "cosine_ramp_published", "value": -45.0, **RISE}},
+}
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def published(change: Change) -> Callable[..., Drive]:
+    """A published case with published settings, by name."""
+
+    def make(name: str, **simulation: Any) -> Drive:
+        drive, groups = two_pulley(), dict(CASES[name])
+        if name.startswith("loaded"):
+            groups |= LOADED
+        data = [p.model_dump(by_alias=True, exclude_none=True) for p in drive.pulleys]
+        pulleys = [p | groups.pop(p["name"], {}) for p in data]
+        return change(drive, pulley=pulleys, simulation=simulation, **groups)
+
+    return make
+
+
+def closure(drive: Drive) -> float:
+    return float(np.max(np.abs(simulate(drive).dataset.energy_closure.values)))
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_every_published_case_closes(
+    published: Callable[..., Drive],
+    order: Callable[..., float],
+    measured: Callable[..., None],
+    curve: Callable[..., None],
+    case: str,
+) -> None:
+    rtols = [1e-3, 1e-4]
+    errors = [closure(published(case, rtol=rtol)) for rtol in rtols]
+    fitted = -order(rtols, errors)
+    measured(**{f"rtol_{rtol:.0e}": error for rtol, error in zip(rtols, errors, strict=True)}, order=fitted)
+    curve("energy/cases", rtols, errors, case)
+    assert errors[-1] < CLOSED
+    assert fitted > 0.75
+
+
+@pytest.mark.parametrize(
+    ("integrator", "rtols"),
+    [
+        ("generalized_alpha", (1e-3, 1e-4, 1e-5)),
+        ("cvode", (1e-3, 1e-4, 1e-5)),
+        ("ida", (1e-3, 1e-4, 1e-5)),
+        ("bdf", (1e-3, 1e-4)),
+        ("radau", (1e-3, 1e-4)),
+    ],
+)
+def test_every_integrator_closes(
+    published: Callable[..., Drive],
+    measured: Callable[..., None],
+    curve: Callable[..., None],
+    integrator: str,
+    rtols: tuple[float, ...],
+) -> None:
+    """The laid drive of the paper over 20 ms; SUNDIALS stays at order 2, since higher ones feed vibrations."""
+    errors = [closure(published("20 elements", integrator=integrator, rtol=rtol, duration=0.02)) for rtol in rtols]
+    measured(**{f"rtol_{rtol:.0e}": error for rtol, error in zip(rtols, errors, strict=True)})
+    curve("energy/integrators", rtols, errors, integrator)
+    assert max(errors) < CLOSED
