@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help install demo test validate bench docs lock clean
+.PHONY: help install demo paper test validate bench docs lock clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -18,6 +18,9 @@ $(STAMP): requirements.lock pyproject.toml
 
 demo: install ## run the two-pulley drive, with its summary and figures
 	$(BIN)/beltdyn demo
+
+paper: install ## the paper's statements beside our results, in beltdyn-paper/paper.html
+	$(BIN)/beltdyn paper
 
 test: install ## linters, types, layers, unit and verification tests
 	$(BIN)/ruff check .
@@ -44,5 +47,5 @@ lock: ## resolve the versions anew
 
 clean: ## remove everything that can be made again
 	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
-		dist docs/_build beltdyn-demo
+		dist docs/_build beltdyn-demo beltdyn-paper
 	find src tests -name __pycache__ -type d -exec rm -rf {} +

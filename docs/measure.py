@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import beltdyn as bd
-from beltdyn.published import two_pulley
+from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
+from beltdyn.report.distribution import distribution, find_peak, fit_line
+from beltdyn.report.hand_formulas import penalty_layer
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.simulate import choose_integrator
 from beltdyn.solve.trajectory import Statistics, drive_task
@@ -29,7 +31,6 @@ Changes = Mapping[str, Any]
 DRIVER, DRIVEN = 0, 1
 RULES = (("zone", 5), ("zone", 8), ("fixed", 5), ("fixed", 7), ("fixed", 11), ("fixed", 21), ("fixed", 31))
 COARSE_RULES = (("fixed", 5), ("fixed", 11), ("fixed", 21))
-RISE = {"start": 0.05, "end": 0.6}
 MEASUREMENTS: dict[str, Callable[[], Iterator[Row]]] = {}
 
 
@@ -67,19 +68,12 @@ def changed(
 
 def case_1(elements: int = 20, *, contact: Changes | None = None, **simulation: Any) -> bd.Drive:
     """The two-pulley drive of Table 1 and Eq. 28, contact by default, from equilibrium."""
-    settings = {"start": "equilibrium"} | simulation
-    default = {"integration": "zone", "normal_law": "no_pull"}
-    return changed(two_pulley(elements), contact=default | dict(contact or {}), **settings)
+    return changed(better(two_pulley(elements)), contact=contact, **simulation)
 
 
 def case_2(*, contact: Changes | None = None, **simulation: Any) -> bd.Drive:
     """The drive of the paper's force distributions (Eq. 29), contact on the zone, from equilibrium."""
-    return changed(
-        case_1(30, contact={"creep_rate_factor": 1e4} | dict(contact or {}), **simulation),
-        belt={"length": 1.2443, "bending_factor": 0.001, "youngs_modulus": 1e9},
-        driver={"speed": {"kind": "ramp", "value": 120.0, **RISE}},
-        driven={"torque": {"kind": "cosine_ramp_published", "value": -45.0, **RISE}},
-    )
+    return changed(better(loaded_two_pulley()), contact=contact, **simulation)
 
 
 def tutorial(**changes: Any) -> bd.Drive:
@@ -384,6 +378,22 @@ def force_spread(run: bd.Run) -> Row:
         rows.append((np.ptp(force) / force.mean(), force.std() / force.mean(), force.mean(), np.mean(force <= 0.0)))
     spread, deviation, average, zeros = np.mean(rows, axis=0)
     return f"{spread:.2g}", f"{deviation:.2g}", f"{average:.0f} N/m", f"{zeros:.1%}"
+
+
+@measurement("friction-peaks")
+def friction_peaks() -> Iterator[Row]:
+    """Rise of friction on the driver of case 2 above its straight line at the ends of contact, for two penalties."""
+    yield "penalty stiffness [N/m^2]", "level in the middle", "rise at the inlet", "at the exit", "by hand at most"
+    for stiffness in (1e7, 4e7):
+        drive = changed(better(loaded_two_pulley(), 90), contact={"stiffness": stiffness})
+        run = bd.simulate(drive)
+        forces = distribution(run, DRIVER)
+        level = fit_line(forces, "friction").level
+        rises = [find_peak(forces, at_exit).excess * level for at_exit in (False, True)]
+        layer = penalty_layer(drive, float(mean(run, "span_tension", 200).mean()))
+        speed = float(mean(run, "belt_speed", 200).mean())
+        by_hand = 0.5 * 1e4 * speed * (layer / drive.pulleys[DRIVER].radius) ** 2
+        yield f"{stiffness:.0e}", *(f"{value:.0f} N/m" for value in (level, *rises, by_hand))
 
 
 # docs/tutorial.md

@@ -12,26 +12,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from beltdyn.model import Belt, Drive
-from beltdyn.solve.static import Equilibrium, find_equilibrium
+from beltdyn.model import Belt
+from beltdyn.published.released_belt import closed, on_pulleys, release, released_belt
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_system
-from beltdyn.system.state import State, laid
+from beltdyn.system.state import State
 
 FloatArray = NDArray[np.float64]
 Method = Literal["globalised", "newton"]
 Start = Callable[[System], State]
-
-
-@pytest.fixture(scope="module")
-def released(belt: Belt) -> Callable[[int], Belt]:
-    return lambda elements: belt.replace(length=1.276, elements=elements)
-
-
-@pytest.fixture(scope="module")
-def on_pulleys(drive: Drive) -> Start:
-    """The laid belt."""
-    return lambda system: laid(system, drive.path)
 
 
 @pytest.fixture(scope="module")
@@ -51,16 +39,6 @@ def ellipse(along: Callable[[System, FloatArray, FloatArray], State]) -> Callabl
         return state
 
     return start
-
-
-def release(belt: Belt, start: Start, method: Method = "globalised") -> tuple[System, Equilibrium]:
-    """Equilibrium with the leftmost node fixed in x and y and the rightmost in y (Fig. 4)."""
-    system = belt_system(belt, closure="shared_node")
-    begin = start(system)
-    x = begin.nodes(system)[:, 0]
-    left, right = int(np.argmin(x)), int(np.argmax(x))
-    system = belt_system(belt, closure="shared_node", fixed=[(left, 0), (left, 1), (right, 1)])
-    return system, find_equilibrium(system, begin, method=method)
 
 
 def around_center(nodes: FloatArray) -> FloatArray:
@@ -85,15 +63,14 @@ def assert_circle(belt: Belt, nodes: FloatArray) -> None:
 
 @pytest.mark.parametrize(("method", "iterations"), [("globalised", 200), ("newton", 40)])
 def test_the_papers_belt_becomes_a_circle(
-    released: Callable[[int], Belt],
-    on_pulleys: Start,
     measured: Callable[..., None],
     curve: Callable[..., None],
     method: Method,
     iterations: int,
 ) -> None:
-    belt = released(10)
-    system, found = release(belt, on_pulleys, method)
+    belt = released_belt(10)
+    system = closed(belt)
+    found = release(belt, on_pulleys(system), method)
     nodes = found.state.nodes(system)
     assert_circle(belt, nodes)
     assert found.iterations <= iterations
@@ -110,18 +87,15 @@ def test_the_papers_belt_becomes_a_circle(
 
 
 def test_radius_converges_to_that_of_pure_bending(
-    released: Callable[[int], Belt],
-    on_pulleys: Start,
-    order: Callable[..., float],
-    measured: Callable[..., None],
-    curve: Callable[..., None],
+    order: Callable[..., float], measured: Callable[..., None], curve: Callable[..., None]
 ) -> None:
     """At order 4, that of cubics in the energy of second derivatives."""
     meshes = [10, 20, 40, 80]
     errors = []
     for elements in meshes:
-        belt = released(elements)
-        system, found = release(belt, on_pulleys)
+        belt = released_belt(elements)
+        system = closed(belt)
+        found = release(belt, on_pulleys(system))
         errors.append(around_center(found.state.nodes(system))[0, 0] / circle_radius(belt) - 1.0)
     fitted = order(meshes, errors)
     measured(**{f"error_{n}": error for n, error in zip(meshes, errors, strict=True)}, order=fitted)
@@ -132,18 +106,18 @@ def test_radius_converges_to_that_of_pure_bending(
 @pytest.mark.parametrize("elements", [10, 20, 40])
 @pytest.mark.parametrize("slenderness", [0.3, 0.5, 0.8, 2.0])
 def test_an_ellipse_becomes_a_circle(
-    released: Callable[[int], Belt],
     ellipse: Callable[[float], Start],
     slenderness: float,
     elements: int,
 ) -> None:
-    belt = released(elements)
-    system, found = release(belt, ellipse(slenderness))
+    belt = released_belt(elements)
+    system = closed(belt)
+    found = release(belt, ellipse(slenderness)(system))
     assert_circle(belt, found.state.nodes(system))
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_a_disturbed_belt_becomes_a_circle(released: Callable[[int], Belt], on_pulleys: Start, seed: int) -> None:
+def test_a_disturbed_belt_becomes_a_circle(seed: int) -> None:
     """Nodes off by 1 cm, tangents and sections by 1 degree."""
 
     def disturbed(system: System) -> State:
@@ -152,6 +126,7 @@ def test_a_disturbed_belt_becomes_a_circle(released: Callable[[int], Belt], on_p
         state.nodes(system)[:] += np.random.default_rng(seed).uniform(-1.0, 1.0, (system.nodes, 6)) * size
         return state
 
-    belt = released(10)
-    system, found = release(belt, disturbed)
+    belt = released_belt(10)
+    system = closed(belt)
+    found = release(belt, disturbed(system))
     assert_circle(belt, found.state.nodes(system))

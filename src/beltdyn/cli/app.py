@@ -10,6 +10,7 @@ from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error
 from beltdyn.cli.demo import demo
 from beltdyn.cli.new import new
+from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
 from beltdyn.cli.run import run
 from beltdyn.cli.schema import schema
@@ -27,7 +28,7 @@ app = App(
     "`beltdyn run drive.toml`.",
     suppress_keyboard_interrupt=False,
 )
-_COMMANDS: tuple[Callable[..., object], ...] = (new, check, run, static, plot, demo, schema)
+_COMMANDS: tuple[Callable[..., object], ...] = (new, check, run, static, plot, demo, paper, schema)
 for position, command in enumerate(_COMMANDS):
     app.command(command, sort_key=position)
 

@@ -1,0 +1,27 @@
+"""`beltdyn paper`."""
+
+from pathlib import Path
+
+from beltdyn.cli.console import show, show_error
+from beltdyn.cli.progress import runs_bar
+from beltdyn.errors import ConvergenceError
+
+
+def paper(*, out: Path = Path("beltdyn-paper")) -> int:
+    """Run the paper's cases and write one page that compares them with its statements, figure by figure.
+
+    Runs go side by side on all cores, for a few minutes. Ctrl-C ends them and keeps what was computed.
+
+    Parameters
+    ----------
+    out
+        The folder for the page, paper.html, and the result files of its runs.
+    """
+    from beltdyn.report import build_paper
+
+    with runs_bar() as report:
+        outcome = build_paper(out, report)
+    for name, reason in outcome.failures.items():
+        show_error(f"the run {name} failed: {reason}")
+    show(f"Page: {outcome.page}")
+    return ConvergenceError.exit_code if outcome.failures else 0

@@ -1,0 +1,50 @@
+"""One self-contained HTML page from sections."""
+
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+
+from jinja2 import Environment, FunctionLoader, StrictUndefined
+
+from beltdyn.report.numbers import shown
+from beltdyn.report.statement import Section, Verdict
+from beltdyn.results.atomic import atomic_path
+
+_BADGES = {Verdict.HOLDS: "holds", Verdict.FAILS: "fails", Verdict.OPEN: "open"}
+
+
+def write_page(path: Path, sections: Sequence[Section], failures: Mapping[str, str], facts: Mapping[str, str]) -> None:
+    """Write the page; a page that is there already is replaced when the new one is complete.
+
+    Parameters
+    ----------
+    path : Path
+        The HTML file.
+    sections : sequence of Section
+        Parts of the page.
+    failures : mapping
+        Name -> reason of every run that failed.
+    facts : mapping
+        Where the page comes from: name -> fact.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be written.
+    """
+    environment = Environment(
+        loader=FunctionLoader(_read), autoescape=True, undefined=StrictUndefined, trim_blocks=True
+    )
+    environment.filters |= {"shown": shown, "badge": _BADGES.__getitem__}
+    statements = [statement for section in sections for statement in section.statements]
+    counts = {verdict: sum(statement.verdict is verdict for statement in statements) for verdict in Verdict}
+    text = environment.get_template("page.html.jinja").render(
+        sections=sections, failures=failures, facts=facts, counts=counts, style=_read("page.css")
+    )
+    with atomic_path(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _read(name: str) -> str:
+    """Read a file of this package."""
+    return files("beltdyn.report").joinpath(name).read_text(encoding="utf-8")

@@ -1,0 +1,49 @@
+"""Section 5 of the paper: one module for each part, with its cases and its statements.
+
+A module has two functions: ``cases() -> dict[str, Drive]`` names what is to be run, and
+``section(runs) -> Section`` judges the results.  `SECTIONS` lists the modules in the order of the page.
+"""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from beltdyn.model import Drive
+from beltdyn.report.paper import (
+    contact_forces,
+    creep_rate,
+    energy,
+    friction_law,
+    integration_points,
+    mesh,
+    more_pulleys,
+    released,
+    stiffness,
+)
+from beltdyn.report.runs import Runs
+from beltdyn.report.statement import Section
+
+
+class Part(Protocol):
+    """A module of this package."""
+
+    __name__: str
+
+    def cases(self) -> Mapping[str, Drive]:
+        """Name -> what is to be run; a name that occurs in several modules stands for the same drive."""
+
+    def section(self, runs: Runs) -> Section:
+        """What becomes of the statements."""
+
+
+SECTIONS: tuple[Part, ...] = (
+    friction_law,
+    released,
+    mesh,
+    stiffness,
+    creep_rate,
+    contact_forces,
+    integration_points,
+    more_pulleys,
+    energy,
+)
+"""The parts of the page."""

@@ -1,0 +1,178 @@
+"""What the paper says, what we find, and the verdict."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import groupby
+
+Value = float | int | str
+
+
+class Verdict(StrEnum):
+    """Whether a statement holds."""
+
+    HOLDS = "holds"
+    FAILS = "does not hold"
+    OPEN = "cannot be decided from the text"
+
+
+def verdict(condition: bool) -> Verdict:
+    """Give the verdict of a criterion that is met or not.
+
+    Parameters
+    ----------
+    condition : bool
+        Whether it is met.
+    """
+    return Verdict.HOLDS if condition else Verdict.FAILS
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number with its name and unit.
+
+    Attributes
+    ----------
+    name : str
+        What it is.
+    value : float, int or str
+        The number, or words in its place.
+    unit : str
+        SI unit, "%" for a fraction that is shown in per cent, or empty.
+    digits : int
+        Significant digits of a float.
+    """
+
+    name: str
+    value: Value
+    unit: str = ""
+    digits: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What we find with some settings.
+
+    Attributes
+    ----------
+    settings : str
+        Which ones, such as "as published".
+    numbers : sequence of Number
+        What was measured.
+    verdict : Verdict
+        What follows from them by the statement's criterion.
+    """
+
+    settings: str
+    numbers: Sequence[Number]
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """A statement about results and what becomes of it here.
+
+    Attributes
+    ----------
+    name : str
+        Identifier, unique on the page.
+    title : str
+        The statement in a few words.
+    quote : str
+        The paper's words, with the mark ... where some are left out; empty for a check of our own.
+    page : int or None
+        Page of the paper.
+    criterion : str
+        When the statement holds, in numbers.
+    findings : sequence of Finding
+        The first has published settings and gives the verdict.
+    remark : str
+        What else a reader should know.
+    """
+
+    name: str
+    title: str
+    quote: str
+    page: int | None
+    criterion: str
+    findings: Sequence[Finding]
+    remark: str = ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict with published settings."""
+        return self.findings[0].verdict
+
+    @property
+    def tables(self) -> list[list[Finding]]:
+        """Successive findings that list the same numbers, which fit into one table; those without numbers left out."""
+        found = (finding for finding in self.findings if finding.numbers)
+        return [list(group) for _, group in groupby(found, lambda finding: [number.name for number in finding.numbers])]
+
+    @property
+    def contested(self) -> bool:
+        """Whether other settings lead to another verdict."""
+        return any(finding.verdict is not self.verdict for finding in self.findings)
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure of the page.
+
+    Attributes
+    ----------
+    source : str
+        The picture as a data URI.
+    caption : str
+        What it shows.
+    """
+
+    source: str
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table whose first column holds names.
+
+    Attributes
+    ----------
+    caption : str
+        What it shows.
+    headings : sequence of str
+        One for each column, with units.
+    rows : sequence of sequences
+        The values.
+    """
+
+    caption: str
+    headings: Sequence[str]
+    rows: Sequence[Sequence[Value]]
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of the page.
+
+    Attributes
+    ----------
+    name : str
+        Identifier, unique on the page.
+    title : str
+        Its heading.
+    introduction : str
+        What was run, how numbers are defined.
+    statements : sequence of Statement
+        In the paper's order.
+    pictures : sequence of Picture
+        Shown beside the statements.
+    tables : sequence of Table
+        Shown below them.
+    """
+
+    name: str
+    title: str
+    introduction: str
+    statements: Sequence[Statement] = ()
+    pictures: Sequence[Picture] = ()
+    tables: Sequence[Table] = ()
