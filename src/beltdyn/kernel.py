@@ -3,8 +3,12 @@
 Numba's own cache watches the file of the compiled function only.  A kernel that inlines a law from another file would
 keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source
 file that takes part in compiled code, so that an edit anywhere in them starts an empty cache.
+
+Numba also optimises a kernel and turns it into machine code before it links it into its callers, which do so again.
+Here kernels take each other in as they were written; only those that Python calls are optimised, whole, and kept.
 """
 
+import gc
 import hashlib
 import os
 import tempfile
@@ -12,10 +16,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 import platformdirs
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.registry import CPUDispatcher
+from numba.core.types.misc import unliteral
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -26,32 +34,91 @@ CACHE_VARIABLE = "BELTDYN_CACHE_DIR"
 """Environment variable that moves the kernel cache (default: the user's cache folder)."""
 
 
+_OPTIONS = {
+    "nopython": True,
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": {"contract", "nsz"},
+    "no_cfunc_wrapper": True,
+    "_nrt": False,
+}
+
+
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function with Numba at its first call and keep the machine code on disk.
 
     Parameters
     ----------
     function
-        A function of scalars, arrays and named tuples of them.  Everything that it calls must be a kernel too.  A
-        private one (leading underscore) becomes a part of its callers and cannot be called from Python.
+        A function of scalars, arrays and named tuples of them, that makes no arrays.  Everything that it calls must be
+        a kernel too.  A private one (leading underscore) is inlined wherever it is called.
 
     Returns
     -------
     Callable
         The compiled function, with the signature of the given one.
     """
-    private = function.__name__.startswith("_")
     with _cache_folder(str(kernel_cache())):
-        compiled: Callable[P, R] = numba.njit(
-            cache=True,
-            nogil=True,
-            error_model="numpy",
-            fastmath={"contract", "nsz"},
-            forceinline=private,
-            no_cpython_wrapper=private,
-            no_cfunc_wrapper=private,
-        )(function)
-    return compiled
+        compiled = _Kernel(function, targetoptions=_OPTIONS)
+        compiled.enable_caching()
+    return cast(Callable[P, R], compiled)
+
+
+class _Kernel(CPUDispatcher):  # type: ignore[misc]
+    """A compiled function that shows itself to other kernels as code to be optimised along with them."""
+
+    def __init__(self, py_func: Any, variables: Any = None, targetoptions: Any = None) -> None:
+        super().__init__(py_func, variables, targetoptions)
+        inlined = {"forceinline": py_func.__name__.startswith("_"), "no_cpython_wrapper": True}
+        self._code = CPUDispatcher(py_func, variables, {**targetoptions, **inlined}, _CodeCompiler)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Type a call by another kernel, constants like any other number."""
+        return self._code.get_call_template([unliteral(argument) for argument in args], kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """What another kernel calls."""
+        return self._code.get_overload(sig)
+
+    def compile(self, sig: Any) -> Any:
+        """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects."""
+        collecting = gc.isenabled()
+        gc.disable()
+        try:
+            return super().compile(sig)
+        finally:
+            if collecting:
+                gc.enable()
+
+
+class _CodeCompiler(Compiler):  # type: ignore[misc]
+    """Numba's compiler, up to the code before optimisation."""
+
+    def __init__(self, typingctx: Any, targetctx: Any, _library: Any, *choices: Any) -> None:
+        super().__init__(typingctx, targetctx, _Code(targetctx.codegen(), "code"), *choices)
+
+
+class _Code(JITCodeLibrary):  # type: ignore[misc]
+    """Code of a kernel with all that it calls, neither optimised as a whole nor turned into machine code."""
+
+    def finalize(self) -> None:
+        """Link what it calls, and no more."""
+        for library in dict.fromkeys(self._linking_libraries):
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalized = True
+
+    def get_pointer_to_function(self, _name: str) -> int:
+        """No machine code, no address."""
+        self._ensure_finalized()
+        return 0
+
+    @property
+    def codegen(self) -> "_Code":
+        """What Numba asks to `set_env`."""
+        return self
+
+    def set_env(self, _name: str, _environment: Any) -> None:
+        """Nothing to set: the environment is for Python objects, which kernels do not see."""
 
 
 @cache

@@ -67,3 +67,23 @@ def test_machine_code_lands_in_the_cache(tmp_path: Path, monkeypatch: pytest.Mon
 
     assert double(21.0) == 42.0
     assert list((tmp_path / source_hash(PACKAGE)).rglob("*double*.nbi"))
+
+
+def test_only_kernels_that_python_calls_become_machine_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+
+    @kernel
+    def _half(x: float) -> float:
+        return 0.5 * x
+
+    @kernel
+    def inner(x: float, power: int) -> float:
+        return _half(x) ** power
+
+    @kernel
+    def outer(x: float) -> float:
+        return inner(x, 1) + inner(x, 2)
+
+    assert outer(6.0) == 12.0
+    assert [path.name.split("-")[0].split(".")[-1] for path in tmp_path.rglob("*.nbi")] == ["outer"]
+    assert inner(6.0, 2) == 9.0

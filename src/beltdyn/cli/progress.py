@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from beltdyn.solve.progress import Progress as SolverProgress
 
 _PHASES = {
-    "compiling": "preparing kernels (once on a machine: about a minute)",
+    "compiling": "compiling (once on a machine: about 20 s)",
     "equilibrium": "finding equilibrium",
     "integrating": "simulating",
 }
@@ -31,12 +31,13 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
         task = bar.add_task("preparing", total=None, state="")
 
         def report(progress: "SolverProgress") -> None:
+            integrating = progress.phase == "integrating"
             bar.update(
                 task,
                 description=_PHASES[progress.phase],
                 completed=progress.time,
-                total=progress.duration,
-                state=_state(progress) if progress.phase == "integrating" else "",
+                total=progress.duration if integrating else None,
+                state=_state(progress) if integrating else "",
             )
 
         yield report

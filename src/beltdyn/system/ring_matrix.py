@@ -94,7 +94,7 @@ def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
         if k > 0:
             _subtract_product(matrix.lower[k - 1], panels[k - 1], rows)
         _split(rows, matrix.upper[k], k < chain - 1, panels[k])
-        if not _eliminate(rows, panels[k], NODE):
+        if not _eliminate(rows, panels[k], rows.shape[0]):
             return False
     for k in range(chain - 2, -1, -1):
         _subtract_product(panels[k, :, :NODE], panels[k + 1], panels[k])
