@@ -20,7 +20,7 @@ from rich.table import Table
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.published import two_pulley
+from beltdyn.published import better, loaded_two_pulley, two_pulley
 
 FloatArray = NDArray[np.float64]
 Solution = tuple[FloatArray, float]
@@ -30,36 +30,14 @@ REFERENCE_ELEMENTS = 240
 CONSOLE = Console()
 
 
-def started(drive: Drive, rtol: float = 1e-3) -> Drive:
-    """A published drive from equilibrium, with contact by default."""
-    return drive.replace(
-        contact=drive.contact.replace(integration="zone", normal_law="no_pull"),
-        simulation=drive.simulation.replace(start="equilibrium", rtol=rtol),
-    )
-
-
 def case_1(elements: int, rtol: float) -> Drive:
-    """Table 1 and Eq. 28."""
-    return started(two_pulley(elements), rtol)
+    """Table 1 and Eq. 28, from equilibrium, with contact by default."""
+    return better(two_pulley(elements), rtol=rtol)
 
 
 def case_2(creep_rate_factor: float) -> Callable[[int, float], Drive]:
-    """The drive of the force distributions, Eq. 29."""
-
-    def drive(elements: int, rtol: float) -> Drive:
-        first = case_1(elements, rtol)
-        driver, driven = first.pulleys
-        rise = {"start": 0.05, "end": 0.6}
-        return first.replace(
-            belt=first.belt.replace(length=1.2443, bending_factor=0.001, youngs_modulus=1e9),
-            pulley=[
-                driver.replace(speed={"kind": "ramp", "value": 120.0, **rise}),
-                driven.replace(torque={"kind": "cosine_ramp", "value": -45.0, **rise}),
-            ],
-            contact=first.contact.replace(creep_rate_factor=creep_rate_factor),
-        )
-
-    return drive
+    """The drive of the force distributions, Eq. 29, from equilibrium, with contact by default."""
+    return lambda elements, rtol: better(loaded_two_pulley(creep_rate_factor, elements=elements), rtol=rtol)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from beltdyn.kernel import kernel
+from beltdyn.model import Drive
 from beltdyn.published import two_pulley
 from beltdyn.solve import find_equilibrium
 from beltdyn.system.arrays import NODE, FloatArray, System
@@ -48,22 +49,26 @@ def iterate(
         solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
 
 
-def measure(elements: int, integration: str) -> list[float]:
-    """Microseconds per iteration and element of each round, on the belt in equilibrium on its pulleys."""
-    drive = two_pulley(elements)
-    drive = drive.replace(contact=drive.contact.replace(integration=integration))
+def time_iterations(drive: Drive) -> list[float]:
+    """Microseconds per iteration of each round, on the belt in equilibrium on its pulleys."""
     system = drive_system(drive)
     state = find_equilibrium(system, laid(system, drive.path)).state
     velocity = np.zeros_like(state.position)
     equations, none = new_equations(system), np.zeros(NODE)
-    count = ITERATIONS // elements
+    count = ITERATIONS // system.nodes
     iterate(system, state.position, velocity, equations, none, 1)
     rounds = []
     for _ in range(ROUNDS):
         begun = time.perf_counter()
         iterate(system, state.position, velocity, equations, none, count)
-        rounds.append((time.perf_counter() - begun) / count / elements * 1e6)
+        rounds.append((time.perf_counter() - begun) / count * 1e6)
     return rounds
+
+
+def drive_of(elements: int, integration: str) -> Drive:
+    """The paper's drive."""
+    drive = two_pulley(elements)
+    return drive.replace(contact=drive.contact.replace(integration=integration))
 
 
 def main() -> None:
@@ -73,7 +78,7 @@ def main() -> None:
         table = Table("elements", "µs per iteration and element", "spread", title=f"Newton iteration, {integration}")
         medians = []
         for elements in ELEMENTS:
-            rounds = measure(elements, integration)
+            rounds = [time / elements for time in time_iterations(drive_of(elements, integration))]
             medians.append(statistics.median(rounds))
             table.add_row(f"{elements}", f"{medians[-1]:.2f}", f"{min(rounds):.2f} to {max(rounds):.2f}")
         growth = np.polyfit(np.log(ELEMENTS), np.log(np.array(medians) * ELEMENTS), 1)[0]
