@@ -77,7 +77,7 @@ def fill_observations(
                 number = element * system.control.shape[1] + curve
                 length = system.length[element] / system.control.shape[1]
                 _observe_tension(system, length, number, samples, result, k)
-                _observe_points(system, length, number, velocity[k], samples, result, k)
+                _observe_points(system, length, number, samples, result, k)
                 _observe_contact(system, element, curve, length, velocity[k], samples, result, k)
         take_shafts(system, time[k], velocity[k], samples.acceleration, samples.loads)
         _keep_loads(samples.loads, result, k)
@@ -142,12 +142,8 @@ def _observe_tension(system: System, length: float, curve: int, samples: Samples
 
 
 @kernel
-def _observe_points(
-    system: System, length: float, curve: int, velocity: FloatArray, samples: Samples, result: Observations, k: int
-) -> None:
-    """Contact at the sampling points of a curve."""
-    pulleys = system.pulleys
-    first = velocity.size - pulleys.radius.size
+def _observe_points(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
+    """Places, tension and speed of the sampling points of a curve, as if they were free."""
     count = system.contact.points.size
     for point in range(count):
         row = curve * count + point
@@ -163,15 +159,6 @@ def _observe_points(
         result.contact_position[k, row, 1] = y
         result.contact_pulley[k, row] = -1
         result.normal_force[k, row] = result.friction_force[k, row] = result.slip_velocity[k, row] = 0.0
-        for p in range(pulleys.radius.size):
-            wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], velocity[first + p])
-            here = approach(x, y, vx, vy, wheel)
-            if here.penetration >= 0.0:
-                force = point_force(here, wheel, system.law)
-                result.contact_pulley[k, row] = p
-                result.normal_force[k, row] = force.normal
-                result.friction_force[k, row] = force.friction
-                result.slip_velocity[k, row] = slip_velocity(here, wheel)
 
 
 @kernel
@@ -185,7 +172,7 @@ def _observe_contact(
     result: Observations,
     k: int,
 ) -> None:
-    """Contact of a curve as it moves the system, and the angle over which it touches each pulley."""
+    """Contact of a curve as it moves the system and at its sampling points, and the angle over which it touches."""
     pulleys, intervals = system.pulleys, samples.intervals
     first = velocity.size - pulleys.radius.size
     for p in range(pulleys.radius.size):
@@ -208,6 +195,26 @@ def _observe_contact(
         add_contact(samples.loads, p, totals)
         for interval in range(touching_intervals(samples.control, wheel, samples.overlap, intervals)):
             result.wrap_angle[k, p] += _angle(samples.control, wheel, intervals[interval, 0], intervals[interval, 1])
+        _touch_points(system, element * system.control.shape[1] + curve, p, wheel, samples, result, k)
+
+
+@kernel
+def _touch_points(
+    system: System, curve: int, pulley: int, wheel: Wheel, samples: Samples, result: Observations, k: int
+) -> None:
+    """Contact at the sampling points of a curve that touch a pulley."""
+    count = system.contact.points.size
+    for point in range(count):
+        row = curve * count + point
+        vx, vy = combine(samples.control_velocity, bernstein(system.contact.points[point]))
+        x, y = result.contact_position[k, row, 0], result.contact_position[k, row, 1]
+        here = approach(x, y, vx, vy, wheel)
+        if here.penetration >= 0.0:
+            force = point_force(here, wheel, system.law)
+            result.contact_pulley[k, row] = pulley
+            result.normal_force[k, row] = force.normal
+            result.friction_force[k, row] = force.friction
+            result.slip_velocity[k, row] = slip_velocity(here, wheel)
 
 
 @kernel
