@@ -211,10 +211,11 @@ def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
 def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -> None:
     """Target -= left right, for factors of six columns and of six rows."""
     for i in range(NODE):
-        for k in range(NODE):
-            factor = left[i, k]
-            for j in range(target.shape[1]):
-                target[i, j] -= factor * right[k, j]
+        a, b, c = left[i, 0], left[i, 1], left[i, 2]
+        d, e, f = left[i, 3], left[i, 4], left[i, 5]
+        for j in range(target.shape[1]):
+            first = a * right[0, j] + b * right[1, j] + c * right[2, j]
+            target[i, j] -= first + (d * right[3, j] + e * right[4, j] + f * right[5, j])
 
 
 @kernel
