@@ -66,6 +66,9 @@ def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, i
     int
         Number of intervals.
     """
+    if _all_inside(control, wheel):
+        intervals[0, 0], intervals[0, 1] = 0.0, 1.0
+        return 1
     _fill_overlap(control, wheel, overlap)
     count = 0
     left, value_left = 0.0, _value(overlap, 0, 0.0)
@@ -92,6 +95,20 @@ def touching_intervals(control: FloatArray, wheel: Wheel, overlap: FloatArray, i
         intervals[count, 0], intervals[count, 1] = start, 1.0
         count += 1
     return count
+
+
+@kernel
+def _all_inside(control: FloatArray, wheel: Wheel) -> bool:
+    """Whether no Bernstein coefficient of the squared distance to the centre exceeds that of the rim."""
+    x0, y0 = control[0, 0] - wheel.center_x, control[0, 1] - wheel.center_y
+    x1, y1 = control[1, 0] - wheel.center_x, control[1, 1] - wheel.center_y
+    x2, y2 = control[2, 0] - wheel.center_x, control[2, 1] - wheel.center_y
+    x3, y3 = control[3, 0] - wheel.center_x, control[3, 1] - wheel.center_y
+    largest = max(x0 * x0 + y0 * y0, x3 * x3 + y3 * y3, x0 * x1 + y0 * y1, x2 * x3 + y2 * y3)
+    largest = max(largest, 0.4 * (x0 * x2 + y0 * y2) + 0.6 * (x1 * x1 + y1 * y1))
+    largest = max(largest, 0.4 * (x1 * x3 + y1 * y3) + 0.6 * (x2 * x2 + y2 * y2))
+    largest = max(largest, 0.1 * (x0 * x3 + y0 * y3) + 0.9 * (x1 * x2 + y1 * y2))
+    return largest <= wheel.radius * wheel.radius
 
 
 @kernel

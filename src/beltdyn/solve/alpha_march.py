@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solve.generalized_alpha import REACHED, advance
+from beltdyn.solve.generalized_alpha import REACHED, STRETCH, advance
 from beltdyn.solve.march import (
     FAILED,
     ITERATIONS,
@@ -22,11 +22,15 @@ from beltdyn.solve.march import (
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import NODE, FloatArray
 from beltdyn.system.motion import new_equations
+from beltdyn.system.state import crossing_time
 
 _OUTPUTS = 64
 _STEPS_AT_ONCE = 8000
 _FIRST_STEP = 1e-6
 _NEWTON_FRACTION = 0.01
+_CROSSINGS = 2.0
+"""A step is long from sqrt(rtol) times the time of so many crossings of the belt by an axial wave.  The drive vibrates
+on its belt about that slowly, and until that turns, errors that pull the same way add up."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,7 @@ class GeneralizedAlpha:
     spectral_radius : float
         At infinite frequency, 0 (strongest damping) to 1 (none).
     rtol : float
-        Local error per unit of time over the velocity scale of the task.
+        Local error per unit of time over the velocity scale of the task; less for long steps.
     max_step : float or None
         s.
     """
@@ -56,6 +60,7 @@ class GeneralizedAlpha:
             newton_fraction=_NEWTON_FRACTION,
             max_step=self.max_step or float(task.times[-1] - task.times[0]),
             length_scale=system.scale,
+            long_step=_CROSSINGS * self.rtol**0.5 * crossing_time(system),
         )
         first_step = min(_FIRST_STEP, settings.max_step)
         march = new_march(float(task.times[0]), first_step, start.position, start.velocity)
@@ -77,7 +82,8 @@ class GeneralizedAlpha:
 
 def _room(times: FloatArray, written: int, march: March) -> Outputs:
     """Room for the next outputs, at least for all those that the next step can reach."""
-    end = max(written + _OUTPUTS, int(np.searchsorted(times, march.clock.sum(), side="right")) + 1)
+    farthest = march.clock[0] + STRETCH * march.clock[1]
+    end = max(written + _OUTPUTS, int(np.searchsorted(times, farthest, side="right")) + 1)
     horizon = float(times[end]) if end < len(times) else np.inf
     return empty_outputs(times[written:end], march.position.size)._replace(horizon=horizon)
 

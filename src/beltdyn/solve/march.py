@@ -30,6 +30,8 @@ class Settings(NamedTuple):
     """s."""
     length_scale: FloatArray
     """Lengths that turn changes of r, r_x, r_y into m, shape (6,)."""
+    long_step: float = np.inf
+    """Length from which on a step is allowed no more local error than one of this length, s."""
 
 
 class March(NamedTuple):

@@ -78,3 +78,8 @@ def straight(system: System) -> State:
     flat = np.zeros_like(along)
     place, slope = np.stack([along, flat], axis=1), np.stack([flat + 1.0, flat], axis=1)
     return at_rest(system, nodal_coordinates(system, place, slope))
+
+
+def crossing_time(system: System) -> float:
+    """Time that an axial wave takes from one end of the belt to the other, s."""
+    return float(np.sum(system.length)) * float(np.sqrt(system.section.mass / system.section.axial))

@@ -3,7 +3,7 @@ import pytest
 
 from beltdyn.model import Drive
 from beltdyn.system.build import belt_system, drive_system
-from beltdyn.system.state import at_rest, laid, straight
+from beltdyn.system.state import at_rest, crossing_time, laid, straight
 
 EXACT = 1e-12  # rounding of the path's arcs
 
@@ -44,3 +44,8 @@ def test_a_state_owns_its_coordinates(drive: Drive) -> None:
     coordinates[:] = 0.0
     assert state.nodes(system).all()
     assert state.position.shape == (6 * system.nodes + len(drive.pulleys),)
+
+
+def test_crossing_time_is_length_over_wave_speed(drive: Drive) -> None:
+    speed = np.sqrt(drive.belt.youngs_modulus * drive.belt.axial_factor / drive.belt.density)
+    assert crossing_time(drive_system(drive)) == pytest.approx(drive.belt.length / speed)

@@ -1,0 +1,217 @@
+"""One step of generalised-alpha, solved by Newton's method with a line search, in compiled code.
+
+Second-order form of Arnold and Brüls (2007), in which the equations of motion hold exactly at the end of each step
+and an auxiliary acceleration A carries the numerical damping:
+
+    (1 - am) A1 + am A0 = (1 - af) a1 + af a0
+    q1 = q0 + h v0 + h^2 ((1/2 - beta) A0 + beta A1),    v1 = v0 + h ((1 - gamma) A0 + gamma A1)
+    am = (2 rho - 1) / (rho + 1),   af = rho / (rho + 1),   gamma = 1/2 + af - am,   beta = (gamma + 1/2)^2 / 4
+
+after Chung and Hulbert (1993).
+"""
+
+from math import inf, isfinite, sqrt
+from typing import Final, NamedTuple
+
+from beltdyn.kernel import kernel
+from beltdyn.solve.march import ITERATIONS, March, Settings
+from beltdyn.system.arrays import NODE, System
+from beltdyn.system.assembly import assemble
+from beltdyn.system.excitation import prescribe
+from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
+from beltdyn.system.ring_matrix import solve_ring
+
+_MAX_ITERATIONS: Final = 10
+_OVERSHOOT: Final = 0.5
+"""Imbalance along a change, over that before it and against it, from which on a part of the change is taken back."""
+_CUTS: Final = 2
+_SHORTEST: Final = 0.1
+_DAMPED_FROM: Final = 4
+_STAGNATION: Final = 0.8
+_NEAR: Final = 3.0
+"""The loads are those before the last change, which must be below this many times what Newton's method may leave."""
+
+
+class Method(NamedTuple):
+    """Coefficients of the method for one spectral radius."""
+
+    am: float
+    af: float
+    gamma: float
+    beta: float
+    error: float
+    """Local error of the position over h^2 (A1 - A0)."""
+
+
+class Step(NamedTuple):
+    """A step that is tried."""
+
+    time: float
+    """Its end, s."""
+    by_velocity: float
+    """Change of the velocity over that of the position, 1/s."""
+    by_acceleration: float
+    """Change of the acceleration over that of the position, 1/s^2."""
+
+
+@kernel
+def method_of(rho: float) -> Method:
+    """Coefficients for the spectral radius rho at infinite frequency (Chung and Hulbert 1993)."""
+    am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
+    gamma = 0.5 + af - am
+    beta = 0.25 * (gamma + 0.5) ** 2
+    return Method(am, af, gamma, beta, abs(beta + 0.5 * (am - af) - 1.0 / 6.0))
+
+
+@kernel
+def try_step(
+    system: System, settings: Settings, method: Method, march: March, length: float, equations: Equations
+) -> int:
+    """Solve the equations of motion at the end of a step, from a constant A as first guess.
+
+    The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
+    along it turns against it; then only the part up to the balance is kept.  If the changes still do not shrink,
+    half steps end a cycle.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+    settings
+        Tolerances.
+    method
+        Coefficients.
+    march
+        Its trial state is overwritten.
+    length
+        Length of the step, s.
+    equations
+        Arrays to work in; afterwards its loads are those of the last iterate but one.
+
+    Returns
+    -------
+    int
+        Iterations, or 0 if they did not converge.
+    """
+    step = _predict(system, method, march, length)
+    allowed = settings.newton_fraction * allowed_error(settings, length)
+    before, slope, factor = inf, 0.0, 1.0
+    for iteration in range(_MAX_ITERATIONS):
+        march.counts[ITERATIONS] += 1
+        _linearise(system, march, step, equations)
+        if slope > 0.0:
+            factor = _cut_back(system, march, step, equations, slope, factor)
+        solved = solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
+        change = _size(system, settings, equations)
+        if not solved or not isfinite(change):
+            return 0
+        slope = _imbalance(equations)
+        contraction = min(1.0, change / before) if factor == 1.0 else 1.0
+        factor = 0.5 if iteration >= _DAMPED_FROM and change > _STAGNATION * before else 1.0
+        _move(system, march, step, equations, factor)
+        if change <= _NEAR * allowed and contraction * change <= allowed:
+            _finish(method, march)
+            return iteration + 1
+        before = change
+    return 0
+
+
+@kernel
+def allowed_error(settings: Settings, length: float) -> float:
+    """Local error of the position that a step of a length (s) should have, m."""
+    return settings.velocity_tolerance * min(length, settings.long_step)
+
+
+@kernel
+def _predict(system: System, method: Method, march: March, length: float) -> Step:
+    """Overwrite the trial state by that of a constant A."""
+    for i in range(march.position.size):
+        a = march.auxiliary[i]
+        march.trial[0, i] = march.position[i] + length * march.velocity[i] + 0.5 * length * length * a
+        march.trial[1, i] = march.velocity[i] + length * a
+        march.trial[2, i] = (a - method.af * march.acceleration[i]) / (1.0 - method.af)
+    step = Step(
+        march.clock[0] + length,
+        method.gamma / (method.beta * length),
+        (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
+    )
+    prescribe(system, step.time, march.trial[1], march.trial[2])
+    return step
+
+
+@kernel
+def _linearise(system: System, march: March, step: Step, equations: Equations) -> None:
+    """Assemble the equations at the trial state."""
+    assemble(
+        system,
+        step.time,
+        march.trial[0],
+        march.trial[1],
+        march.trial[2],
+        march.multipliers,
+        1.0,
+        step.by_velocity,
+        step.by_acceleration,
+        equations.work,
+        equations.matrix,
+        equations.loads,
+    )
+
+
+@kernel
+def _cut_back(system: System, march: March, step: Step, equations: Equations, slope: float, factor: float) -> float:
+    """Take back what the last change went too far, by secants; returns the factor of the change that is left."""
+    for _ in range(_CUTS):
+        now = _imbalance(equations)
+        if now >= -_OVERSHOOT * slope:
+            break
+        kept = max(_SHORTEST, slope / (slope - now))
+        _move(system, march, step, equations, (kept - 1.0) * factor)
+        factor *= kept
+        _linearise(system, march, step, equations)
+    return factor
+
+
+@kernel
+def _move(system: System, march: March, step: Step, equations: Equations, factor: float) -> None:
+    """Take factor times the solution off the trial state."""
+    subtract_solution(system, equations, factor, march.trial[0])
+    subtract_solution(system, equations, factor * step.by_velocity, march.trial[1])
+    subtract_solution(system, equations, factor * step.by_acceleration, march.trial[2])
+    subtract_multipliers(system, equations, factor, march.multipliers)
+
+
+@kernel
+def _finish(method: Method, march: March) -> None:
+    """A at the end of the step, from the accelerations."""
+    for i in range(march.position.size):
+        march.trial[3, i] = (
+            (1.0 - method.af) * march.trial[2, i] + method.af * march.acceleration[i] - method.am * march.auxiliary[i]
+        ) / (1.0 - method.am)
+
+
+@kernel
+def _imbalance(equations: Equations) -> float:
+    """Residual along the last solution, J."""
+    matrix, total = equations.matrix, 0.0
+    for node in range(matrix.node_side.shape[0]):
+        for c in range(NODE):
+            total += matrix.node_side[node, c] * equations.node_part[node, c]
+    for i in range(matrix.border_side.size):
+        total += matrix.border_side[i] * equations.border_part[i]
+    return total
+
+
+@kernel
+def _size(system: System, settings: Settings, equations: Equations) -> float:
+    """Root mean square of the change of the nodes, or the largest change at a pulley's rim, m."""
+    total = 0.0
+    for node in range(system.nodes):
+        for c in range(NODE):
+            total += (settings.length_scale[c] * equations.node_part[node, c]) ** 2
+    size = sqrt(total / (NODE * system.nodes))
+    for p in range(system.pulleys.radius.size):
+        unknown = system.pulleys.unknown[p]
+        if unknown >= 0:
+            size = max(size, abs(system.pulleys.radius[p] * equations.border_part[unknown]))
+    return size

@@ -1,0 +1,52 @@
+"""One step of generalised-alpha: coefficients, the error that it may make, and its solution."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beltdyn.solve.alpha_step import allowed_error, method_of, try_step
+from beltdyn.solve.march import ITERATIONS, Settings, new_march, restart
+from beltdyn.system.arrays import System
+from beltdyn.system.motion import new_equations
+from beltdyn.system.state import straight
+
+SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0, np.ones(6), long_step=0.02)
+ACCELERATION = 5.0
+STEP = 0.1
+
+
+@given(st.floats(0.0, 1.0))
+def test_coefficients_are_those_of_chung_and_hulbert(radius: float) -> None:
+    method = method_of(radius)
+    assert method.gamma == pytest.approx(0.5 - method.am + method.af)  # second order
+    assert method.beta == pytest.approx(0.25 * (1 - method.am + method.af) ** 2)  # as much damping as can be
+    assert method.am <= method.af <= 0.5  # unconditionally stable
+    assert method.af / (1 - method.af) == pytest.approx(radius)  # the roots at infinite frequency
+    assert 1 - (0.5 + method.gamma) / (2 * method.beta) == pytest.approx(-radius)
+
+
+def test_error_grows_with_the_step_until_it_is_long() -> None:
+    assert allowed_error(SETTINGS, 0.01) == pytest.approx(1e-5)
+    assert allowed_error(SETTINGS, 0.02) == allowed_error(SETTINGS, 5.0) == pytest.approx(2e-5)
+
+
+def test_constant_acceleration_is_exact(spinning: System) -> None:
+    state = straight(spinning)
+    march, equations = new_march(0.0, STEP, state.position, state.velocity), new_equations(spinning)
+    restart(spinning, march, equations)
+    iterations = try_step(spinning, SETTINGS, method_of(0.8), march, STEP, equations)
+    assert iterations == march.counts[ITERATIONS] == 1  # the first guess is right
+    position, velocity, acceleration, auxiliary = march.trial[:, -1]
+    assert position == pytest.approx(0.5 * ACCELERATION * STEP**2)
+    assert velocity == pytest.approx(ACCELERATION * STEP)
+    assert acceleration == pytest.approx(ACCELERATION)
+    assert auxiliary == pytest.approx(ACCELERATION)
+    assert march.clock[0] == 0.0
+
+
+def test_no_solution_without_mass(spinning: System) -> None:
+    state = straight(spinning)
+    march, equations = new_march(0.0, STEP, state.position, state.velocity), new_equations(spinning)
+    broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
+    assert try_step(broken, SETTINGS, method_of(0.8), march, STEP, equations) == 0
