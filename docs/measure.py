@@ -302,6 +302,32 @@ def belt_effects(changes: Mapping[str, Changes]) -> Iterator[Row]:
         yield name, f"{rms(speed_difference(run, reference)):.1e} rad/s", f"{rms(tension):.2f} N"
 
 
+@measurement("reduced-integration")
+def reduced_integration() -> Iterator[Row]:
+    """Driven speed, tension and normal force of case 1, and of case 2, with full and with reduced integration."""
+    rules = ("full", "reduced")
+    yield (
+        "",
+        "elements",
+        *(f"{what}, {rule}" for what in ("speed error, rms", "mean tension", "ripple") for rule in rules),
+    )
+    cases = {"case 1": (two_pulley(), (20, 30, 40, 60)), "case 2": (loaded_two_pulley(1e5), (20, 30, 40))}
+    for name, (published, meshes) in cases.items():
+        converged = bd.simulate(better(published, 240, rtol=1e-4))
+        for elements in meshes:
+            runs = [
+                bd.simulate(changed(better(published, elements, rtol=1e-4), belt={"integration": rule}))
+                for rule in rules
+            ]
+            yield (
+                name,
+                f"{elements}",
+                *(f"{rms(speed_difference(run, converged)):.1e} rad/s" for run in runs),
+                *(f"{float(run.dataset['belt_tension'][-100:].mean()):.5g} N" for run in runs),
+                *(f"{max(run.resolution.force_errors):.2g}" for run in runs),
+            )
+
+
 @measurement("coarse-meshes")
 def coarse_meshes() -> Iterator[Row]:
     """Case 1 on meshes from coarse to fine: tension at rest and in motion, driven speed and its ripple."""

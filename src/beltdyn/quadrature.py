@@ -3,7 +3,7 @@
 from functools import cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.legendre import Legendre, leggauss
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
@@ -28,9 +28,24 @@ def gauss_points(count: int) -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def trapezoid_points() -> tuple[FloatArray, FloatArray]:
-    """Points and weights of the trapezoidal rule on [0, 1]: its two ends, half each; shapes (2,), read-only."""
-    return _read_only(np.array([0.0, 1.0])), _read_only(np.array([0.5, 0.5]))
+def lobatto_points(count: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights of Gauss-Lobatto quadrature on [0, 1], which has a point at either end.
+
+    Parameters
+    ----------
+    count
+        Number of points, at least 2 (the trapezoidal rule); polynomials up to degree 2 count - 3 are integrated
+        exactly.
+
+    Returns
+    -------
+    points, weights : ndarray, shape (count,)
+        Dimensionless and read-only; the weights add up to 1.
+    """
+    polynomial = Legendre.basis(count - 1)
+    points = np.concatenate([[-1.0], polynomial.deriv().roots().real, [1.0]])
+    weights = 1.0 / (count * (count - 1) * polynomial(points) ** 2)
+    return _read_only(0.5 * (points + 1.0)), _read_only(weights)
 
 
 def _read_only(values: FloatArray) -> FloatArray:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.quadrature import gauss_points
+from beltdyn.quadrature import gauss_points, lobatto_points
 
 ROUNDING = 1e-15
 
@@ -29,3 +29,22 @@ def test_points_are_shared_and_cannot_be_changed() -> None:
     for array in (points, weights):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0.0
+
+
+@pytest.mark.parametrize("count", range(2, 9))
+def test_lobatto_is_exact_up_to_degree_2n_minus_3(count: int) -> None:
+    points, weights = lobatto_points(count)
+    assert points[0] == 0.0
+    assert points[-1] == 1.0
+    for degree in range(2 * count - 2):
+        assert weights @ points**degree == pytest.approx(1.0 / (degree + 1), abs=ROUNDING)
+    beyond = 2 * count - 2
+    assert weights @ points**beyond > 1.0 / (beyond + 1) + ROUNDING
+
+
+def test_two_lobatto_points_are_the_trapezoidal_rule() -> None:
+    points, weights = lobatto_points(2)
+    np.testing.assert_array_equal(points, [0.0, 1.0])
+    np.testing.assert_array_equal(weights, [0.5, 0.5])
+    assert not points.flags.writeable
+    assert not weights.flags.writeable

@@ -106,7 +106,7 @@ def contact_force(
     points, weights : ndarray, shape (k,)
         Quadrature on [0, 1].
     by_position, by_velocity : float
-        The tangent is by_position d/d(position) + by_velocity d/d(velocity).
+        The tangent is by_position d/d(position) + by_velocity d/d(velocity); with both zero there is none.
     work
         Everything but the scratch arrays is overwritten.
 
@@ -122,9 +122,10 @@ def contact_force(
     else:
         count, intervals[0, 0], intervals[0, 1] = 1, 0.0, 1.0
     totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    wanted = by_position != 0.0 or by_velocity != 0.0
     for interval in range(count):
         start, end = intervals[interval, 0], intervals[interval, 1]
-        moving = start > 0.0 or end < 1.0
+        moving = wanted and (start > 0.0 or end < 1.0)
         work.by_end[:] = 0.0
         for point in range(points.size):
             xi = start + (end - start) * points[point]
@@ -135,11 +136,13 @@ def contact_force(
             if here.penetration < 0.0:
                 continue
             force = point_force(here, wheel, law)
-            tangent = point_tangent(here, force, law, by_position, by_velocity)
             share = length * weights[point]
             weight, shape = share * (end - start), shape_functions(basis, places)
             speed = -force.by_slip * wheel.radius
-            _spread(shape, weight, force, tangent, -speed * here.normal_y, speed * here.normal_x, work)
+            _add_pairs(work.force, shape, weight * force.x, weight * force.y)
+            if wanted:
+                tangent = point_tangent(here, force, law, by_position, by_velocity)
+                _spread(shape, weight, tangent, -speed * here.normal_y, speed * here.normal_x, work)
             spring = law.stiffness * here.penetration
             totals = ContactTotals(
                 totals.moment + weight * pulley_moment(here, force.friction),
@@ -191,14 +194,12 @@ def _clear(work: ContactWorkspace) -> None:
 def _spread(
     shape: Four,
     weight: float,
-    force: PointForce,
     tangent: PointTangent,
     speed_x: float,
     speed_y: float,
     work: ContactWorkspace,
 ) -> None:
-    """Give force, tangent and couplings of a point to the four vectors (Eq. 24)."""
-    _add_pairs(work.force, shape, weight * force.x, weight * force.y)
+    """Give tangent and couplings of a point to the four vectors (Eq. 24)."""
     _add_pairs(work.by_speed, shape, weight * speed_x, weight * speed_y)
     _add_pairs(work.moment, shape, weight * tangent.moment_x, weight * tangent.moment_y)
     _add_block(work.xx, shape, weight * tangent.xx)

@@ -38,8 +38,13 @@ class Belt(Part):
         description="the kind of elements: the paper's, or for comparison straight links without bending stiffness, "
         "or pairs of links with torsional springs",
     )
+    integration: Literal["full", "reduced"] = Field(
+        "full",
+        description="the integration of the elastic forces: over Gauss points, or over three Lobatto points, "
+        "which lets a coarse mesh stretch less",
+    )
     quadrature_points: Count = Field(
-        4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces"
+        4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
     )
 
     @model_validator(mode="after")

@@ -9,9 +9,12 @@ from beltdyn.ancf.section import Section
 from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Contact, Drive, Pulley
-from beltdyn.quadrature import gauss_points, trapezoid_points
+from beltdyn.quadrature import gauss_points, lobatto_points
 from beltdyn.system.arrays import NODE, Pulleys, Quadrature, Supports, System
 from beltdyn.system.discretization import discretize
+
+_REDUCED = 3
+"""Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
 
 Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
@@ -84,7 +87,7 @@ def belt_system(
         joint=closure == "multipliers",
         **mesh._asdict(),
         section=section,
-        elastic=Quadrature(*gauss_points(belt.quadrature_points)),
+        elastic=_elastic_points(belt),
         law=_contact_law(contact),
         contact=_contact_points(contact),
         pulleys=_pulley_arrays(pulleys),
@@ -118,12 +121,19 @@ def belt_section(belt: Belt) -> Section:
     )
 
 
+def _elastic_points(belt: Belt) -> Quadrature:
+    """Where the elastic forces of an element are evaluated."""
+    if belt.integration == "reduced":
+        return Quadrature(*lobatto_points(_REDUCED))
+    return Quadrature(*gauss_points(belt.quadrature_points))
+
+
 def _contact_points(contact: Contact | None) -> Quadrature:
     """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone."""
     if contact is None:
         return Quadrature(*gauss_points(1))
     if contact.sampling == "nodal":
-        return Quadrature(*trapezoid_points())
+        return Quadrature(*lobatto_points(2))
     return Quadrature(*gauss_points(contact.quadrature_points))
 
 
