@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from beltdyn.quadrature import gauss_points
+from beltdyn.quadrature import gauss_points, trapezoid_points
 
 ROUNDING = 1e-15
 
@@ -21,6 +21,14 @@ def test_points_lie_inside_and_symmetric(count: int) -> None:
     assert np.all((points > 0.0) & (points < 1.0))
     np.testing.assert_allclose(points + points[::-1], 1.0, atol=ROUNDING)
     np.testing.assert_allclose(weights, weights[::-1], atol=ROUNDING)
+
+
+def test_trapezoidal_rule() -> None:
+    points, weights = trapezoid_points()
+    np.testing.assert_array_equal(points, [0.0, 1.0])
+    np.testing.assert_array_equal(weights, [0.5, 0.5])
+    assert not points.flags.writeable
+    assert not weights.flags.writeable
 
 
 def test_points_are_shared_and_cannot_be_changed() -> None:
