@@ -44,6 +44,18 @@ CLAIMED = {
     "quotient-of-speeds": (HOLDS, HOLDS),
     "more-than-two-pulleys": (HOLDS, HOLDS),
     "creep-under-load": (HOLDS, HOLDS),
+    "leamy-and-wasfy-agree": (HOLDS, HOLDS),
+    "fewer-unknowns-speed": (FAILS, FAILS),
+    "fewer-unknowns-tension": (FAILS, FAILS),
+    "fewer-unknowns-normal": (FAILS, FAILS),
+    "as-accurate-as-leamy-and-wasfy": (FAILS, FAILS),
+    "distributed-contact": (FAILS, FAILS),
+    "even-forces": (FAILS, HOLDS),
+    "less-time": (HOLDS, HOLDS),
+    "little-bending-stiffness": (HOLDS, HOLDS),
+    "belt-like-element-saves-unknowns": (FAILS, HOLDS),
+    "multipliers-same-motion": (HOLDS, HOLDS),
+    "multipliers-no-excessive-effort": (HOLDS, HOLDS),
     "energy-closes": (HOLDS, HOLDS),
 }
 """Name of a statement -> its verdict with published and with the best settings on the page."""

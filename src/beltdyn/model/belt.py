@@ -66,6 +66,11 @@ class Belt(Part):
         return self.elements * _LINKS.get(self.discretization, 0)
 
     @property
+    def multiple(self) -> int:
+        """What the number of elements is a multiple of."""
+        return _GROUP if self.links else 1
+
+    @property
     def area(self) -> float:
         """Area of the section, m²."""
         return self.width * self.thickness

@@ -24,7 +24,7 @@ def arc_error(belt: Belt, radius: float) -> float:
 
 
 def elements_needed(belt: Belt, radius: float, penetration: float) -> int:
-    """Number of elements for which the miss falls to `MISS_LIMIT` of the penetration.
+    """Number of elements that the belt can have for which the miss falls to `MISS_LIMIT` of the penetration.
 
     Parameters
     ----------
@@ -34,4 +34,5 @@ def elements_needed(belt: Belt, radius: float, penetration: float) -> int:
         Of the pulley and of the belt in it, m.
     """
     ratio = arc_error(belt, radius) / (MISS_LIMIT * penetration)
-    return math.ceil(belt.elements * float(ratio ** (0.5 if belt.links else 0.25)))
+    count = belt.elements * float(ratio ** (0.5 if belt.links else 0.25))
+    return math.ceil(count / belt.multiple) * belt.multiple

@@ -2,7 +2,10 @@
 
 from pathlib import Path
 
-from beltdyn.model import Drive
+import numpy as np
+
+from beltdyn.model import Drive, install
+from beltdyn.model import Path as BeltPath
 from beltdyn.results import Run
 from beltdyn.solve.alpha_march import GeneralizedAlpha
 from beltdyn.solve.progress import Report
@@ -10,8 +13,12 @@ from beltdyn.solve.recording import Recording
 from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.solve.trajectory import Chunk, Integrator, drive_task
+from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
-from beltdyn.system.state import laid
+from beltdyn.system.state import State, laid
+
+_DEEPEST_START = 0.1
+"""Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
 
 
 def simulate(drive: Drive, output: Path | str | None = None, progress: Report | None = None) -> Run:
@@ -44,7 +51,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
         state = laid(system, drive.path)
         if settings.start == "equilibrium":
             recording.tell(0.0, "equilibrium")
-            state = find_equilibrium(system, state).state
+            state = _at_rest(drive, system)
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in choose_integrator(drive)(task):
             recording.take(chunk)
@@ -75,9 +82,20 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
     with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:
         recording.prepare()
         recording.tell(0.0, "equilibrium")
-        state = find_equilibrium(system, laid(system, drive.path)).state
+        state = _at_rest(drive, system)
         recording.take(Chunk.start(0.0, state), "equilibrium")
     return recording.run()
+
+
+def _at_rest(drive: Drive, system: System) -> State:
+    """Static equilibrium, sought from a belt that lies in its pulleys instead of on their rims.
+
+    On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
+    then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
+    """
+    pulleys = system.pulleys
+    depth = min(np.min(install(drive).penetrations), _DEEPEST_START * np.min(pulleys.radius))
+    return find_equilibrium(system, laid(system, BeltPath(pulleys.center, pulleys.radius - depth))).state
 
 
 def choose_integrator(drive: Drive) -> Integrator:

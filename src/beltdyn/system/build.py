@@ -73,10 +73,15 @@ def belt_system(
     Raises
     ------
     ModelError
-        If there are pulleys but no contact.
+        If there are pulleys but no contact, or a chain of links whose ends share no node.
     """
     if pulleys and contact is None:
         raise ModelError("contact is missing: a belt on pulleys needs its constants. Give a Contact.")
+    if belt.links and closure != "shared_node":
+        raise ModelError(
+            f'closure = "{closure}" does not fit belt.discretization = "{belt.discretization}": nothing would move the '
+            'last points of an open chain. Choose closure = "shared_node", or discretization = "ancf".'
+        )
     section = belt_section(belt)
     mesh = discretize(belt, section)
     elements = mesh.length.size
@@ -89,7 +94,7 @@ def belt_system(
         section=section,
         elastic=_elastic_points(belt),
         law=_contact_law(contact),
-        contact=_contact_points(contact),
+        contact=contact_points(contact),
         pulleys=_pulley_arrays(pulleys),
         supports=_supports(nodes, fixed, forces, moments),
     )
@@ -128,8 +133,19 @@ def _elastic_points(belt: Belt) -> Quadrature:
     return Quadrature(*gauss_points(belt.quadrature_points))
 
 
-def _contact_points(contact: Contact | None) -> Quadrature:
-    """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone."""
+def contact_points(contact: Contact | None) -> Quadrature:
+    """Where contact is evaluated on a curve of the centreline: at Gauss points, or at its ends alone.
+
+    Parameters
+    ----------
+    contact
+        Contact constants; None for a belt without pulleys.
+
+    Returns
+    -------
+    Quadrature
+        Points and weights on [0, 1].
+    """
     if contact is None:
         return Quadrature(*gauss_points(1))
     if contact.sampling == "nodal":

@@ -43,6 +43,26 @@ CASES = (
     Case("missing name", 'name = "driver"\n', "", ("pulley[1].name is missing", "the name of the pulley")),
     Case("missing duration", "duration = 1.0", "", ("simulation.duration is missing", "the simulated time")),
     Case("missing friction", "friction = 1.2", "", ("contact.friction is missing", "coefficient of friction")),
+    # discretisation
+    Case(
+        "discretisation",
+        "elements = 20",
+        'discretization = "trus"',
+        ('belt.discretization = "trus"', 'Did you mean "truss"?'),
+    ),
+    Case(
+        "odd number of links",
+        "elements = 20",
+        'elements = 20\ndiscretization = "truss"',
+        ("elements = 20 does not fit", '"truss"', "a multiple of 3, at least 9", "Choose 18 or 21"),
+    ),
+    Case(
+        "few beams",
+        "elements = 20",
+        'elements = 3\ndiscretization = "three-node-beam"',
+        ("elements = 3 does not fit", '"three-node-beam"', "a multiple of 3, at least 6", "Choose 6"),
+    ),
+    Case("sampling", "damping = 10.0", 'sampling = "nodes"', ("contact.sampling", '"nodes"', 'Did you mean "nodal"?')),
     # numbers
     Case(
         "negative length", BELT, "length = -1.2727", ("belt.length = -1.2727", "greater than 0", "unstretched length")

@@ -1,3 +1,5 @@
+from math import ceil
+
 import numpy as np
 import pytest
 
@@ -69,3 +71,31 @@ def test_advice_on_soft_pulleys(drive: Drive) -> None:
     assert "installed strain is 16%, more than 10%" in strain
     assert "of the belt's tension, more than 10%: raise contact.stiffness" in tension
     assert [name in warning for name, warning in zip(("driver", "driven"), penetration, strict=True)] == [True, True]
+
+
+def test_a_chain_cannot_be_tied_by_multipliers(drive: Drive) -> None:
+    chain = drive.belt.replace(discretization="truss", elements=30)
+    with pytest.raises(ModelError) as caught:
+        drive.replace(belt=chain, simulation=drive.simulation.replace(joint="multipliers"))
+    assert str(caught.value) == (
+        'simulation.joint = "multipliers" does not fit belt.discretization = "truss": only the element "ancf" has ends '
+        'to tie. Choose joint = "shared_node", or discretization = "ancf".'
+    )
+
+
+@pytest.mark.parametrize(("kind", "links_each"), [("truss", 1), ("three-node-beam", 2)])
+def test_advice_on_links(drive: Drive, kind: str, links_each: int) -> None:
+    """A link misses the circle by R phi^2 / 8, a tenth of the penetration at most; the belt takes what is advised."""
+    chain = drive.replace(belt=drive.belt.replace(discretization=kind, elements=60))
+    radius, depth = drive.pulleys[0].radius, float(install(drive).penetrations[0])
+    angle = (0.8 * depth / radius) ** 0.5
+    needed = 3 * ceil(drive.belt.length / (radius * angle) / links_each / 3)
+    (warning,) = advise(chain, install(chain))
+    assert f"belt.elements = {needed} or more" in warning
+    advised = chain.replace(belt=chain.belt.replace(elements=needed))
+    assert advise(advised, install(advised)) == []
+
+
+def test_contact_at_nodes_does_not_miss_the_circle(drive: Drive) -> None:
+    nodal = drive.replace(contact=drive.contact.replace(sampling="nodal"))
+    assert advise(nodal, install(nodal)) == []

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from beltdyn.model import Drive
-from beltdyn.solve import find_equilibrium
+from beltdyn.model import Drive, Path
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
@@ -21,17 +20,27 @@ FRICTION: dict[str, dict[str, Any]] = {
     "coefficient_slope": {"friction_law": "coefficient_slope", "creep_velocity": 0.05},
 }
 CONTACT = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2}
-VARIANTS = list(product(FRICTION, ["zone", "fixed"], ["shared_node", "multipliers"]))
+PLACES: dict[str, dict[str, Any]] = {
+    "zone": {"integration": "zone"},
+    "fixed": {"integration": "fixed"},
+    "nodal": {"sampling": "nodal"},
+}
+ELEMENTS = {"ancf": 10, "truss": 30, "three-node-beam": 15}
+VARIANTS = [
+    *product(FRICTION, ["zone", "fixed"], ["shared_node", "multipliers"], ["ancf"]),
+    ("force_slope", "nodal", "shared_node", "ancf"),
+    *product(["force_slope"], ["zone", "nodal"], ["shared_node"], ["truss", "three-node-beam"]),
+]
 
 
 @pytest.fixture(scope="session")
-def make_drive(drive: Drive) -> Callable[[str, str, str], Drive]:
-    """The paper's drive with ten elements and chosen laws."""
+def make_drive(drive: Drive) -> Callable[..., Drive]:
+    """The paper's drive with ten elements, or as many groups of links, and chosen laws and places of contact."""
 
-    def make(friction: str, integration: str, joint: str) -> Drive:
+    def make(friction: str, places: str, joint: str = "shared_node", discretization: str = "ancf") -> Drive:
         data = drive.model_dump(by_alias=True, exclude_none=True)
-        data["belt"]["elements"] = 10
-        data["contact"] = CONTACT | FRICTION[friction] | {"integration": integration}
+        data["belt"] |= {"discretization": discretization, "elements": ELEMENTS[discretization]}
+        data["contact"] = CONTACT | FRICTION[friction] | PLACES[places]
         data["simulation"]["joint"] = joint
         return Drive(**data)
 
@@ -39,7 +48,7 @@ def make_drive(drive: Drive) -> Callable[[str, str, str], Drive]:
 
 
 @pytest.fixture(scope="session", params=VARIANTS, ids="-".join)
-def small(request: pytest.FixtureRequest, make_drive: Callable[[str, str, str], Drive]) -> Drive:
+def small(request: pytest.FixtureRequest, make_drive: Callable[..., Drive]) -> Drive:
     return make_drive(*request.param)
 
 
@@ -51,14 +60,13 @@ def system(small: Drive) -> System:
 @pytest.fixture(scope="session")
 def scale(system: System) -> FloatArray:
     """Coordinates that make a metre, shape (6 N + P,)."""
-    gradient = 1.0 / system.length[0]
-    return np.concatenate([np.tile([1.0, 1.0, *[gradient] * 4], system.nodes), 1.0 / system.pulleys.radius])
+    return np.concatenate([np.tile(1.0 / system.scale, system.nodes), 1.0 / system.pulleys.radius])
 
 
 @pytest.fixture(scope="session")
-def moving(small: Drive, system: System, scale: FloatArray) -> State:
-    """A deformed belt in contact: equilibrium, disturbed by 0.3 mm, 0.1 m/s and 10 m/s^2."""
-    rest = find_equilibrium(system, laid(system, small.path)).state.position
+def moving(system: System, scale: FloatArray) -> State:
+    """A deformed belt in contact: laid 0.1 mm deep in its pulleys, disturbed by 0.3 mm, 0.1 m/s and 10 m/s^2."""
+    rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 1e-4)).position
     noise = np.random.default_rng(1).normal(size=(3, rest.size)) * scale
     return State(rest + 3e-4 * noise[0], 0.1 * noise[1], 10.0 * noise[2])
 

@@ -91,8 +91,8 @@ def test_spinning_pulleys_have_kinetic_energy(system: System, moving: State) -> 
 
 
 @pytest.fixture(scope="module")
-def fixed_points(make_drive: Callable[[str, str, str], Drive]) -> System:
-    return drive_system(make_drive("force_slope", "fixed", "shared_node"))
+def fixed_points(make_drive: Callable[..., Drive]) -> System:
+    return drive_system(make_drive("force_slope", "fixed"))
 
 
 def test_forces_at_points_add_up_to_hub_forces_and_torques(fixed_points: System) -> None:

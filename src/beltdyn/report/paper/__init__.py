@@ -9,6 +9,7 @@ from typing import Protocol
 
 from beltdyn.model import Drive
 from beltdyn.report.paper import (
+    beam_and_joint,
     contact_forces,
     creep_rate,
     energy,
@@ -16,6 +17,7 @@ from beltdyn.report.paper import (
     integration_points,
     mesh,
     more_pulleys,
+    other_models,
     released,
     stiffness,
 )
@@ -44,6 +46,8 @@ SECTIONS: tuple[Part, ...] = (
     contact_forces,
     integration_points,
     more_pulleys,
+    other_models,
+    beam_and_joint,
     energy,
 )
 """The parts of the page."""
