@@ -1,3 +1,4 @@
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
@@ -48,4 +49,4 @@ def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
 
 def test_all_cases_can_be_built_and_have_names_fit_for_files() -> None:
     names = [name for part in SECTIONS for name in part.cases()]
-    assert all(name.replace("_", "").isalnum() for name in names)
+    assert all(re.fullmatch(r"[\w-]+", name) for name in names)
