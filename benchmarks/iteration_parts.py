@@ -1,0 +1,132 @@
+"""Where the time of a Newton iteration goes, and that of observing a state: microseconds per element, one thread.
+
+The paper's drive in equilibrium, half of its elements on the pulleys; smallest of several rounds.
+"""
+
+import argparse
+import time
+from collections.abc import Callable
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from beltdyn.ancf.elastic_force import element_force
+from beltdyn.contact.contact_force import contact_force
+from beltdyn.contact.contact_zone import out_of_reach
+from beltdyn.contact.law import Wheel
+from beltdyn.kernel import kernel
+from beltdyn.published import better, two_pulley
+from beltdyn.solve import find_equilibrium
+from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.assembly import assemble, fill_control
+from beltdyn.system.build import drive_system
+from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.observe import observe
+from beltdyn.system.ring_matrix import solve_ring
+from beltdyn.system.state import laid
+
+ROUNDS, REPEATS = 15, 300
+
+
+@kernel
+def repeat_assembly(system: System, state: FloatArray, rates: FloatArray, work: Equations, none: FloatArray) -> None:
+    """Residual and tangent."""
+    for _ in range(REPEATS):
+        assemble(system, 0.0, state, rates, rates, none, 1.0, 2e3, 4e6, work.work, work.matrix, work.loads)
+
+
+@kernel
+def repeat_solve(system: System, _state: FloatArray, _rates: FloatArray, work: Equations, _none: FloatArray) -> None:
+    """Linear solve."""
+    for _ in range(REPEATS):
+        solve_ring(work.matrix, system.closed, work.node_part, work.border_part)
+
+
+@kernel
+def repeat_elasticity(system: System, state: FloatArray, _r: FloatArray, work: Equations, _none: FloatArray) -> None:
+    """Elastic forces with their tangent."""
+    scratch, points = work.work, system.elastic
+    for _ in range(REPEATS):
+        for element in range(system.length.size):
+            for c in range(NODE):
+                scratch.coordinates[0, c] = state[NODE * element + c]
+                scratch.coordinates[0, NODE + c] = state[NODE * ((element + 1) % system.nodes) + c]
+            element_force(
+                scratch.coordinates[0],
+                system.section,
+                system.length[element],
+                points.points,
+                points.weights,
+                scratch.elastic,
+                scratch.gradient,
+                scratch.tangent,
+            )
+
+
+@kernel
+def repeat_contact(system: System, state: FloatArray, _r: FloatArray, work: Equations, _none: FloatArray) -> None:
+    """Contact forces with their tangent."""
+    scratch, pulleys, points = work.work, system.pulleys, system.contact
+    for _ in range(REPEATS):
+        for element in range(system.length.size):
+            for c in range(NODE):
+                scratch.coordinates[0, c] = state[NODE * element + c]
+                scratch.coordinates[0, NODE + c] = state[NODE * ((element + 1) % system.nodes) + c]
+            fill_control(system, element, 0, scratch.coordinates[0], scratch.control)
+            for p in range(pulleys.radius.size):
+                wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], 0.0)
+                if not out_of_reach(scratch.control, wheel):
+                    contact_force(
+                        scratch.control,
+                        scratch.control_velocity,
+                        system.control[element, 0],
+                        wheel,
+                        system.law,
+                        system.length[element],
+                        points.points,
+                        points.weights,
+                        1.0,
+                        2e3,
+                        scratch.contact,
+                    )
+
+
+def smallest(run: Callable[[], object]) -> float:
+    """Seconds of the fastest round."""
+    run()
+    times = []
+    for _ in range(ROUNDS):
+        begun = time.perf_counter()
+        run()
+        times.append(time.perf_counter() - begun)
+    return min(times)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--elements", type=int, default=20)
+    elements = parser.parse_args().elements
+    drive = better(two_pulley(elements))
+    system = drive_system(drive)
+    state = find_equilibrium(system, laid(system, drive.path)).state.position
+    arguments = (system, state, np.zeros_like(state), new_equations(system), np.zeros(NODE))
+    table = Table("part", "µs per element", title=f"{elements} elements")
+    parts = {
+        "assembly": repeat_assembly,
+        "  of it elasticity": repeat_elasticity,
+        "  of it contact": repeat_contact,
+        "linear solve": repeat_solve,
+    }
+    for name, part in parts.items():
+        seconds = smallest(lambda part=part: part(*arguments))  # type: ignore[misc]
+        table.add_row(name, f"{1e6 * seconds / REPEATS / elements:.2f}")
+    states, times = np.tile(state, (REPEATS, 1)), np.zeros(REPEATS)
+    seconds = smallest(lambda: observe(system, times, states, np.zeros_like(states)))
+    table.add_row("observing a state", f"{1e6 * seconds / REPEATS / elements:.2f}")
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
