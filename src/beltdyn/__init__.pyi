@@ -2,7 +2,7 @@ from . import errors, plot
 from .errors import BeltdynError, ConvergenceError, ModelError
 from .model import Belt, Contact, Drive, Pulley, Simulation, load, loads
 from .results import Run, open_run
-from .solve import equilibrium, simulate
+from .solve import equilibrium, simulate, simulate_all
 
 __version__: str
 
@@ -23,4 +23,5 @@ __all__ = [
     "open_run",
     "plot",
     "simulate",
+    "simulate_all",
 ]

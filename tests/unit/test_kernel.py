@@ -1,3 +1,7 @@
+import os
+import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -87,3 +91,32 @@ def test_only_kernels_that_python_calls_become_machine_code(tmp_path: Path, monk
     assert outer(6.0) == 12.0
     assert [path.name.split("-")[0].split(".")[-1] for path in tmp_path.rglob("*.nbi")] == ["outer"]
     assert inner(6.0, 2) == 9.0
+
+
+_CALLER = """
+from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.penetration import Approach
+from beltdyn.contact.point_force import point_force
+law = ContactLaw(stiffness=1e7, damping=0.0, friction=1.2, friction_law=0, creep=1e5, may_pull=False, follow_zone=True)
+here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "distance": 0.08})
+print(point_force(here, Wheel(0.0, 0.0, 0.081, 0.0), law).normal)
+"""
+
+
+@pytest.mark.slow
+def test_an_edited_law_acts_at_once_in_kernels_that_inline_it(tmp_path: Path) -> None:
+    """The file of the caller stays as it is, and so does the folder of the cache."""
+    copy = tmp_path / "beltdyn"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    environment = os.environ | {"PYTHONPATH": str(tmp_path), CACHE_VARIABLE: str(tmp_path / "cache")}
+    command = [sys.executable, "-c", _CALLER]
+
+    def force() -> float:
+        return float(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
+
+    assert force() == force() == 1e4
+    law = copy / "contact" / "normal_force.py"
+    text = law.read_text(encoding="utf-8")
+    law.write_text(text.replace("law.stiffness * penetration", "3.0 * law.stiffness * penetration"), encoding="utf-8")
+    assert force() == 3e4
+    assert len(list((tmp_path / "cache").iterdir())) == 2

@@ -1,5 +1,6 @@
 """The command `beltdyn`, and what it does with errors."""
 
+import os
 import sys
 from collections.abc import Callable, Sequence
 
@@ -12,13 +13,12 @@ from beltdyn.cli.demo import demo
 from beltdyn.cli.new import new
 from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
-from beltdyn.cli.run import run
+from beltdyn.cli.run import INTERRUPTED, run
 from beltdyn.cli.schema import schema
 from beltdyn.cli.static import static
 from beltdyn.errors import BeltdynError
 
 _BAD_INPUT = 2
-_INTERRUPTED = 130
 
 app = App(
     name="beltdyn",
@@ -37,7 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit.
 
     The exit code is 0 when all went well, 2 for bad input, 3 for a simulation that could not go on, and
-    130 for an interruption by the keyboard.
+    130 for an interruption by the keyboard.  Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise:
+    matrices are so small that more would only wait for each other.
 
     Parameters
     ----------
@@ -49,6 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     SystemExit
         Always.
     """
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
     sys.exit(_exit_code(arguments))
 
 
@@ -62,4 +64,4 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         return error.exit_code
     except KeyboardInterrupt:
         show_error("interrupted")
-        return _INTERRUPTED
+        return INTERRUPTED

@@ -19,7 +19,7 @@ def paper(*, out: Path = Path("beltdyn-paper")) -> int:
     """
     from beltdyn.report import build_paper
 
-    with runs_bar() as report:
+    with runs_bar(at_end="writing the page") as report:
         outcome = build_paper(out, report)
     for name, reason in outcome.failures.items():
         show_error(f"the run {name} failed: {reason}")

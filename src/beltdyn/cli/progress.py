@@ -2,17 +2,18 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 if TYPE_CHECKING:
-    from beltdyn.report.runs import Stage
+    from beltdyn.solve.progress import BatchProgress
     from beltdyn.solve.progress import Progress as SolverProgress
 
 _PHASES = {
-    "compiling": "compiling (once on a machine: about 20 s)",
+    "compiling": "preparing kernels (the first run compiles them: about 20 s)",
     "equilibrium": "finding equilibrium",
     "integrating": "simulating",
 }
@@ -48,8 +49,13 @@ def _state(progress: "SolverProgress") -> str:
 
 
 @contextmanager
-def runs_bar() -> Iterator[Callable[["Stage"], None]]:
-    """Show how many runs have ended, and which are on their way, on standard error.
+def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]]:
+    """Show how many runs have ended, and a line for each that is on its way, on standard error.
+
+    Parameters
+    ----------
+    at_end
+        What is being done when all have ended.
 
     Yields
     ------
@@ -57,17 +63,24 @@ def runs_bar() -> Iterator[Callable[["Stage"], None]]:
         What is told of the runs.
     """
     with _bar() as bar:
-        task = bar.add_task("", total=None, state="", visible=False)
+        whole = bar.add_task("", total=None, state="", visible=False)
+        lines: dict[Path, TaskID] = {}
 
-        def report(stage: "Stage") -> None:
-            names = f": {', '.join(stage.running)}" if stage.running else ""
-            at_end = "writing the page" if stage.done == stage.total else _PHASES["compiling"]
+        def report(progress: "BatchProgress") -> None:
+            for file in lines.keys() - progress.running.keys():
+                bar.remove_task(lines.pop(file))
+            for file, part in progress.running.items():
+                line = lines.get(file) or bar.add_task(f"  {file.stem}", total=1.0, state="")
+                lines[file] = line
+                bar.update(line, completed=part)
+            begun = bool(progress.running or progress.done)
+            phase = _PHASES["integrating" if begun else "compiling"]
             bar.update(
-                task,
-                description="simulating" if stage.running else at_end,
-                completed=stage.done,
-                total=stage.total,
-                state=f"{stage.done} of {stage.total} runs{names}",
+                whole,
+                description=at_end if progress.done == progress.total else phase,
+                completed=progress.done + sum(progress.running.values()),
+                total=progress.total if begun else None,
+                state=f"{progress.done} of {progress.total} runs",
                 visible=True,
             )
 

@@ -1,9 +1,11 @@
 """`beltdyn run`."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
+from cyclopts.validators import Number
 
 from beltdyn.cli.console import show
 from beltdyn.cli.progress import progress_bar
@@ -14,42 +16,67 @@ if TYPE_CHECKING:
     from beltdyn.model import Drive
     from beltdyn.results import Run
 
-_INTERRUPTED = 130
+INTERRUPTED = 130
 
 
 def run(
     file: Path,
     /,
-    *,
+    *more: Path,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    jobs: Annotated[int | None, Parameter(alias="-j", validator=Number(gte=1))] = None,
     csv: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Simulate a drive: a progress bar, then a summary, and the results in a NetCDF file.
 
-    Ctrl-C ends the simulation and keeps what was computed.
+    Several drives run side by side on all cores. Ctrl-C ends the simulation and keeps what was computed.
 
     Parameters
     ----------
     file
         The drive file, TOML.
+    more
+        More drive files.
     output
-        The result file; by default the drive file's name with the ending .nc.
+        The result file; by default the drive file's name with the ending .nc. Of several drives, the folder for these.
+    jobs
+        How many drives to simulate at a time; by default as many as there are cores.
     csv
         Write plain tables too, into a folder beside the result file, named after it with -tables.
     """
+    if more:
+        from beltdyn.cli.batch import run_several
+
+        return run_several((file, *more), output, jobs, csv)
     from beltdyn.model import load
 
     drive = load(file)
     path = output or file.with_suffix(".nc")
-    if path.resolve() == file.resolve():
-        raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
+    refuse_overwriting(path, (file,))
     finished = simulate_to(drive, path)
-    if csv and finished.dataset.sizes["time"]:
-        from beltdyn.results import write_csv
-
-        folder = path.with_name(f"{path.stem}-tables")
-        show(f"Tables: {', '.join(str(table) for table in write_csv(finished, folder))}")
+    if csv and finished.outputs:
+        write_tables(finished, path)
     return exit_code(finished)
+
+
+def refuse_overwriting(path: Path, files: Iterable[Path]) -> None:
+    """Make sure that a result file is none of the drive files.
+
+    Raises
+    ------
+    ModelError
+        If it is.
+    """
+    if path.resolve() in {file.resolve() for file in files}:
+        raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
+
+
+def write_tables(run: "Run", path: Path) -> None:
+    """Write plain tables into a folder beside the result file, and name them."""
+    from beltdyn.results import write_csv
+
+    folder = path.with_name(f"{path.stem}-tables")
+    show(f"Tables: {', '.join(str(table) for table in write_csv(run, folder))}")
 
 
 def simulate_to(drive: "Drive", path: Path) -> "Run":
@@ -77,4 +104,4 @@ def simulate_to(drive: "Drive", path: Path) -> "Run":
 
 def exit_code(run: "Run") -> int:
     """Exit code of a run that ended without an error."""
-    return _INTERRUPTED if run.status == "interrupted" else 0
+    return INTERRUPTED if run.status == "interrupted" else 0

@@ -13,7 +13,7 @@ def show_summary(run: "Run") -> None:
     """Write what a user wants to know of a run first."""
     from beltdyn.results import summarize
 
-    if run.dataset.sizes["time"] == 0:
+    if run.outputs == 0:
         show("Nothing was computed before the run ended.")
         return
     summary = summarize(run)

@@ -1,5 +1,6 @@
 """The drive: a belt, its pulleys, their contact, and how to simulate them."""
 
+from collections.abc import Callable
 from functools import cached_property
 from typing import Self
 
@@ -29,6 +30,12 @@ class Drive(Part):
     contact: Contact = Field(description="the group [contact]")
     simulation: Simulation = Field(description="the group [simulation]")
     _source: str | None = PrivateAttr(None)
+
+    def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
+        """Travel between processes as a drive file."""
+        from beltdyn.model.toml_reader import loads
+
+        return loads, (self.text,)
 
     @model_validator(mode="after")
     def _belt_fits_its_path(self) -> Self:

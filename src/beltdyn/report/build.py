@@ -13,10 +13,11 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.report.page import write_page
 from beltdyn.report.paper import SECTIONS, Part
-from beltdyn.report.runs import RunMissingError, Runs, Stage, run_all
+from beltdyn.report.runs import RunMissingError, Runs, run_all
 from beltdyn.report.statement import Section
 from beltdyn.results import provenance
 from beltdyn.results.atomic import make_folder, unwritable
+from beltdyn.solve import BatchProgress
 
 PAGE = "paper.html"
 RUNS = "runs"
@@ -42,7 +43,7 @@ class Outcome:
 
 
 def build_paper(
-    folder: Path, progress: Callable[[Stage], None] | None = None, parts: Sequence[Part] = SECTIONS
+    folder: Path, progress: Callable[[BatchProgress], None] | None = None, parts: Sequence[Part] = SECTIONS
 ) -> Outcome:
     """Run the cases of the paper and write the page that compares them with its statements.
 

@@ -3,21 +3,22 @@
 import math
 from collections.abc import Iterator
 
-import xarray as xr
+import numpy as np
 
 from beltdyn.model import Drive
+from beltdyn.results.recorded import Recorded, names
 from beltdyn.results.resolution import FORCE_LIMIT, estimate_resolution
 
 CLOSURE_LIMIT = 0.01
 """Largest closure error of the energy account that passes without a warning."""
 
 
-def find_warnings(dataset: xr.Dataset, drive: Drive) -> list[str]:
+def find_warnings(dataset: Recorded, drive: Drive) -> list[str]:
     """Look for what makes a result doubtful.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
+    dataset : Recorded
         The results.
     drive : Drive
         The drive.
@@ -27,7 +28,7 @@ def find_warnings(dataset: xr.Dataset, drive: Drive) -> list[str]:
     list of str
         One sentence or two for each finding.
     """
-    if dataset.sizes["time"] == 0:
+    if len(dataset["time"]) == 0:
         return ["nothing was recorded: the run ended before its first output."]
     return [
         *_unfinished(dataset, drive),
@@ -37,7 +38,7 @@ def find_warnings(dataset: xr.Dataset, drive: Drive) -> list[str]:
     ]
 
 
-def _unfinished(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
+def _unfinished(dataset: Recorded, drive: Drive) -> Iterator[str]:
     status = dataset.attrs["status"]
     if status != "completed":
         end = float(dataset["time"][-1])
@@ -45,7 +46,7 @@ def _unfinished(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
         yield f"the run {ended}: results end at t = {end:.6g} s of {drive.simulation.duration:.6g} s."
 
 
-def _open_energy_account(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
+def _open_energy_account(dataset: Recorded, drive: Drive) -> Iterator[str]:
     closure = float(dataset["energy_closure"][-1])
     if abs(closure) > CLOSURE_LIMIT:
         yield (
@@ -54,27 +55,27 @@ def _open_energy_account(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
         )
 
 
-def _slack_spans(dataset: xr.Dataset) -> Iterator[str]:
-    for name in dataset["span"].values:
-        tension = dataset["span_tension"].sel(span=name)
+def _slack_spans(dataset: Recorded) -> Iterator[str]:
+    tensions = np.asarray(dataset["span_tension"])
+    for name, tension in zip(names(dataset, "span"), tensions.T, strict=True):
         lowest = float(tension.min())
         if lowest <= 0.0:
-            time = float(tension["time"][int(tension.values.argmin())])
+            time = float(dataset["time"][int(tension.argmin())])
             yield (
                 f"the span {name} is slack: its tension falls to {lowest:.4g} N at t = {time:.4g} s. "
                 "Shorten the belt, or reduce the load."
             )
 
 
-def _unresolved(dataset: xr.Dataset, drive: Drive) -> Iterator[str]:
+def _unresolved(dataset: Recorded, drive: Drive) -> Iterator[str]:
     """Say what the mesh does not resolve, and which one would."""
     resolution = estimate_resolution(dataset, drive)
-    names = [pulley.name for number, pulley in enumerate(drive.pulleys) if not resolution.resolves(number)]
+    unresolved = [pulley.name for number, pulley in enumerate(drive.pulleys) if not resolution.resolves(number)]
     worst = max((error for error in resolution.force_errors if math.isfinite(error)), default=math.nan)
     said = []
-    if names:
+    if unresolved:
         ripple = f" (they ripple by {worst:.0%} of their mean)" if worst > FORCE_LIMIT else ""
-        said.append(f"the contact forces along {' and '.join(names)}{ripple}")
+        said.append(f"the contact forces along {' and '.join(unresolved)}{ripple}")
     if not resolution.resolves_tension:
         said.append(f"the tension (about {resolution.tension_error:.0%} too high)")
     if said:

@@ -2,18 +2,20 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> xr.Dataset:
+
+def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> "xr.Dataset":
     """Label arrays with their dimensions, coordinates and units.
 
     Parameters
@@ -30,6 +32,8 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
     xarray.Dataset
         The dataset.
     """
+    import xarray as xr
+
     coordinates = layout.coordinates | {"time": arrays["time"]}
     return xr.Dataset(
         {name: (variable.dims, arrays[name], variable.attributes) for name, variable in VARIABLES.items()},
@@ -38,7 +42,7 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
     )
 
 
-def open_dataset(path: Path) -> xr.Dataset:
+def open_dataset(path: Path) -> "xr.Dataset":
     """Open a result file; values are read when they are used.
 
     Parameters
@@ -56,6 +60,8 @@ def open_dataset(path: Path) -> xr.Dataset:
     ModelError
         If the file cannot be read or is not a result of beltdyn.
     """
+    import xarray as xr
+
     try:
         dataset = xr.open_dataset(path, engine="h5netcdf", decode_times=False)
     except (OSError, ValueError, KeyError) as error:

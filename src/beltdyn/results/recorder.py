@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.errors import BeltdynError
@@ -14,6 +13,9 @@ from beltdyn.results.atomic import atomic_path, unwritable
 from beltdyn.results.dataset import build_dataset, checked_chunk, open_dataset
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import RECORDED
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Chunk = Mapping[str, NDArray[Any]]
 Status = Literal["running", "completed", "interrupted", "failed"]
@@ -47,7 +49,7 @@ class Recorder(Protocol):
             Global attributes known by now: the solver's statistics.
         """
 
-    def dataset(self) -> xr.Dataset:
+    def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far.
 
         Returns
@@ -82,7 +84,7 @@ class MemoryRecorder:
         """Take the end of the simulation; see `Recorder.close`."""
         self._attributes |= {**attributes, "status": status}
 
-    def dataset(self) -> xr.Dataset:
+    def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far; see `Recorder.dataset`."""
         arrays = {name: np.concatenate([chunk[name] for chunk in self._chunks]) for name in RECORDED}
         return build_dataset(self._layout, arrays, self._attributes)
@@ -143,7 +145,7 @@ class FileRecorder:
         except OSError as error:
             raise BeltdynError(unwritable(self.path, error)) from error
 
-    def dataset(self) -> xr.Dataset:
+    def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far, read when it is used; see `Recorder.dataset`."""
         return open_dataset(self.path)
 

@@ -5,13 +5,15 @@ and slackens inside that the mean tension rises.  Both errors fall with the four
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
+from beltdyn.results.recorded import Recorded
 
 FloatArray = NDArray[np.float64]
 
@@ -21,6 +23,7 @@ FORCE_LIMIT = 0.05
 TENSION_LIMIT = 0.01
 """Largest estimated error of the mean tension, over that tension."""
 
+_VARIABLES = ("belt_tension", "tension_variation", "contact_position", "contact_pulley", "normal_force")
 _WINDOW = 0.2
 _INSTANTS = 20
 _MIDDLE = 0.7
@@ -65,12 +68,12 @@ class Resolution:
         return not self.tension_error > TENSION_LIMIT
 
 
-def estimate_resolution(dataset: xr.Dataset, drive: Drive) -> Resolution:
+def estimate_resolution(dataset: Recorded, drive: Drive) -> Resolution:
     """Estimate how well the mesh of a run resolves tension and contact.
 
     Parameters
     ----------
-    dataset : xarray.Dataset
+    dataset : Recorded
         Its results, with at least one output.
     drive : Drive
         The drive.
@@ -97,19 +100,20 @@ def estimate_resolution(dataset: xr.Dataset, drive: Drive) -> Resolution:
     return Resolution(errors, tension_error, layers, elements)
 
 
-def _last_instants(dataset: xr.Dataset) -> xr.Dataset:
+def _last_instants(dataset: Recorded) -> dict[str, NDArray[Any]]:
     """Some outputs from the last part of the run."""
-    time = dataset["time"].values
+    time = np.asarray(dataset["time"])
     first = int(np.searchsorted(time, time[-1] - _WINDOW * (time[-1] - time[0])))
-    return dataset.isel(time=np.unique(np.linspace(first, len(time) - 1, _INSTANTS).round().astype(int)))
+    rows = np.unique(np.linspace(first, len(time) - 1, _INSTANTS).round().astype(int))
+    return {name: np.asarray(dataset[name][rows]) for name in _VARIABLES}
 
 
-def _force_error(window: xr.Dataset, drive: Drive, pulley: int) -> float:
+def _force_error(window: Mapping[str, NDArray[Any]], drive: Drive, pulley: int) -> float:
     """Ripple of the normal force along the middle of the arc, over its mean."""
     ripples, means = list[float](), list[float]()
     center = np.array(drive.pulleys[pulley].center)
-    places, touched = window["contact_position"].values, window["contact_pulley"].values == pulley
-    for k, force in enumerate(window["normal_force"].values):
+    places, touched = window["contact_position"], window["contact_pulley"] == pulley
+    for k, force in enumerate(window["normal_force"]):
         angle, pressed = _along_arc(places[k][touched[k]] - center), force[touched[k]]
         middle = np.abs(angle) <= 0.5 * _MIDDLE * np.ptp(angle) if angle.size else np.zeros(0, dtype=bool)
         if np.count_nonzero(middle) < _FEWEST:

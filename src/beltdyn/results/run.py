@@ -1,45 +1,85 @@
 """A run: its dataset, the drive it belongs to and how it ended."""
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import xarray as xr
+import h5py
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.results.checks import find_warnings
 from beltdyn.results.dataset import open_dataset
+from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-@dataclass(frozen=True, eq=False)
+
 class Run:
     """What a simulation gave.
 
-    Attributes
+    Parameters
     ----------
-    dataset : xarray.Dataset
-        Every recorded variable with its units; see `beltdyn.results.VARIABLES`.
+    dataset : xarray.Dataset or None
+        Every recorded variable; None for those of a finished result file, which is opened when they are asked for.
     drive : Drive
         The drive that was simulated.
     path : Path or None
         The result file, or None for a run in memory.
     """
 
-    dataset: xr.Dataset = field(repr=False)
-    drive: Drive = field(repr=False)
-    path: Path | None = None
+    def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:
+        self.drive, self.path = drive, path
+        self._dataset = dataset
+        self._stamp = _stamp(path)
+
+    def __repr__(self) -> str:
+        return f"Run(path={self.path!r})"
+
+    @property
+    def dataset(self) -> "xr.Dataset":
+        """Every recorded variable with its units; see `beltdyn.results.VARIABLES`."""
+        if self._dataset is None:
+            self._dataset = open_dataset(self._file)
+        return self._dataset
+
+    @contextmanager
+    def recorded(self) -> Iterator[Recorded]:
+        """What was recorded, in the way that is quickest to come by."""
+        if self._dataset is not None:
+            yield self._dataset
+            return
+        with h5py.File(self._file, "r") as file:
+            yield file
+
+    @property
+    def _file(self) -> Path:
+        """The result file, if it is still that of this run."""
+        if self.path is None or self._stamp is None or _stamp(self.path) != self._stamp:
+            raise ModelError(f"{self.path} was changed, replaced or removed since this run wrote it. Run it again.")
+        return self.path
 
     @property
     def status(self) -> str:
         """How the run ended: "completed", "interrupted", "failed", or "running" if its end was not recorded."""
-        return str(self.dataset.attrs["status"])
+        with self.recorded() as recorded:
+            return str(recorded.attrs["status"])
+
+    @property
+    def outputs(self) -> int:
+        """Number of recorded outputs."""
+        with self.recorded() as recorded:
+            return len(recorded["time"])
 
     @cached_property
     def warnings(self) -> list[str]:
         """What a reader of the results has to know; empty when all is well."""
-        return find_warnings(self.dataset, self.drive)
+        with self.recorded() as recorded:
+            return find_warnings(recorded, self.drive)
 
     @cached_property
     def resolution(self) -> Resolution:
@@ -51,7 +91,8 @@ class Run:
             If the run holds no output.
         """
         self.require_output()
-        return estimate_resolution(self.dataset, self.drive)
+        with self.recorded() as recorded:
+            return estimate_resolution(recorded, self.drive)
 
     def require_output(self) -> None:
         """Make sure that there is something to look at.
@@ -61,8 +102,16 @@ class Run:
         ModelError
             If the run holds no output.
         """
-        if self.dataset.sizes["time"] == 0:
+        if self.outputs == 0:
             raise ModelError("the run ended before its first output: there is nothing to show. Run it again.")
+
+
+def _stamp(path: Path | None) -> tuple[int, int] | None:
+    """What tells a file from another one of its name; None where there is none."""
+    if path is None or not path.exists():
+        return None
+    status = path.stat()
+    return status.st_ino, status.st_mtime_ns
 
 
 def open_run(path: Path | str) -> Run:

@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import xarray as xr
+from numpy.typing import NDArray
 
+from beltdyn.results.recorded import Recorded, names
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
 
@@ -137,47 +138,59 @@ def summarize(run: Run) -> Summary:
         If the run holds no output.
     """
     run.require_output()
-    dataset = run.dataset
-    time = dataset["time"].values
-    window = dataset.isel(time=time >= time[-1] - WINDOW * (time[-1] - time[0]))
-    attributes = dataset.attrs
+    with run.recorded() as recorded:
+        return _summarize(run, recorded)
+
+
+def _summarize(run: Run, recorded: Recorded) -> Summary:
+    time = np.asarray(recorded["time"])
+    first = int(np.searchsorted(time, time[-1] - WINDOW * (time[-1] - time[0])))
+    attributes = recorded.attrs
+
+    def number(name: str, unknown: float) -> float:
+        return float(np.squeeze(attributes.get(name, unknown)))  # a file holds arrays of one number
+
     return Summary(
         status=run.status,
-        start=float(window["time"][0]),
+        start=float(time[first]),
         end=float(time[-1]),
         outputs=len(time),
-        pulleys=_pulleys(window, np.array([pulley.radius for pulley in run.drive.pulleys])),
-        spans=_spans(window),
+        pulleys=_pulleys(recorded, first, np.array([pulley.radius for pulley in run.drive.pulleys])),
+        spans=_spans(recorded, first),
         resolution=run.resolution,
-        energy_closure=float(dataset["energy_closure"][-1]),
+        energy_closure=float(recorded["energy_closure"][-1]),
         integrator=str(attributes.get("integrator", "")),
-        steps=int(attributes.get("steps", 0)),
-        rejected_steps=int(attributes.get("rejected_steps", 0)),
-        newton_iterations=int(attributes.get("newton_iterations", 0)),
-        wall_time=float(attributes.get("wall_time", np.nan)),
-        compile_time=float(attributes.get("compile_time", np.nan)),
-        real_time_factor=float(attributes.get("real_time_factor", np.nan)),
+        steps=int(number("steps", 0)),
+        rejected_steps=int(number("rejected_steps", 0)),
+        newton_iterations=int(number("newton_iterations", 0)),
+        wall_time=number("wall_time", np.nan),
+        compile_time=number("compile_time", np.nan),
+        real_time_factor=number("real_time_factor", np.nan),
         warnings=tuple(run.warnings),
     )
 
 
-def _pulleys(window: xr.Dataset, radii: np.ndarray) -> tuple[PulleySummary, ...]:
-    names = ("pulley_speed", "pulley_torque", "shaft_torque", "wrap_angle", "hub_force")
-    speed, belt_torque, shaft_torque, wrap_angle, hub_force = (
-        window[name].mean("time", skipna=False).values for name in names
+def _pulleys(recorded: Recorded, first: int, radii: np.ndarray) -> tuple[PulleySummary, ...]:
+    speed, belt_torque, shaft_torque, wrap_angle, hub_force = _means(
+        recorded, first, "pulley_speed", "pulley_torque", "shaft_torque", "wrap_angle", "hub_force"
     )
     rim_speed = speed * radii
     slip = 1.0 - rim_speed / rim_speed[0] if rim_speed[0] != 0.0 else np.full(len(radii), np.nan)
     hub_load = np.hypot(hub_force[:, 0], hub_force[:, 1])
     columns = (speed, belt_torque, shaft_torque, slip, wrap_angle, hub_load)
     return tuple(
-        PulleySummary(str(name), *map(float, row)) for name, *row in zip(window["pulley"].values, *columns, strict=True)
+        PulleySummary(name, *map(float, row)) for name, *row in zip(names(recorded, "pulley"), *columns, strict=True)
     )
 
 
-def _spans(window: xr.Dataset) -> tuple[SpanSummary, ...]:
-    tension, belt_speed = (window[name].mean("time", skipna=False).values for name in ("span_tension", "belt_speed"))
+def _spans(recorded: Recorded, first: int) -> tuple[SpanSummary, ...]:
+    tension, belt_speed = _means(recorded, first, "span_tension", "belt_speed")
     return tuple(
-        SpanSummary(str(name), *map(float, row))
-        for name, *row in zip(window["span"].values, tension, belt_speed, strict=True)
+        SpanSummary(name, *map(float, row))
+        for name, *row in zip(names(recorded, "span"), tension, belt_speed, strict=True)
     )
+
+
+def _means(recorded: Recorded, first: int, *variables: str) -> list[NDArray[np.float64]]:
+    """Means of variables over the outputs from the first one on."""
+    return [np.asarray(recorded[name][first:]).mean(axis=0) for name in variables]

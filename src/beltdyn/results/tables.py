@@ -3,14 +3,16 @@
 import csv
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.results.atomic import atomic_path, make_folder
 from beltdyn.results.run import Run
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _PULLEYS = ("pulley_speed", "pulley_angle", "pulley_torque", "shaft_torque", "hub_force", "wrap_angle")
 _SPANS = ("span_tension", "belt_speed")
@@ -65,7 +67,7 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
     return [_write(folder / name, list(columns)) for name, columns in tables.items()]
 
 
-def _columns(dataset: xr.Dataset, names: Iterable[str]) -> Iterable[Column]:
+def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:
     """Take variables apart into columns along their first dimension."""
     for name in names:
         variable = dataset[name]

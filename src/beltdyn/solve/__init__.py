@@ -1,7 +1,17 @@
-"""Solvers: static equilibrium and simulation over time."""
+"""Solvers: static equilibrium, and simulation over time of one drive or many."""
 
-from beltdyn.solve.progress import Progress
+from beltdyn.solve.batch import Ending, simulate_all
+from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import equilibrium, simulate
 from beltdyn.solve.static import Equilibrium, find_equilibrium
 
-__all__ = ["Equilibrium", "Progress", "equilibrium", "find_equilibrium", "simulate"]
+__all__ = [
+    "BatchProgress",
+    "Ending",
+    "Equilibrium",
+    "Progress",
+    "equilibrium",
+    "find_equilibrium",
+    "simulate",
+    "simulate_all",
+]

@@ -1,7 +1,8 @@
 """How far a simulation has come."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 Phase = Literal["compiling", "equilibrium", "integrating"]
@@ -34,3 +35,20 @@ class Progress:
 
 Report = Callable[[Progress], None]
 """What a caller gives to be told of progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class BatchProgress:
+    """Where many simulations stand.
+
+    Attributes
+    ----------
+    done, total : int
+        Simulations that ended, and all.
+    running : mapping
+        Result file -> part that is done, 0 to 1, of those on their way.
+    """
+
+    done: int
+    total: int
+    running: Mapping[Path, float]

@@ -102,7 +102,7 @@ class Recording:
 
     def run(self) -> Run:
         """The run that was recorded."""
-        return Run(self._recorder.dataset(), self._drive, self._path)
+        return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
 
     def _write(self) -> None:
         """Observe and record the states that wait."""

@@ -1,4 +1,5 @@
 import json
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -31,6 +32,31 @@ def test_help_imports_nothing_heavy() -> None:
         "sys.exit(len({'numpy', 'scipy', 'numba', 'xarray', 'matplotlib', 'pint', 'pydantic'} & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, check=False).returncode == 0
+
+
+@pytest.mark.parametrize(("chosen", "found"), [({}, "1"), ({"OMP_NUM_THREADS": "2"}, "2")])
+def test_linear_algebra_uses_one_thread_unless_told_otherwise(chosen: dict[str, str], found: str) -> None:
+    script = (
+        "import os, sys\nfrom beltdyn.cli import main\nassert 'numpy' not in sys.modules\n"
+        "try: main(['--version'])\nexcept SystemExit: print(os.environ['OMP_NUM_THREADS'])\n"
+    )
+    others = {name: value for name, value in os.environ.items() if name != "OMP_NUM_THREADS"}
+    process = subprocess.run(
+        [sys.executable, "-c", script], env=others | chosen, capture_output=True, text=True, check=True
+    )
+    assert process.stdout.split() == [__version__, found]
+
+
+def test_a_run_imports_nothing_that_it_can_do_without(drive_file: Path, drive_text: str) -> None:
+    """Each of these takes a good part of a second."""
+    drive_file.write_text(drive_text.replace("duration = 1.0", "duration = 0.001"), encoding="utf-8")
+    script = (
+        "import sys\nfrom beltdyn.cli import main\n"
+        f"try: main(['run', {str(drive_file)!r}])\nexcept SystemExit as stop: assert stop.code == 0\n"
+        "print(*{'xarray', 'pandas', 'matplotlib', 'pint', 'scipy.integrate', 'jinja2'} & set(sys.modules))"
+    )
+    process = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert process.stdout.splitlines()[-1] == ""
 
 
 def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
@@ -68,7 +94,7 @@ def test_a_simulation_that_cannot_go_on(run_main: RunMain, drive_file: Path, mon
 
 
 def test_an_interrupted_simulation(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run = SimpleNamespace(status="interrupted", dataset=SimpleNamespace(sizes={"time": 0}))
+    run = SimpleNamespace(status="interrupted", outputs=0)
     monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
     code, output, _ = run_main(["run", str(drive_file), "-o", "out.nc"])
     assert code == 130

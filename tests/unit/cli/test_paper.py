@@ -4,9 +4,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from beltdyn.cli.progress import runs_bar
-from beltdyn.report.runs import Stage
-
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
 
@@ -26,13 +23,6 @@ def test_the_page_is_named_and_failures_too(
     assert found == code
     assert f"Page: {tmp_path / 'paper.html'}" in output
     assert all(f"the run {name} failed: {reason}" in message for name, reason in failures.items())
-
-
-def test_the_bar_names_what_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    with runs_bar() as report:
-        report(Stage(1, 3, ("first", "second")))
-    shown = " ".join(capsys.readouterr().err.split())
-    assert "1 of 3 runs: first, second" in shown
 
 
 def test_an_interruption(run_main: RunMain, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beltdyn.cli.progress import progress_bar
+from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.cli.summary import show_summary
 from beltdyn.results import Run
-from beltdyn.solve.progress import Progress
+from beltdyn.solve.progress import BatchProgress, Progress
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
@@ -49,6 +49,21 @@ def test_progress(capsys: pytest.CaptureFixture[str]) -> None:
     captured = capsys.readouterr()
     assert "0.25 of 1 s, step 1.0e-04 s" in captured.err
     assert captured.out == ""
+
+
+def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
+    """A line for all, and one for each that is on its way."""
+    with runs_bar(at_end="writing the page") as report:
+        report(BatchProgress(0, 3, {}))
+        report(BatchProgress(1, 3, {Path("runs/first.nc"): 0.2, Path("runs/second.nc"): 0.9}))
+        report(BatchProgress(2, 3, {Path("runs/second.nc"): 1.0}))
+    shown = capsys.readouterr().err
+    assert "2 of 3 runs" in shown
+    assert "second" in shown
+    assert "first" not in shown
+    with runs_bar(at_end="writing the page") as report:
+        report(BatchProgress(3, 3, {}))
+    assert "writing the page" in capsys.readouterr().err
 
 
 def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

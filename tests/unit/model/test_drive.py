@@ -1,3 +1,4 @@
+import pickle
 from math import ceil
 
 import numpy as np
@@ -99,3 +100,11 @@ def test_advice_on_links(drive: Drive, kind: str, links_each: int) -> None:
 def test_contact_at_nodes_does_not_miss_the_circle(drive: Drive) -> None:
     nodal = drive.replace(contact=drive.contact.replace(sampling="nodal"))
     assert advise(nodal, install(nodal)) == []
+
+
+def test_a_drive_travels_between_processes_with_its_text(drive: Drive) -> None:
+    """Its profiles are generic classes, which cannot travel on their own."""
+    again = pickle.loads(pickle.dumps(drive))
+    assert (again, again.text) == (drive, drive.text)
+    changed = drive.replace(simulation=drive.simulation.replace(rtol=1 / 3e4))
+    assert pickle.loads(pickle.dumps(changed)) == changed

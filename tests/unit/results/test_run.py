@@ -8,7 +8,7 @@ import xarray as xr
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.results import FileRecorder, Layout, Run, open_run
+from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
 
 MakeRun = Callable[..., Run]
 
@@ -26,6 +26,32 @@ def test_run_from_its_file_knows_its_drive(
         assert run.status == "completed"
         assert dataset.attrs["steps"] == 1200
         assert {"title", "beltdyn_version", "numba_version", "python_version", "created"} <= dataset.attrs.keys()
+
+
+def test_a_run_of_a_file_reads_it_when_it_is_asked_for(
+    tmp_path: Path, drive: Drive, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], statistics: Any
+) -> None:
+    """Plain reading and the dataset say the same; another file of the same name is not this run's."""
+
+    def record(instants: int) -> Run:
+        recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+        recorder.append(make_chunk(np.linspace(0.0, 1.0, instants)))
+        recorder.close("completed", statistics)
+        return Run(None, drive, recorder.path)
+
+    run = record(11)
+    opened = open_run(tmp_path / "result.nc")
+    with opened.dataset:
+        assert (run.status, run.outputs) == (opened.status, opened.outputs) == ("completed", 11)
+        assert run.warnings == opened.warnings
+        assert run.resolution == opened.resolution
+        assert summarize(run).pulleys == summarize(opened).pulleys
+    with run.dataset as dataset:
+        assert dataset.sizes["time"] == 11
+    replaced = record(11)
+    record(12)
+    with pytest.raises(ModelError, match="changed, replaced or removed since"):
+        _ = replaced.dataset
 
 
 def test_file_that_is_missing_is_a_model_error(tmp_path: Path) -> None:

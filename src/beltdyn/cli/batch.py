@@ -1,0 +1,127 @@
+"""`beltdyn run` of several drives."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from beltdyn.cli.console import show, show_error, show_table, show_warnings
+from beltdyn.cli.progress import runs_bar
+from beltdyn.cli.run import INTERRUPTED, refuse_overwriting, write_tables
+from beltdyn.errors import ConvergenceError, ModelError
+
+if TYPE_CHECKING:
+    from beltdyn.model import Drive
+    from beltdyn.solve import Ending
+
+
+def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, csv: bool) -> int:
+    """Simulate drives side by side, and show a table of them.
+
+    Parameters
+    ----------
+    files
+        Drive files.
+    folder
+        Where to write the result files; by default beside the drive files.
+    jobs
+        How many at a time; by default as many as there are cores.
+    csv
+        Whether to write plain tables too.
+
+    Returns
+    -------
+    int
+        The exit code.
+
+    Raises
+    ------
+    ModelError
+        Before anything is computed, if a drive file cannot be used, or two drives would share a result file.
+    """
+    drives = _load_all(files)
+    results = _result_files(files, folder)
+    from beltdyn.solve import simulate_all
+
+    with runs_bar() as report:
+        endings = simulate_all({results[file]: drives[file] for file in files}, report, jobs)
+    ends = {file: endings[results[file]] for file in files}
+    _show_endings(ends, results)
+    if csv:
+        _write_all_tables(ends, results)
+    if any(end.status in ("interrupted", "not started") for end in ends.values()):
+        show("Interrupted: what was computed is kept.")
+        return INTERRUPTED
+    return ConvergenceError.exit_code if any(end.error for end in ends.values()) else 0
+
+
+def _load_all(files: Sequence[Path]) -> dict[Path, "Drive"]:
+    """Read drive files, or say what is wrong with all of them."""
+    from beltdyn.model import load
+
+    drives: dict[Path, Drive] = {}
+    wrong: list[str] = []
+    for file in files:
+        try:
+            drives[file] = load(file)
+        except ModelError as error:
+            wrong += [line if line.startswith(f"{file} ") else f"{file}: {line}" for line in str(error).splitlines()]
+    if wrong:
+        raise ModelError("\n".join(wrong))
+    return drives
+
+
+def _result_files(files: Sequence[Path], folder: Path | None) -> dict[Path, Path]:
+    """The result file of every drive file."""
+    results = [(folder or file.parent) / f"{file.stem}.nc" for file in files]
+    for path, count in Counter(path.resolve() for path in results).items():
+        if count > 1:
+            sharing = [str(file) for file, result in zip(files, results, strict=True) if result.resolve() == path]
+            raise ModelError(
+                f"{' and '.join(sharing)} would share the result file {path}. Rename one, or run them one by one."
+            )
+    for path in results:
+        refuse_overwriting(path, files)
+    if folder is not None:
+        from beltdyn.results.atomic import make_folder
+
+        make_folder(folder)
+    return dict(zip(files, results, strict=True))
+
+
+def _show_endings(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path]) -> None:
+    """Write a table of all, their warnings, and why some failed."""
+    show_table(
+        "\nDrives",
+        ("", "status", "speed of the last pulley", "steps", "time taken", "warnings", "results"),
+        [(str(file), end.status, *_numbers(end), *_result(end, results[file])) for file, end in ends.items()],
+    )
+    show()
+    for file, end in ends.items():
+        show_warnings(f"{file}: {warning}" for warning in (end.summary.warnings if end.summary else ()))
+    for file, end in ends.items():
+        for line in end.error.splitlines():
+            show_error(f"{file}: {line}")
+
+
+def _numbers(end: "Ending") -> tuple[str, str, str, str]:
+    summary = end.summary
+    if summary is None:
+        return ("",) * 4
+    speed = f"{summary.pulleys[-1].speed:.4f} rad/s"
+    return speed, f"{summary.steps}", f"{summary.wall_time:.3g} s", f"{len(summary.warnings)}"
+
+
+def _result(end: "Ending", path: Path) -> tuple[str]:
+    return (str(path) if end.summary else "",)
+
+
+def _write_all_tables(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path]) -> None:
+    """Write plain tables of all drives of which something was computed."""
+    from beltdyn.results import open_run
+
+    for file, end in ends.items():
+        if end.summary:
+            run = open_run(results[file])
+            write_tables(run, results[file])
+            run.dataset.close()

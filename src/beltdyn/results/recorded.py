@@ -1,0 +1,35 @@
+"""What was recorded, by name: an xarray dataset, or a result file without the time that xarray takes to load."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+import numpy as np
+
+
+class Recorded(Protocol):
+    """Variables by name, each an array with one row for each output, and global attributes."""
+
+    @property
+    def attrs(self) -> Mapping[Any, Any]:
+        """Global attributes."""
+
+    def __getitem__(self, name: str, /) -> Any:
+        """A variable, which is read where it is indexed."""
+
+
+def names(recorded: Recorded, dimension: str) -> list[str]:
+    """Names along a dimension.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    dimension : str
+        "pulley" or "span".
+
+    Returns
+    -------
+    list of str
+        In order.
+    """
+    return [name.decode() if isinstance(name, bytes) else str(name) for name in np.asarray(recorded[dimension])]

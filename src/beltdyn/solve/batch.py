@@ -1,0 +1,221 @@
+"""Many simulations side by side on all cores, each into its own file."""
+
+import math
+import multiprocessing
+import os
+import signal
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from multiprocessing.synchronize import Event
+from pathlib import Path
+from threading import current_thread, main_thread
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from beltdyn.errors import BeltdynError, ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.results import Run, Summary, summarize
+from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.progress import BatchProgress, Progress
+from beltdyn.solve.simulate import simulate
+from beltdyn.system.build import drive_system
+from beltdyn.system.state import laid
+
+if TYPE_CHECKING:
+    from ctypes import Array, c_double
+
+_POLL = 0.2  # s
+_SPAWN = multiprocessing.get_context("spawn")
+_THREADS = "OMP_NUM_THREADS"
+"""What OpenBLAS and MKL ask for their number of threads."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a simulation ended.
+
+    Attributes
+    ----------
+    status : str
+        "completed", "interrupted" by Ctrl-C, "failed", or "not started" before Ctrl-C.
+    error : str
+        Why it failed; empty otherwise.
+    summary : Summary or None
+        The numbers that sum up what was computed; None where there is no output.
+    """
+
+    status: str
+    error: str = ""
+    summary: Summary | None = None
+
+
+def simulate_all(
+    drives: Mapping[Path, Drive] | Mapping[str, Drive],
+    progress: Callable[[BatchProgress], None] | None = None,
+    jobs: int | None = None,
+) -> dict[Path, Ending]:
+    """Simulate drives side by side, each by one thread of a process of its own.
+
+    Kernels are compiled first, once, unless they are on the disk already.  A simulation that fails leaves the others
+    alone.  Ctrl-C ends those on their way, which keep what they computed.  Processes do not run the caller's script
+    again, so that it needs no ``if __name__ == "__main__"``.
+
+    Parameters
+    ----------
+    drives : mapping
+        Result file -> drive.
+    progress : callable, optional
+        Called at the beginning, and several times a second while simulations are on their way.
+    jobs : int, optional
+        How many at a time; by default as many as there are cores.
+
+    Returns
+    -------
+    dict
+        Result file -> how its simulation ended, in the order of `drives`.
+    """
+    endings: dict[Path, Ending] = {}
+    files = {Path(file): drive for file, drive in drives.items()}
+    waiting = _longest_first(files)
+    stop = _SPAWN.Event()
+
+    def tell(running: Mapping[Path, float], ended: int) -> None:
+        if progress is not None:
+            progress(BatchProgress(len(endings) + ended, len(files), running))
+
+    tell({}, 0)
+    if waiting:
+        _compile(waiting[0][1], stop)
+    while waiting and not stop.is_set():
+        endings |= _run_pool(waiting, min(jobs or _cores(), len(waiting)), stop, tell)
+        waiting = [(file, drive) for file, drive in waiting if file not in endings]
+    return {file: endings.get(file, Ending("not started")) for file in files}
+
+
+def _longest_first(drives: Mapping[Path, Drive]) -> list[tuple[Path, Drive]]:
+    """Order drives so that no long run is left to the end: by number of contact points and simulated time."""
+
+    def size(item: tuple[Path, Drive]) -> float:
+        drive = item[1]
+        return drive.belt.elements * drive.contact.quadrature_points * drive.simulation.duration
+
+    return sorted(drives.items(), key=size, reverse=True)
+
+
+def _cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _compile(drive: Drive, stop: Event) -> None:
+    system = drive_system(drive)
+    try:
+        compile_kernels(system, laid(system, drive.path))
+    except KeyboardInterrupt:
+        stop.set()
+
+
+def _run_pool(
+    drives: Sequence[tuple[Path, Drive]], jobs: int, stop: Event, tell: Callable[[Mapping[Path, float], int], None]
+) -> dict[Path, Ending]:
+    """Simulate in a pool of processes; if one of these is killed, what had not begun by then has no ending yet."""
+    parts = _SPAWN.RawArray("d", [math.nan] * len(drives))
+    with ProcessPoolExecutor(jobs, _SPAWN, _start_worker, (stop, parts)) as pool:
+        with _bare_workers():
+            futures = [pool.submit(_simulate, place, file, drive) for place, (file, drive) in enumerate(drives)]
+        try:
+            pending = set(futures)
+            while pending:
+                running = [place for place, future in enumerate(futures) if future in pending and parts[place] >= 0.0]
+                tell({drives[place][0]: parts[place] for place in running}, len(drives) - len(pending))
+                pending = wait(pending, timeout=_POLL, return_when=FIRST_COMPLETED).not_done
+            tell({}, len(drives))
+        except KeyboardInterrupt:
+            stop.set()
+    endings = {file: _ending(future) for (file, _), future in zip(drives, futures, strict=True)}
+    begun = [part >= 0.0 for part in parts]
+    if any(begun) and any(isinstance(future.exception(), BrokenProcessPool) for future in futures):
+        return {file: ending for (file, ending), it_began in zip(endings.items(), begun, strict=True) if it_began}
+    return endings
+
+
+def _ending(future: Future[Ending]) -> Ending:
+    error = future.exception()
+    if isinstance(error, BrokenProcessPool):
+        return Ending("failed", "its process or one beside it was killed, as when memory runs out. Run fewer at once.")
+    return future.result()
+
+
+@contextmanager
+def _bare_workers() -> Iterator[None]:
+    """Let processes that are started meanwhile inherit little.
+
+    They ignore Ctrl-C, of which the parent tells them; use one thread for linear algebra unless the user chose a
+    number; and see an empty script in place of the caller's, which each of them would run otherwise.
+    """
+    script, threads = sys.modules["__main__"], os.environ.get(_THREADS)
+    in_main_thread = current_thread() is main_thread()
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
+    sys.modules["__main__"] = ModuleType("__main__")
+    os.environ.setdefault(_THREADS, "1")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = script
+        if threads is None:
+            del os.environ[_THREADS]
+        if in_main_thread:
+            signal.signal(signal.SIGINT, handler)
+
+
+# In the processes
+
+_stop: Event
+_parts: "Array[c_double]"
+
+
+def _start_worker(stop: Event, parts: "Array[c_double]") -> None:
+    """Keep what is shared with the parent.
+
+    Parameters
+    ----------
+    stop
+        Set when the parent is interrupted.
+    parts
+        The part of each simulation that is done, 0 to 1; NaN before it begins.
+    """
+    global _stop, _parts
+    _stop, _parts = stop, parts
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    warnings.simplefilter("ignore")
+
+
+def _simulate(place: int, file: Path, drive: Drive) -> Ending:
+    """Simulate a drive into a file."""
+    if _stop.is_set():
+        return Ending("not started")
+    _parts[place] = 0.0
+
+    def heed(progress: Progress) -> None:
+        """Tell the parent, and end the simulation when it says so."""
+        _parts[place] = progress.time / progress.duration
+        if _stop.is_set():
+            raise KeyboardInterrupt
+
+    try:
+        return _ended(simulate(drive, file, heed))
+    except ConvergenceError as error:
+        return replace(_ended(Run(None, drive, file)), error=str(error))
+    except BeltdynError as error:
+        return Ending("failed", str(error))
+    except Exception as error:
+        return Ending("failed", f"{type(error).__name__}: {error}")
+
+
+def _ended(run: Run) -> Ending:
+    return Ending(run.status, summary=summarize(run) if run.outputs else None)

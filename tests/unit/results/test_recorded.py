@@ -1,0 +1,23 @@
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from beltdyn.results import FileRecorder, Layout
+from beltdyn.results.recorded import names
+
+
+def test_names_are_text_in_a_file_and_in_a_dataset(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    """HDF5 holds them as bytes."""
+    recorder = FileRecorder(tmp_path / "result.nc", replace(layout, pulleys=("Räder", "driven")), attributes)
+    recorder.append(make_chunk(np.array([0.0])))
+    with recorder.dataset() as dataset:
+        assert names(dataset, "pulley") == ["Räder", "driven"]
+    with h5py.File(recorder.path) as file:
+        assert names(file, "pulley") == ["Räder", "driven"]
+        assert names(file, "span") == list(layout.spans)
