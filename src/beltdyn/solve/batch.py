@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from multiprocessing.synchronize import Event
 from pathlib import Path
-from threading import current_thread, main_thread
+from threading import Lock, Thread, current_thread, main_thread
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -177,6 +177,7 @@ def _bare_workers() -> Iterator[None]:
 
 _stop: Event
 _parts: "Array[c_double]"
+_working = Lock()
 
 
 def _start_worker(stop: Event, parts: "Array[c_double]") -> None:
@@ -193,6 +194,17 @@ def _start_worker(stop: Event, parts: "Array[c_double]") -> None:
     _stop, _parts = stop, parts
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore")
+    Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    """End when the parent was killed, after the simulation on its way has closed its file."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        _stop.set()
+        with _working:
+            os._exit(1)
 
 
 def _simulate(place: int, file: Path, drive: Drive) -> Ending:
@@ -208,7 +220,8 @@ def _simulate(place: int, file: Path, drive: Drive) -> Ending:
             raise KeyboardInterrupt
 
     try:
-        return _ended(simulate(drive, file, heed))
+        with _working:
+            return _ended(simulate(drive, file, heed))
     except ConvergenceError as error:
         return replace(_ended(Run(None, drive, file)), error=str(error))
     except BeltdynError as error:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from beltdyn import open_run, simulate
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, summarize
 from beltdyn.solve import BatchProgress, Ending, simulate_all
@@ -49,6 +50,15 @@ def outputs(file: Path) -> int:
         return 0
     with run.dataset as dataset:
         return dataset.sizes["time"]
+
+
+def status(file: Path) -> str:
+    """Status of a result file; one that cannot be read is being written."""
+    try:
+        with open_run(file).dataset as dataset:
+            return str(dataset.attrs["status"])
+    except ModelError:
+        return "running"
 
 
 def test_nothing_to_do() -> None:
@@ -125,6 +135,26 @@ def test_a_killed_process_spares_those_that_had_not_begun(
     assert endings[long].status == "failed"
     assert "was killed" in endings[long].error
     assert outputs(long) > 0
+
+
+@pytest.mark.slow
+def test_processes_end_with_a_parent_that_was_killed(change: Change, tmp_path: Path) -> None:
+    drive = change(simulation={"duration": 200.0, "output_interval": 0.01})
+    (tmp_path / "drive.toml").write_text(drive.text, encoding="utf-8")
+    program = "from beltdyn import load, simulate_all; simulate_all({'one.nc': load('drive.toml')})"
+    parent = subprocess.Popen([sys.executable, "-c", program], cwd=tmp_path)
+    file = tmp_path / "one.nc"
+    while outputs(file) == 0:
+        assert parent.poll() is None
+        time.sleep(0.1)
+    parent.kill()
+    parent.wait()
+    end = time.monotonic() + 60.0
+    while status(file) == "running":
+        assert time.monotonic() < end
+        time.sleep(0.1)
+    assert status(file) == "interrupted"
+    assert 0 < outputs(file) < 20_000
 
 
 @pytest.mark.slow
