@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import beltdyn as bd
-from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
+from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley, unequal_pulleys
 from beltdyn.report.distribution import distribution, find_peak, fit_line
 from beltdyn.report.hand_formulas import penalty_layer
 from beltdyn.solve import find_equilibrium
@@ -31,6 +31,14 @@ Changes = Mapping[str, Any]
 DRIVER, DRIVEN = 0, 1
 RULES = (("zone", 5), ("zone", 8), ("fixed", 5), ("fixed", 7), ("fixed", 11), ("fixed", 21), ("fixed", 31))
 COARSE_RULES = (("fixed", 5), ("fixed", 11), ("fixed", 21))
+RESOLVED = {
+    "case 1": (two_pulley(), 240, (12, 16, 20, 25, 30, 45, 60, 90)),
+    "case 1, $E$ = 1e9": (two_pulley(20, 1e9), 180, (20, 30, 60)),
+    "case 2, $\\nu_s$ = 1e4": (loaded_two_pulley(1e4), 120, (16, 20, 30, 45)),
+    "case 2, $\\nu_s$ = 1e5": (loaded_two_pulley(1e5), 120, (16, 20, 30, 45)),
+    "unequal radii": (unequal_pulleys(), 180, (20, 30, 60)),
+}
+"""Drives, their converged meshes, and coarser ones."""
 MEASUREMENTS: dict[str, Callable[[], Iterator[Row]]] = {}
 
 
@@ -389,6 +397,60 @@ def contact_force_spread() -> Iterator[Row]:
         angle = run.drive.belt.length / (elements * run.drive.pulleys[DRIVER].radius)
         yield f"{elements}", *force_spread(run), f"{run.drive.pulleys[DRIVER].radius * angle**4 / 384:.1e} m"
     yield "case 2, 30", *force_spread(bd.simulate(case_2())), ""
+
+
+@measurement("resolution")
+def resolution() -> Iterator[Row]:
+    """What runs estimate of the errors of their meshes, beside the errors against converged meshes."""
+    yield (
+        "",
+        "elements",
+        "ripple of the normal force",
+        "its error",
+        "tension estimated too high by",
+        "it is",
+        "elements advised",
+    )
+    for name, (drive, converged, meshes) in RESOLVED.items():
+        reference = bd.simulate(better(drive, converged, rtol=3e-4))
+        tension = mean_tension(reference)
+        for elements in meshes:
+            run = bd.simulate(better(drive, elements, rtol=3e-4))
+            yield (
+                name,
+                f"{elements}",
+                f"{max(run.resolution.force_errors):.2g}",
+                f"{max(force_errors(run, reference)):.2g}",
+                f"{run.resolution.tension_error:.1%}",
+                f"{mean_tension(run) / tension - 1:.1%}",
+                f"{run.resolution.elements}",
+            )
+
+
+def mean_tension(run: bd.Run) -> float:
+    """Mean tension of the belt in the last fifth of a run, N."""
+    tension = run.dataset["belt_tension"].values
+    return float(tension[-len(tension) // 5 :].mean())
+
+
+def force_errors(run: bd.Run, reference: bd.Run) -> list[float]:
+    """Normal force less the converged one at the place, root mean square in the middle of each arc, over its mean."""
+    errors = []
+    for pulley in range(len(run.drive.pulleys)):
+        (angle, force), (place, exact) = (normal_forces(one, pulley) for one in (run, reference))
+        trend = np.polynomial.Polynomial.fit(place, exact, 6)
+        errors.append(float(np.sqrt(np.mean((force - trend(angle)) ** 2)) / np.mean(exact)))
+    return errors
+
+
+def normal_forces(run: bd.Run, pulley: int) -> tuple[FloatArray, FloatArray]:
+    """Angles and normal forces within 60 degrees of the middle of an arc, at ten of the last 100 outputs."""
+    last = run.dataset.isel(time=slice(-100, None, 10))
+    center = np.array(run.drive.pulleys[pulley].center)
+    arm = last["contact_position"].values - center
+    outwards = np.angle(np.exp(1j * (np.arctan2(arm[..., 1], arm[..., 0]) - (0.0 if center[0] > 0 else np.pi))))
+    chosen = (last["contact_pulley"].values == pulley) & (np.abs(outwards) < np.pi / 3)
+    return outwards[chosen], last["normal_force"].values[chosen]
 
 
 def force_spread(run: bd.Run) -> Row:

@@ -36,8 +36,19 @@ def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]
         ("belt length", f"{drive.belt.length:.5g} m unstretched, {drive.belt.elements} elements"),
         ("installed strain", f"{installation.strain:.4%}"),
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
+        ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
         ("tension at rest", f"about {installation.tension:.4g} N: {lost:.1%} is lost by sinking into the pulleys"),
     ]
+
+
+def _layers(drive: "Drive", installation: "Installation") -> str:
+    """Where contact forces may have peaks, which only elements as short can show."""
+    if not installation.tension > 0.0:
+        return ""
+    from beltdyn.model.installation import layer_lengths
+
+    bending, sinking = layer_lengths(drive, installation.tension)
+    return f"; the belt turns onto pulleys within {bending:.2g} m by bending, {sinking:.2g} m by sinking in"
 
 
 def _pulleys(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:

@@ -61,4 +61,4 @@ def _mesh(resolution: "Resolution") -> str:
     """The estimated errors of the mesh; without contact there are none of forces."""
     known = [error for error in resolution.force_errors if math.isfinite(error)]
     forces = f"contact forces ripple by {max(known):.1%} of their mean, " if known else ""
-    return f"{forces}tension is about {resolution.tension_error:.1%} too high"
+    return f"{forces}tension is up to {resolution.tension_error:.1%} too high"

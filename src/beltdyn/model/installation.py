@@ -1,5 +1,6 @@
 """What to expect of a belt at rest on its pulleys, before anything is simulated."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,17 @@ class Installation:
     laid_tension: float
     tension: float
     penetrations: NDArray[np.float64]
+
+
+def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
+    """Lengths within which a belt under a tension (N) turns at the ends of an arc.
+
+    Returns
+    -------
+    bending, sinking : float
+        sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
+    """
+    return math.sqrt(drive.belt.bending_stiffness / tension), math.sqrt(tension / drive.contact.stiffness)
 
 
 def install(drive: Drive) -> Installation:

@@ -73,7 +73,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """
     ax = _lines(run.dataset["span_tension"], axes_or_new(ax))
     if not run.resolution.resolves_tension:
-        mark(ax, f"about {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
+        mark(ax, f"up to {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
     return ax
 
 

@@ -77,7 +77,7 @@ def _unresolved(dataset: Recorded, drive: Drive) -> Iterator[str]:
         ripple = f" (they ripple by {worst:.0%} of their mean)" if worst > FORCE_LIMIT else ""
         said.append(f"the contact forces along {' and '.join(unresolved)}{ripple}")
     if not resolution.resolves_tension:
-        said.append(f"the tension (about {resolution.tension_error:.0%} too high)")
+        said.append(f"the tension (up to {resolution.tension_error:.0%} too high)")
     if said:
         yield (
             f"the mesh does not resolve {', and '.join(said)}. Speeds converge earlier. "

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
+from beltdyn.model.installation import layer_lengths
 from beltdyn.results.recorded import Recorded
 
 FloatArray = NDArray[np.float64]
@@ -89,14 +90,11 @@ def estimate_resolution(dataset: Recorded, drive: Drive) -> Resolution:
     variation = float((window["tension_variation"] ** 2).mean())
     tension_error = _TENSION_FACTOR * variation / tension**2 if tension > 0.0 else math.nan
     belt = drive.belt
-    layers = (
-        math.sqrt(belt.bending_stiffness / tension) if tension > 0.0 else math.nan,
-        math.sqrt(tension / drive.contact.stiffness) if tension > 0.0 else math.nan,
-    )
+    layers = layer_lengths(drive, tension) if tension > 0.0 else (math.nan, math.nan)
     order = 2 if belt.links else 4
     excess = [error / FORCE_LIMIT for error in errors] + [tension_error / TENSION_LIMIT]
     factors = [ratio ** (1.0 / order) if math.isfinite(ratio) else _REFINEMENT for ratio in excess if ratio > 1.0]
-    elements = math.ceil(belt.elements * max(factors, default=1.0))
+    elements = math.ceil(belt.elements * max(factors, default=1.0) / belt.multiple) * belt.multiple
     return Resolution(errors, tension_error, layers, elements)
 
 

@@ -92,7 +92,7 @@ def test_unresolved_forces_and_tensions_are_said(make_run: MakeRun, run: Run) ->
     (warning,) = make_run(normal_force=checkered, tension_variation=4.0 * variation).warnings
     assert warning == (
         "the mesh does not resolve the contact forces along driver and driven (they ripple by 29% of their mean), and "
-        "the tension (about 9% too high). Speeds converge earlier. Set belt.elements = 35 or more, in place of 20."
+        "the tension (up to 9% too high). Speeds converge earlier. Set belt.elements = 35 or more, in place of 20."
     )
 
 
