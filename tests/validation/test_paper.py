@@ -39,7 +39,7 @@ CLAIMED = {
     "peaks-emphasised": (HOLDS, HOLDS),
     "driven-peaks": (HOLDS, HOLDS),
     "like-leamy-and-wasfy": (OPEN, OPEN),
-    "identical-forces": (FAILS, FAILS),
+    "identical-forces": (FAILS, HOLDS),
     "identical-speeds": (HOLDS, HOLDS),
     "quotient-of-speeds": (HOLDS, HOLDS),
     "more-than-two-pulleys": (HOLDS, HOLDS),
@@ -51,7 +51,6 @@ CLAIMED = {
     "as-accurate-as-leamy-and-wasfy": (FAILS, FAILS),
     "distributed-contact": (FAILS, FAILS),
     "even-forces": (FAILS, HOLDS),
-    "less-time": (HOLDS, HOLDS),
     "little-bending-stiffness": (HOLDS, HOLDS),
     "belt-like-element-saves-unknowns": (FAILS, HOLDS),
     "multipliers-same-motion": (HOLDS, HOLDS),
@@ -59,6 +58,9 @@ CLAIMED = {
     "energy-closes": (HOLDS, HOLDS),
 }
 """Name of a statement -> its verdict with published and with the best settings on the page."""
+
+TIMED = {"less-time"}
+"""Statements about computing time, whose verdict depends on what else the machine does."""
 
 
 @pytest.fixture(scope="session")
@@ -87,7 +89,7 @@ def test_the_page_is_small_enough_to_send(outcome: Outcome) -> None:
 
 
 def test_every_statement_has_a_claim(statements: dict[str, Statement]) -> None:
-    assert statements.keys() == CLAIMED.keys()
+    assert statements.keys() == CLAIMED.keys() | TIMED
 
 
 @pytest.mark.parametrize("name", CLAIMED)
