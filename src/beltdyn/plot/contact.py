@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection
 
 from beltdyn.errors import ModelError
 from beltdyn.plot.instant import at
-from beltdyn.plot.style import INK, axes_or_new, color, dash, label, mark, styled, unit
+from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, styled, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Run
 
@@ -67,7 +67,7 @@ def contact_forces(
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(instant['time']):.4g} s")
     if not run.resolution.resolves(number):
-        mark(ax, f"not resolved by {run.drive.belt.elements} elements")
+        reserve(ax, f"not resolved by {run.drive.belt.elements} elements")
     return ax
 
 

@@ -3,7 +3,7 @@
 import xarray as xr
 from matplotlib.axes import Axes
 
-from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, mark, styled, unit
+from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, reserve, styled, unit
 from beltdyn.results import Run
 
 _ENERGIES = (
@@ -73,7 +73,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """
     ax = _lines(run.dataset["span_tension"], axes_or_new(ax))
     if not run.resolution.resolves_tension:
-        mark(ax, f"up to {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
+        reserve(ax, f"up to {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
     return ax
 
 

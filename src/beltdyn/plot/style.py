@@ -149,20 +149,18 @@ def label(variable: xr.DataArray) -> str:
     return f"{variable.attrs['long_name']} [{unit(variable)}]"
 
 
-def mark(ax: Axes, text: str) -> None:
-    """Write a reservation about what is drawn into the lower right corner."""
-    box = {"boxstyle": "round,pad=0.3", "facecolor": "white", "edgecolor": COLORS[1], "alpha": 0.9}
-    ax.text(
-        0.985,
-        0.03,
+def reserve(ax: Axes, text: str) -> None:
+    """Write a reservation about what is drawn along the right edge, where nothing else stands."""
+    ax.annotate(
         text,
-        transform=ax.transAxes,
-        ha="right",
-        va="bottom",
-        fontsize=9,
+        (1.0, 0.5),
+        xycoords="axes fraction",
+        xytext=(4.0, 0.0),
+        textcoords="offset points",
+        rotation=90.0,
+        verticalalignment="center",
         color=COLORS[1],
-        bbox=box,
-        zorder=6,
+        fontsize=9,
     )
 
 

@@ -136,3 +136,13 @@ def test_figures_that_cannot_be_written_are_a_model_error(tmp_path: Path, run: R
     with pytest.raises(ModelError, match="cannot be written"):
         plot.save_all(run, tmp_path)
     assert not any(path.name.startswith(".") for path in tmp_path.iterdir())
+
+
+def test_what_the_mesh_does_not_resolve_is_marked(make_run: Callable[..., Run], run: Run) -> None:
+    force, variation = run.dataset["normal_force"].values, run.dataset["tension_variation"].values
+    rippled = force * (1.0 + 0.3 * (-1.0) ** np.arange(force.shape[1]))
+    coarse = make_run(normal_force=rippled, tension_variation=4.0 * variation)
+    for draw in (lambda one: plot.contact_forces(one, "driver"), plot.span_tensions):
+        assert not draw(run).texts
+        (note,) = draw(coarse).texts
+        assert "20 elements" in note.get_text()
