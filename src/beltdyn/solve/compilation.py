@@ -1,13 +1,26 @@
-"""Compile the kernels of a simulation before its clock starts: once on a machine, then they come from the disk."""
+"""Compile the kernels of a simulation before its clock starts: once on a machine, then they come from the disk.
+
+Time stepping takes more than half of the compilation; where nothing is on the disk yet and there is a second core, a
+second process does that part.
+"""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
+from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
+from beltdyn.model import Belt
 from beltdyn.solve.generalized_alpha import advance
 from beltdyn.solve.march import Settings, empty_outputs, new_march
 from beltdyn.system.arrays import NODE, System
+from beltdyn.system.build import belt_system
 from beltdyn.system.motion import accelerate, new_equations
 from beltdyn.system.observe import observe
-from beltdyn.system.state import State
+from beltdyn.system.state import State, straight
 
 
 def compile_kernels(system: System, state: State) -> None:
@@ -20,10 +33,43 @@ def compile_kernels(system: System, state: State) -> None:
     state
         A state of it.
     """
-    equations = new_equations(system)
-    velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
-    accelerate(system, 0.0, state.position, velocity, acceleration, np.zeros(NODE), equations)
+    with _second_process():
+        velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
+        accelerate(system, 0.0, state.position, velocity, acceleration, np.zeros(NODE), new_equations(system))
+        observe(system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
+    _compile_stepping(system, state)
+
+
+def compile_stepping() -> None:
+    """Compile time stepping alone, on a belt that stands for all others."""
+    belt = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3, elements=3)
+    system = belt_system(belt)
+    _compile_stepping(system, straight(system))
+
+
+def _compile_stepping(system: System, state: State) -> None:
     settings = Settings(0.0, 1.0, 1.0, 1.0, np.ones(NODE))
     march = new_march(0.0, 1.0, state.position, state.velocity)
-    advance(system, settings, march, equations, 0.0, 0, empty_outputs(np.zeros(0), state.position.size))
-    observe(system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
+    advance(system, settings, march, new_equations(system), 0.0, 0, empty_outputs(np.zeros(0), state.position.size))
+
+
+@contextmanager
+def _second_process() -> Iterator[None]:
+    """Compile time stepping in another process meanwhile, if that is of use; if it fails, this one does it later."""
+    folder = kernel_cache()
+    if any(folder.rglob("*.nbi")) or (os.cpu_count() or 1) < 2 or not sys.executable:
+        yield
+        return
+    process = subprocess.Popen(
+        [sys.executable, "-c", f"from {__name__} import compile_stepping; compile_stepping()"],
+        env={**os.environ, CACHE_VARIABLE: str(folder.parent), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield
+        process.wait()
+    finally:
+        process.kill()
+        process.wait()
