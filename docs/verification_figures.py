@@ -2,8 +2,8 @@
 
     python docs/verification_figures.py [CURVES]
 
-runs all verification tests, slow ones too (about ten minutes), or takes a file that `pytest --curves FILE` has written,
-and draws docs/_static/verification/*.svg.
+runs all verification tests, slow ones too, and those of tolerance and ripple (a quarter of an hour), or takes a file
+that `pytest --curves FILE` has written, and draws docs/_static/verification/*.svg.
 """
 
 import json
@@ -20,6 +20,7 @@ from beltdyn.plot.style import COLORS, dash, new_figure, styled
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "_static" / "verification"
+TESTS = ("tests/verification", "tests/validation/test_matrix.py", "tests/validation/test_ripple.py")
 Curves = list[dict[str, Any]]
 
 
@@ -53,6 +54,14 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("radius", "ρ∞ asked for", "Spectral radius found", "linear"),
     ],
     "integrators": [Panel("", RTOL, "Difference to BDF at 1e-5", slope=(1, 1e-5, 1e-3, 2e-5))],
+    "matrix": [
+        Panel("equilibrium", RTOL, "Largest error, from equilibrium", slope=(1, 1e-4, 1e-2, 1e-4), below=True),
+        Panel("laid", RTOL, "Largest error, laid", slope=(1, 1e-4, 1e-2, 2e-4), below=True),
+    ],
+    "torque_ripple": [
+        Panel("1e+04", "Frequency [Hz]", "Amplitude / load, ν_s = 1e4", "semilogy", below=True),
+        Panel("1e+05", "Frequency [Hz]", "Amplitude / load, ν_s = 1e5", "semilogy", below=True),
+    ],
     "energy": [
         Panel("small", RTOL, "Largest closure error, small drive", slope=(1, 1e-5, 1e-3, 6e-6), below=True),
         Panel("cases", RTOL, "Largest closure error, published", slope=(1, 1e-4, 1e-3, 3e-5), below=True),
@@ -89,8 +98,9 @@ FIGURES: dict[str, list[Panel]] = {
 
 
 def measure(file: Path) -> None:
-    """Run the verification tests; failing ones are told, and leave their curves out."""
-    subprocess.run([sys.executable, "-m", "pytest", "-q", "--curves", str(file), "tests/verification"], cwd=ROOT)
+    """Run the tests that draw curves; failing ones are told, and leave their curves out."""
+    command = [sys.executable, "-m", "pytest", "-q", "--curves", str(file), *TESTS]
+    subprocess.run(command, cwd=ROOT)
 
 
 def draw_panel(ax: Axes, panel: Panel, curves: Curves) -> None:

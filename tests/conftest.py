@@ -1,11 +1,17 @@
-"""A result made by formulas: the belt of a two-pulley drive runs at a steady creep, without vibration."""
+"""What tests measure for the documentation, and a result made by formulas.
 
-from collections.abc import Callable
+The numbers are listed by ``pytest -v`` at the end.  In the result the belt of a two-pulley drive runs at a steady
+creep, without vibration.
+"""
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.model import Drive
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
@@ -13,6 +19,8 @@ from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 FloatArray = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 
+MEASURED = pytest.StashKey[list[str]]()
+CURVES = pytest.StashKey[dict[str, list[dict[str, Any]]]]()
 CREEP = 0.005
 TIGHT, SLACK = 60.0, 30.0
 STATISTICS = {
@@ -28,6 +36,48 @@ STATISTICS = {
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--curves", metavar="FILE", help="write the curves of docs/verification to a JSON file")
+
+
+@pytest.fixture
+def measured(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """Note numbers of a test for docs/verification."""
+    notes = request.config.stash.setdefault(MEASURED, [])
+
+    def note(**values: float) -> None:
+        notes.append(f"{request.node.name}: " + ", ".join(f"{key} = {value:.5g}" for key, value in values.items()))
+
+    return note
+
+
+@pytest.fixture
+def curve(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """Note a curve for a panel "figure/panel" of docs/verification; ``--curves FILE`` collects them."""
+    notes = request.config.stash.setdefault(CURVES, {})
+
+    def note(panel: str, x: ArrayLike, y: ArrayLike, label: str, style: str = "o-") -> None:
+        values = {"x": np.asarray(x, float).tolist(), "y": np.asarray(y, float).tolist()}
+        notes.setdefault(panel, []).append({"label": label, "style": style, **values})
+
+    return note
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    file = session.config.getoption("--curves", None)
+    if file is not None:
+        Path(file).write_text(json.dumps(session.config.stash.get(CURVES, {})), encoding="utf-8")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    notes = terminalreporter.config.stash.get(MEASURED, [])
+    if notes and terminalreporter.verbosity > 0:
+        terminalreporter.section("measured")
+        terminalreporter.write_line("\n".join(notes))
+
+
+@pytest.fixture(scope="session")
+def order() -> Callable[[Sequence[int], Sequence[float]], float]:
+    """Convergence order: the slope of log error over log element length, fitted."""
+    return lambda elements, errors: -float(np.polyfit(np.log(elements), np.log(errors), 1)[0])
 
 
 @pytest.fixture(scope="session")

@@ -1,15 +1,12 @@
-"""Belts and elements to verify; the numbers that tests measure are listed by ``pytest -v`` at the end."""
+"""Belts and elements to verify."""
 
-import json
 from collections.abc import Callable, Sequence
 from importlib.resources import files
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import settings
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
 from beltdyn.model import Belt, Drive, loads
@@ -23,46 +20,8 @@ FloatArray = NDArray[np.float64]
 settings.register_profile("patient", deadline=None)  # a kernel is compiled at its first call
 settings.load_profile("patient")
 
-MEASURED = pytest.StashKey[list[str]]()
-CURVES = pytest.StashKey[dict[str, list[dict[str, Any]]]]()
 SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
 """A clamp holds the place and the section r_y; the tangent r_x is free to stretch and to shear against it."""
-
-
-@pytest.fixture
-def measured(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """Note numbers of a test for docs/verification."""
-    notes = request.config.stash.setdefault(MEASURED, [])
-
-    def note(**values: float) -> None:
-        notes.append(f"{request.node.name}: " + ", ".join(f"{key} = {value:.5g}" for key, value in values.items()))
-
-    return note
-
-
-@pytest.fixture
-def curve(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """Note a curve for a panel "figure/panel" of docs/verification; ``--curves FILE`` collects them."""
-    notes = request.config.stash.setdefault(CURVES, {})
-
-    def note(panel: str, x: ArrayLike, y: ArrayLike, label: str, style: str = "o-") -> None:
-        values = {"x": np.asarray(x, float).tolist(), "y": np.asarray(y, float).tolist()}
-        notes.setdefault(panel, []).append({"label": label, "style": style, **values})
-
-    return note
-
-
-def pytest_sessionfinish(session: pytest.Session) -> None:
-    file = session.config.getoption("--curves", None)
-    if file is not None:
-        Path(file).write_text(json.dumps(session.config.stash.get(CURVES, {})), encoding="utf-8")
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    notes = terminalreporter.config.stash.get(MEASURED, [])
-    if notes and terminalreporter.verbosity > 0:
-        terminalreporter.section("measured")
-        terminalreporter.write_line("\n".join(notes))
 
 
 @pytest.fixture(scope="session")
@@ -147,9 +106,3 @@ def along() -> Callable[[System, FloatArray, FloatArray], State]:
         return at_rest(system, np.hstack([places, tangent, normal]))
 
     return state
-
-
-@pytest.fixture(scope="session")
-def order() -> Callable[[Sequence[int], Sequence[float]], float]:
-    """Convergence order: the slope of log error over log element length, fitted."""
-    return lambda elements, errors: -float(np.polyfit(np.log(elements), np.log(errors), 1)[0])

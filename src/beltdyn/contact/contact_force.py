@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.contact.bezier import Four, bernstein, bernstein_rates, combine, shape_functions
-from beltdyn.contact.contact_zone import MAX_INTERVALS, touching_intervals
+from beltdyn.contact.contact_zone import MAX_INTERVALS, touching_intervals, zone_scratch
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import approach
 from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent
@@ -36,7 +36,7 @@ class ContactWorkspace(NamedTuple):
     moment: FloatArray
     """Derivative of the moment on the pulley with respect to the four vectors, N, shape (8,)."""
     intervals: FloatArray
-    overlap: FloatArray
+    pieces: FloatArray
     by_end: FloatArray
     """Derivative of force and moment with respect to start and end of an interval, shape (2, 9)."""
 
@@ -70,7 +70,7 @@ def contact_workspace() -> ContactWorkspace:
         np.zeros(8),
         np.zeros(8),
         np.zeros((MAX_INTERVALS, 2)),
-        np.zeros((3, 7)),
+        zone_scratch(),
         np.zeros((2, 9)),
     )
 
@@ -118,7 +118,7 @@ def contact_force(
     _clear(work)
     intervals = work.intervals
     if law.follow_zone:
-        count = touching_intervals(control, wheel, work.overlap, intervals)
+        count = touching_intervals(control, wheel, work.pieces, intervals)
     else:
         count, intervals[0, 0], intervals[0, 1] = 1, 0.0, 1.0
     totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -77,7 +77,7 @@ class GeneralizedAlpha:
                 yield _chunk(outputs, filled, march)
                 written += filled
                 if status != REACHED:
-                    raise ConvergenceError(_message(task, march, self.rtol))
+                    raise ConvergenceError(_message(task, march, self))
 
 
 def _room(times: FloatArray, written: int, march: March) -> Outputs:
@@ -101,7 +101,7 @@ def _count(task: Task, march: March) -> None:
     task.statistics.newton_iterations = int(march.counts[ITERATIONS])
 
 
-def _message(task: Task, march: March, rtol: float) -> str:
+def _message(task: Task, march: March, method: GeneralizedAlpha) -> str:
     """Where and when the march ended, and what to try."""
     places, accelerations = (
         vector[: NODE * task.system.nodes].reshape(-1, NODE // task.system.points)[:, :2]
@@ -109,8 +109,9 @@ def _message(task: Task, march: March, rtol: float) -> str:
     )
     worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))
     x, y = places[worst]
+    undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
     return (
         f"the simulation cannot go on at t = {march.clock[0]:.6g} s: no time step above 1e-11 s converges. "
-        f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try more elements, a larger "
-        f"simulation.rtol than {rtol:g}, a smaller contact.stiffness or a smaller slope of friction."
+        f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
+        f"another simulation.rtol than {method.rtol:g}, a smaller contact.stiffness or a smaller slope of friction."
     )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.contact.contact_force import ContactWorkspace, contact_workspace
-from beltdyn.contact.contact_zone import MAX_INTERVALS
+from beltdyn.contact.contact_zone import MAX_INTERVALS, zone_scratch
 from beltdyn.system.arrays import NODE, Loads, System
 from beltdyn.system.loads import new_loads
 
@@ -60,7 +60,7 @@ class Samples(NamedTuple):
     control: FloatArray
     control_velocity: FloatArray
     intervals: FloatArray
-    overlap: FloatArray
+    pieces: FloatArray
     acceleration: FloatArray
     contact: ContactWorkspace
     loads: Loads
@@ -101,7 +101,7 @@ def new_samples(system: System) -> Samples:
         control=np.zeros((4, 2)),
         control_velocity=np.zeros((4, 2)),
         intervals=np.zeros((MAX_INTERVALS, 2)),
-        overlap=np.zeros((3, 7)),
+        pieces=zone_scratch(),
         acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
         contact=contact_workspace(),
         loads=new_loads(system.pulleys.radius.size),

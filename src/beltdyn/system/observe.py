@@ -193,7 +193,7 @@ def _observe_contact(
             samples.contact,
         )
         add_contact(samples.loads, p, totals)
-        for interval in range(touching_intervals(samples.control, wheel, samples.overlap, intervals)):
+        for interval in range(touching_intervals(samples.control, wheel, samples.pieces, intervals)):
             result.wrap_angle[k, p] += _angle(samples.control, wheel, intervals[interval, 0], intervals[interval, 1])
         _touch_points(system, element * system.control.shape[1] + curve, p, wheel, samples, result, k)
 

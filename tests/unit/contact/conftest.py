@@ -35,8 +35,8 @@ def place() -> Callable[[Wheel, float, float], tuple[float, float]]:
 
 
 @pytest.fixture(scope="session")
-def belt_like() -> st.SearchStrategy[FloatArray]:
-    """Control points of curves from near the unit circle, up to half of it long, that turn by up to half a turn."""
+def make_curve() -> Callable[..., FloatArray]:
+    """Control points of a curve that begins near the unit circle and turns."""
 
     def curve(start: float, radius: float, heading: float, turn: float, length: float, stretch: float) -> FloatArray:
         directions = start + np.pi / 2 + heading + np.array([0.0, turn, 0.5 * turn])
@@ -45,8 +45,14 @@ def belt_like() -> st.SearchStrategy[FloatArray]:
         end = begin + stretch * length * chord
         return np.array([begin, begin + length / 3 * first, end - length / 3 * last, end])
 
+    return curve
+
+
+@pytest.fixture(scope="session")
+def belt_like(make_curve: Callable[..., FloatArray]) -> st.SearchStrategy[FloatArray]:
+    """Control points of curves from near the unit circle, up to half of it long, that turn by up to half a turn."""
     return st.builds(
-        curve,
+        make_curve,
         st.floats(0.0, 6.28),
         st.floats(0.7, 1.3),
         st.floats(-0.8, 0.8),

@@ -1,5 +1,6 @@
 """Touching intervals against dense sampling of random belt-like curves, and quick rejection against the same."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from beltdyn.contact.bezier import bernstein
-from beltdyn.contact.contact_zone import MAX_INTERVALS, out_of_reach, touching_intervals
+from beltdyn.contact.contact_zone import MAX_INTERVALS, out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import Wheel
 
 FloatArray = NDArray[np.float64]
@@ -26,18 +27,28 @@ def overlap(control: FloatArray) -> FloatArray:
 
 def intervals(control: FloatArray, wheel: Wheel = UNIT) -> FloatArray:
     found = np.zeros((MAX_INTERVALS, 2))
-    return found[: touching_intervals(control, wheel, np.zeros((3, 7)), found)]
+    return found[: touching_intervals(control, wheel, zone_scratch(), found)]
 
 
-@given(st.data())
-def test_intervals_hold_exactly_the_points_inside(belt_like: st.SearchStrategy[FloatArray], data: Any) -> None:
-    control = data.draw(belt_like)
+def assert_exact(control: FloatArray) -> None:
+    """The intervals hold those samples that are clearly inside, and none that is clearly outside."""
     depth = overlap(control)
     inside = np.zeros(XI.size, dtype=bool)
     for start, end in intervals(control):
         inside |= (start <= XI) & (end >= XI)
     clear = np.abs(depth) > GRAZING
     np.testing.assert_array_equal(inside[clear], depth[clear] > 0)
+
+
+@given(st.data())
+def test_intervals_hold_exactly_the_points_inside(belt_like: st.SearchStrategy[FloatArray], data: Any) -> None:
+    assert_exact(data.draw(belt_like))
+
+
+def test_an_element_that_begins_along_the_rim_and_dips_out_of_it(make_curve: Callable[..., FloatArray]) -> None:
+    control = make_curve(0.125, 1.0, 0.0, 0.75, 0.125, 0.625)  # overlap and its slope begin at zero, up to rounding
+    assert 1e-5 < -overlap(control).min() < 1e-4
+    assert_exact(control)
 
 
 @given(st.data())

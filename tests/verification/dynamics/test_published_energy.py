@@ -1,4 +1,4 @@
-"""The energy account closes in every published case, at order 1 in the tolerance, and with every integrator."""
+"""The energy account closes in every published case, in proportion to the tolerance, and with every integrator."""
 
 from collections.abc import Callable
 from typing import Any
@@ -12,6 +12,8 @@ from beltdyn.published import two_pulley
 
 Change = Callable[..., Drive]
 CLOSED = 1e-3
+PROPORTION = 10.0
+"""Largest closure error over rtol: 0.1 % at 1e-4."""
 RISE = {"start": 0.05, "end": 0.6}
 STIFF = {"youngs_modulus": 1e9}
 CASES: dict[str, dict[str, Any]] = {
@@ -60,13 +62,19 @@ def test_every_published_case_closes(
     curve: Callable[..., None],
     case: str,
 ) -> None:
-    rtols = [1e-3, 1e-4]
+    """Errors are bounded in proportion, since a local error is allowed per unit of time.
+
+    They do not follow one line: what numerical damping takes from the vibrations of a laid belt, and what the integrals
+    of power miss, have opposite signs, and hide each other at one tolerance or another.
+    """
+    rtols = [1e-3, 1e-4, 1e-5]
     errors = [closure(published(case, rtol=rtol)) for rtol in rtols]
-    fitted = -order(rtols, errors)
-    measured(**{f"rtol_{rtol:.0e}": error for rtol, error in zip(rtols, errors, strict=True)}, order=fitted)
+    measured(
+        **{f"rtol_{rtol:.0e}": error for rtol, error in zip(rtols, errors, strict=True)}, order=-order(rtols, errors)
+    )
     curve("energy/cases", rtols, errors, case)
-    assert errors[-1] < CLOSED
-    assert fitted > 0.75
+    assert all(error < PROPORTION * rtol for error, rtol in zip(errors, rtols, strict=True))
+    assert errors[0] > errors[1] > errors[2]
 
 
 @pytest.mark.parametrize(
