@@ -2,7 +2,7 @@
 
 Constants of contact are per length here and per contact segment there.  Circles are made smaller by the sagitta of a
 segment, the start is the frictionless equilibrium, and time integration is generalised-alpha with modified Newton, one
-thread.  With the settings that Exudyn has by default it is slower, or returns wrong speeds without an error.
+thread.
 """
 
 import time
