@@ -61,7 +61,7 @@ class Recording:
         self._waiting: list[Chunk] = []
         self._written = 0
         self._reached = self._step = 0.0
-        self._begun = self._compiled = self._last_write = time.perf_counter()
+        self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
 
     def __enter__(self) -> Self:
         """Begin; see the class."""
@@ -81,7 +81,11 @@ class Recording:
         """Compile the kernels, so that the time taken is that of the simulation."""
         self.tell(0.0, "compiling")
         compile_kernels(self._system, laid(self._system, self._drive.path))
-        self._compiled = time.perf_counter()
+        self._compiled = self._started = time.perf_counter()
+
+    def start(self) -> None:
+        """Note that the state at time zero is known."""
+        self._started = time.perf_counter()
 
     def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
         """Take states; they are recorded a few at a time."""
@@ -145,6 +149,7 @@ class Recording:
             "evaluations": self.statistics.evaluations,
             "wall_time": wall,
             "compile_time": self._compiled - self._begun,
+            "start_time": self._started - self._compiled,
             "real_time_factor": wall / self._reached if self._reached > 0.0 else np.nan,
         }
 

@@ -52,6 +52,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
         if settings.start == "equilibrium":
             recording.tell(0.0, "equilibrium")
             state = _at_rest(drive, system)
+        recording.start()
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in choose_integrator(drive)(task):
             recording.take(chunk)
