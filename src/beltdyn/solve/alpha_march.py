@@ -59,7 +59,6 @@ class GeneralizedAlpha:
             velocity_tolerance=self.rtol * task.velocity_scale,
             newton_fraction=_NEWTON_FRACTION,
             max_step=self.max_step or float(task.times[-1] - task.times[0]),
-            length_scale=system.scale,
             long_step=_CROSSINGS * self.rtol**0.5 * crossing_time(system),
         )
         first_step = min(_FIRST_STEP, settings.max_step)

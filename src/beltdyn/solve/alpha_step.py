@@ -102,7 +102,7 @@ def try_step(
         if slope > 0.0:
             factor = _cut_back(system, march, step, equations, slope, factor)
         solved = solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
-        change = _size(system, settings, equations)
+        change = _size(system, equations)
         if not solved or not isfinite(change):
             return 0
         slope = _imbalance(equations)
@@ -203,12 +203,12 @@ def _imbalance(equations: Equations) -> float:
 
 
 @kernel
-def _size(system: System, settings: Settings, equations: Equations) -> float:
+def _size(system: System, equations: Equations) -> float:
     """Root mean square of the change of the nodes, or the largest change at a pulley's rim, m."""
     total = 0.0
     for node in range(system.nodes):
         for c in range(NODE):
-            total += (settings.length_scale[c] * equations.node_part[node, c]) ** 2
+            total += (system.scale[c] * equations.node_part[node, c]) ** 2
     size = sqrt(total / (NODE * system.nodes))
     for p in range(system.pulleys.radius.size):
         unknown = system.pulleys.unknown[p]

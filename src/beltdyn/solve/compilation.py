@@ -48,7 +48,7 @@ def compile_stepping() -> None:
 
 
 def _compile_stepping(system: System, state: State) -> None:
-    settings = Settings(0.0, 1.0, 1.0, 1.0, np.ones(NODE))
+    settings = Settings(0.0, 1.0, 1.0, 1.0)
     march = new_march(0.0, 1.0, state.position, state.velocity)
     advance(system, settings, march, new_equations(system), 0.0, 0, empty_outputs(np.zeros(0), state.position.size))
 

@@ -28,8 +28,6 @@ class Settings(NamedTuple):
     """Newton stops when its error is below this fraction of the local error allowed."""
     max_step: float
     """s."""
-    length_scale: FloatArray
-    """Lengths that turn changes of r, r_x, r_y into m, shape (6,)."""
     long_step: float = np.inf
     """Length from which on a step is allowed no more local error than one of this length, s."""
 

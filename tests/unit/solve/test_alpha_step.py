@@ -11,7 +11,7 @@ from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
-SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0, np.ones(6), long_step=0.02)
+SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0, long_step=0.02)
 ACCELERATION = 5.0
 STEP = 0.1
 

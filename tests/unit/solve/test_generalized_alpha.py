@@ -13,7 +13,7 @@ from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
 FloatArray = NDArray[np.float64]
-SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0, np.ones(6))
+SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0)
 ACCELERATION = 5.0
 ROUNDING = 1e-10
 

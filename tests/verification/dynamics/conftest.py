@@ -73,7 +73,7 @@ def fixed_steps() -> Callable[[System, FloatArray, float, int, FloatArray], tupl
     ) -> tuple[FloatArray, FloatArray]:
         end, anything, count = float(times[-1]), 1e30, times.size
         step = end / steps
-        settings = Settings(radius, anything, 1e-13 / (anything * step), step, np.array([1.0, 1, 0.1, 0.1, 0.1, 0.1]))
+        settings = Settings(radius, anything, 1e-13 / (anything * step), step)
         march, equations = new_march(0.0, step, start, np.zeros_like(start)), new_equations(system)
         outputs = empty_outputs(times, start.size)
         restart(system, march, equations)

@@ -90,7 +90,7 @@ def test_spectral_radius_at_infinite_frequency(measured: Measured, curve: Measur
     system = belt_system(BAR.replace(elements=3), fixed=held)
     rest, own = straight(system).position, 6 * free[0] + free[1]
     step, small = 100.0, 1e-7
-    settings = Settings(radius, 1e30, 1e-46, step, np.ones(6))
+    settings = Settings(radius, 1e30, 1e-46, step)
     scales = np.array([1.0, 1 / step, 1 / step**2, 1 / step**2])
     amplification = np.empty((4, 4))
     for column in range(4):
