@@ -45,7 +45,7 @@ def _layers(drive: "Drive", installation: "Installation") -> str:
     """Where contact forces may have peaks, which only elements as short can show."""
     if not installation.tension > 0.0:
         return ""
-    from beltdyn.model.installation import layer_lengths
+    from beltdyn.model import layer_lengths
 
     bending, sinking = layer_lengths(drive, installation.tension)
     return f"; the belt turns onto pulleys within {bending:.2g} m by bending, {sinking:.2g} m by sinking in"

@@ -4,7 +4,7 @@ from beltdyn.model.advice import advise
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import Installation, install
+from beltdyn.model.installation import Installation, install, layer_lengths
 from beltdyn.model.path import Path
 from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Table
 from beltdyn.model.pulley import Pulley
@@ -30,6 +30,7 @@ __all__ = [
     "dumps",
     "install",
     "json_schema",
+    "layer_lengths",
     "load",
     "loads",
 ]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model.drive import Drive
+from beltdyn.theory.stretch import tension as stretch_tension
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def install(drive: Drive) -> Installation:
     radii = np.array([pulley.radius for pulley in drive.pulleys])
 
     def tension(stretch: float) -> float:
-        return drive.belt.axial_stiffness * (stretch**2 - 1) * stretch / 2
+        return float(stretch_tension(stretch, drive.belt.axial_stiffness))
 
     def penetrations(stretch: float) -> NDArray[np.float64]:
         return np.asarray(tension(stretch) * stretch / (radii * drive.contact.stiffness))

@@ -1,11 +1,12 @@
 """Formulas on one line of paper, to compare simulations with."""
 
 from dataclasses import dataclass
-from math import exp, pi, sqrt, tanh
+from math import pi, tanh
 
 import numpy as np
 
 from beltdyn.model import Drive, install
+from beltdyn.theory.capstan import capstan_ratio
 
 _ROUNDS = 100
 
@@ -108,18 +109,5 @@ def gross_slip_torque(drive: Drive) -> float:
     drive : Drive
         Two pulleys.
     """
-    grip = exp(drive.contact.friction * float(drive.path.wrap_angles[1]))
+    grip = capstan_ratio(drive.contact.friction, float(drive.path.wrap_angles[1]))
     return 2.0 * install(drive).tension * drive.pulleys[1].radius * (grip - 1.0) / (grip + 1.0)
-
-
-def penalty_layer(drive: Drive, tension: float) -> float:
-    """Length over which a taut belt settles into its penalty contact, sqrt(T / k_p), m.
-
-    Parameters
-    ----------
-    drive : Drive
-        Its contact.
-    tension : float
-        T, N.
-    """
-    return sqrt(tension / drive.contact.stiffness)

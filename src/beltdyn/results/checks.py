@@ -7,13 +7,13 @@ import numpy as np
 
 from beltdyn.model import Drive
 from beltdyn.results.recorded import Recorded, names
-from beltdyn.results.resolution import FORCE_LIMIT, estimate_resolution
+from beltdyn.results.resolution import FORCE_LIMIT, Resolution
 
 CLOSURE_LIMIT = 0.01
 """Largest closure error of the energy account that passes without a warning."""
 
 
-def find_warnings(dataset: Recorded, drive: Drive) -> list[str]:
+def find_warnings(dataset: Recorded, drive: Drive, resolution: Resolution | None) -> list[str]:
     """Look for what makes a result doubtful.
 
     Parameters
@@ -22,19 +22,21 @@ def find_warnings(dataset: Recorded, drive: Drive) -> list[str]:
         The results.
     drive : Drive
         The drive.
+    resolution : Resolution or None
+        How well its mesh resolves tension and contact; None if there is no output.
 
     Returns
     -------
     list of str
         One sentence or two for each finding.
     """
-    if len(dataset["time"]) == 0:
+    if resolution is None:
         return ["nothing was recorded: the run ended before its first output."]
     return [
         *_unfinished(dataset, drive),
         *_open_energy_account(dataset, drive),
         *_slack_spans(dataset),
-        *_unresolved(dataset, drive),
+        *_unresolved(resolution, drive),
     ]
 
 
@@ -67,9 +69,8 @@ def _slack_spans(dataset: Recorded) -> Iterator[str]:
             )
 
 
-def _unresolved(dataset: Recorded, drive: Drive) -> Iterator[str]:
+def _unresolved(resolution: Resolution, drive: Drive) -> Iterator[str]:
     """Say what the mesh does not resolve, and which one would."""
-    resolution = estimate_resolution(dataset, drive)
     unresolved = [pulley.name for number, pulley in enumerate(drive.pulleys) if not resolution.resolves(number)]
     worst = max((error for error in resolution.force_errors if math.isfinite(error)), default=math.nan)
     said = []

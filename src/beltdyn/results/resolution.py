@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.model import Drive
-from beltdyn.model.installation import layer_lengths
+from beltdyn.model import Drive, layer_lengths
 from beltdyn.results.recorded import Recorded
 
 FloatArray = NDArray[np.float64]

@@ -78,8 +78,9 @@ class Run:
     @cached_property
     def warnings(self) -> list[str]:
         """What a reader of the results has to know; empty when all is well."""
+        resolution = self.resolution if self.outputs else None
         with self.recorded() as recorded:
-            return find_warnings(recorded, self.drive)
+            return find_warnings(recorded, self.drive, resolution)
 
     @cached_property
     def resolution(self) -> Resolution:

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 from beltdyn.errors import BeltdynError, ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results import Run, Summary, summarize
-from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.compilation import compile_kernels, usable_cores
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import simulate
 from beltdyn.system.build import drive_system
@@ -92,7 +92,7 @@ def simulate_all(
     if waiting:
         _compile(waiting[0][1], stop)
     while waiting and not stop.is_set():
-        endings |= _run_pool(waiting, min(jobs or _cores(), len(waiting)), stop, tell)
+        endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), stop, tell)
         waiting = [(file, drive) for file, drive in waiting if file not in endings]
     return {file: endings.get(file, Ending("not started")) for file in files}
 
@@ -105,11 +105,6 @@ def _longest_first(drives: Mapping[Path, Drive]) -> list[tuple[Path, Drive]]:
         return drive.belt.elements * drive.contact.quadrature_points * drive.simulation.duration
 
     return sorted(drives.items(), key=size, reverse=True)
-
-
-def _cores() -> int:
-    """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _compile(drive: Drive, stop: Event) -> None:

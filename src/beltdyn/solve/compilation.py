@@ -23,6 +23,11 @@ from beltdyn.system.observe import observe
 from beltdyn.system.state import State, straight
 
 
+def usable_cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def compile_kernels(system: System, state: State) -> None:
     """Call every kernel that static equilibrium, generalised-alpha and observation need, on no work at all.
 
@@ -57,7 +62,7 @@ def _compile_stepping(system: System, state: State) -> None:
 def _second_process() -> Iterator[None]:
     """Compile time stepping in another process meanwhile, if that is of use; if it fails, this one does it later."""
     folder = kernel_cache()
-    if any(folder.rglob("*.nbi")) or (os.cpu_count() or 1) < 2 or not sys.executable:
+    if any(folder.rglob("*.nbi")) or usable_cores() < 2 or not sys.executable:
         yield
         return
     process = subprocess.Popen(

@@ -7,7 +7,6 @@ from beltdyn.report.hand_formulas import (
     creep_lag,
     creeping_torsional_swing,
     gross_slip_torque,
-    penalty_layer,
     torsional_swing,
 )
 
@@ -47,7 +46,3 @@ def test_limits_of_the_creep_lag(factor: float, by_hand: float) -> None:
 
 def test_gross_slip_by_euler() -> None:
     assert gross_slip_torque(two_pulley()) == pytest.approx(4.12, abs=0.01)
-
-
-def test_penalty_layer() -> None:
-    assert penalty_layer(two_pulley(), 1600.0) == pytest.approx(sqrt(1600.0 / 1e7))

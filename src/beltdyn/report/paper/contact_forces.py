@@ -6,10 +6,10 @@ from itertools import product
 import numpy as np
 from matplotlib.figure import Figure
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, layer_lengths
 from beltdyn.plot.style import INK, color, dash, new_figure
 from beltdyn.report.distribution import END, Line, distribution, fit_line
-from beltdyn.report.hand_formulas import creep_lag, penalty_layer
+from beltdyn.report.hand_formulas import creep_lag
 from beltdyn.report.measures import DRIVER, settled, settled_mean, speed
 from beltdyn.report.paper.loaded_runs import (
     FACTORS,
@@ -45,7 +45,7 @@ def cases() -> Mapping[str, Drive]:
 def section(runs: Runs) -> Section:
     """Shape of the distributions."""
     tension = float(settled(runs[published_name("1e4")], "span_tension").mean())
-    layer = penalty_layer(runs[published_name("1e4")].drive, tension)
+    _, layer = layer_lengths(runs[published_name("1e4")].drive, tension)
     return Section(
         "contact-forces",
         "Friction and normal forces (Figs. 10-13)",

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from beltdyn.model import layer_lengths
 from beltdyn.report.distribution import Peak, distribution, find_peak, fit_line
-from beltdyn.report.hand_formulas import penalty_layer
 from beltdyn.report.measures import settled
 from beltdyn.report.paper.loaded_runs import FACTORS, POWERS, PULLEYS, SETTINGS
 from beltdyn.report.runs import Runs
@@ -44,7 +44,7 @@ def _numbers(peaks: dict[str, Peak], start: str) -> Iterator[Number]:
 def _rise_by_hand(run: Run) -> float:
     """Largest rise of friction on the driver that the angle between belt and rim can cause, over its level."""
     level = fit_line(distribution(run, PULLEYS.index("driver")), "friction").level
-    layer = penalty_layer(run.drive, float(settled(run, "span_tension").mean()))
+    _, layer = layer_lengths(run.drive, float(settled(run, "span_tension").mean()))
     factor, radius = run.drive.contact.creep_rate_factor, run.drive.pulleys[0].radius
     assert factor is not None
     belt_speed = float(settled(run, "belt_speed").mean())
