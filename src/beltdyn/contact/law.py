@@ -39,3 +39,6 @@ class Wheel(NamedTuple):
     """R, m."""
     speed: float
     """Angular speed omega, rad/s, counter-clockwise positive."""
+    velocity_x: float = 0.0
+    """Velocity of its centre, m/s."""
+    velocity_y: float = 0.0

@@ -18,9 +18,9 @@ class Approach(NamedTuple):
     """Outward unit normal n (Eq. 19)."""
     normal_y: float
     radial: float
-    """n . dr/dt, m/s; the penetration grows at the opposite rate."""
+    """n . dr/dt against the centre, m/s; the penetration grows at the opposite rate."""
     circumferential: float
-    """t . dr/dt with t = (-n_y, n_x) (Eq. 21), m/s."""
+    """t . dr/dt against the centre, with t = (-n_y, n_x) (Eq. 21), m/s."""
 
 
 @kernel
@@ -34,9 +34,10 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, wheel: Wh
     velocity_x, velocity_y
         Its velocity, m/s.
     wheel
-        The pulley.
+        The pulley, whose centre may move.
     """
     dx, dy = x - wheel.center_x, y - wheel.center_y
+    vx, vy = velocity_x - wheel.velocity_x, velocity_y - wheel.velocity_y
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
     return Approach(
@@ -44,8 +45,8 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, wheel: Wh
         wheel.radius - distance,
         nx,
         ny,
-        nx * velocity_x + ny * velocity_y,
-        nx * velocity_y - ny * velocity_x,
+        nx * vx + ny * vy,
+        nx * vy - ny * vx,
     )
 
 

@@ -135,7 +135,7 @@ def _predict(system: System, method: Method, march: March, length: float) -> Ste
         method.gamma / (method.beta * length),
         (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
     )
-    prescribe(system, step.time, march.trial[1], march.trial[2])
+    prescribe(system, step.time, march.trial[0], march.trial[1], march.trial[2])
     return step
 
 
@@ -204,14 +204,14 @@ def _imbalance(equations: Equations) -> float:
 
 @kernel
 def _size(system: System, equations: Equations) -> float:
-    """Root mean square of the change of the nodes, or the largest change at a pulley's rim, m."""
+    """Root mean square of the change of the nodes, or the largest change of a body, m."""
     total = 0.0
     for node in range(system.nodes):
         for c in range(NODE):
             total += (system.scale[c] * equations.node_part[node, c]) ** 2
     size = sqrt(total / (NODE * system.nodes))
-    for p in range(system.pulleys.radius.size):
-        unknown = system.pulleys.unknown[p]
+    for body in range(system.bodies.unknown.size):
+        unknown = system.bodies.unknown[body]
         if unknown >= 0:
-            size = max(size, abs(system.pulleys.radius[p] * equations.border_part[unknown]))
+            size = max(size, abs(system.bodies.reach[body] * equations.border_part[unknown]))
     return size

@@ -8,9 +8,9 @@ from beltdyn.system.arrays import FloatArray
 class EnergyAccount:
     """Closure error over time, relative to the energy put in.
 
-    With the stored energy E (kinetic, strain and penalty) the error is
+    With the stored energy E (kinetic, strain, potential, and that of penalty and other springs) the error is
 
-        (E(t) - E(0) - driver work - torque work + friction loss + damping loss) / energy put in,
+        (E(t) - E(0) - driver work - torque work + losses) / energy put in,
 
     where the energy put in up to t is E(0) plus the largest amounts that drivers and torques have done by then,
     either way.
@@ -27,8 +27,8 @@ class EnergyAccount:
         ----------
         stored : ndarray, shape (k,)
             Stored energy, J.
-        work : ndarray, shape (k, 4)
-            Driver work, torque work, friction loss, damping loss, J.
+        work : ndarray, shape (k, 7)
+            In the order of `POWERS`: driver work, torque work, then losses, J.
 
         Returns
         -------
@@ -40,5 +40,5 @@ class EnergyAccount:
         largest = np.maximum.accumulate(np.vstack([self._largest, np.abs(work[:, :2])]))
         self._largest = largest[-1]
         put_in = self._initial + largest[1:].sum(axis=1)
-        error = stored - self._initial - work[:, 0] - work[:, 1] + work[:, 2] + work[:, 3]
+        error = stored - self._initial - work[:, 0] - work[:, 1] + work[:, 2:].sum(axis=1)
         return np.asarray(np.divide(error, put_in, out=np.zeros_like(error), where=put_in > 0.0))

@@ -94,7 +94,7 @@ def advance(
                 factor /= STRETCH
             else:
                 march.counts[STEPS] += 1
-                filled = _accept(system, march, equations, step, outputs, filled)
+                filled = _accept(march, equations, step, outputs, filled)
                 if abs(stop - clock[0]) < _SMALLEST_STEP:
                     clock[0] = stop
             clock[1] = min(settings.max_step, factor * step)
@@ -121,29 +121,25 @@ def _next_step(clock: FloatArray, longest: float, stop: float, outputs: Outputs,
 
 @kernel
 def _local_error(system: System, settings: Settings, method: Method, march: March, step: float) -> float:
-    """Local error of the positions over what is allowed: of nodes in the root mean square, of each pulley's rim."""
+    """Local error of the positions over what is allowed: of nodes in the root mean square, of each body."""
     auxiliary, total = march.trial[3], 0.0
     for node in range(system.nodes):
         for c in range(2 * system.points):
             i = NODE * node + c
             total += (auxiliary[i] - march.auxiliary[i]) ** 2
     largest = sqrt(total / (system.nodes * system.points))
-    for p in range(system.pulleys.radius.size):
-        if system.pulleys.unknown[p] >= 0:
-            i = NODE * system.nodes + p
-            largest = max(largest, system.pulleys.radius[p] * abs(auxiliary[i] - march.auxiliary[i]))
+    for body in range(system.bodies.unknown.size):
+        if system.bodies.unknown[body] >= 0:
+            i = NODE * system.nodes + body
+            largest = max(largest, system.bodies.reach[body] * abs(auxiliary[i] - march.auxiliary[i]))
     return method.error * step * step * largest / allowed_error(settings, step)
 
 
 @kernel
-def _accept(system: System, march: March, equations: Equations, step: float, outputs: Outputs, filled: int) -> int:
+def _accept(march: March, equations: Equations, step: float, outputs: Outputs, filled: int) -> int:
     """Keep the step where it holds output instants, and move to its end; returns the number of outputs filled."""
     start = march.clock[0]
     position, velocity, power = march.trial[0], march.trial[1], equations.loads.power
-    for p in range(system.pulleys.radius.size):
-        if system.pulleys.unknown[p] < 0:
-            i = NODE * system.nodes + p
-            position[i] = march.position[i] + 0.5 * step * (march.velocity[i] + velocity[i])
     while filled < outputs.time.size and outputs.time[filled] <= start + step + _SMALLEST_STEP:
         x = min(1.0, (outputs.time[filled] - start) / step)
         outputs.fraction[filled] = x

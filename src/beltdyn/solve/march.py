@@ -44,11 +44,11 @@ class March(NamedTuple):
     """A of the method."""
     multipliers: FloatArray
     work: FloatArray
-    """Time integrals of the powers in the loads, J, shape (4,)."""
+    """Time integrals of the powers in the loads, J, shape (7,)."""
     power: FloatArray
-    """These powers at the present time, W, shape (4,)."""
+    """These powers at the present time, W, shape (7,)."""
     trial: FloatArray
-    """Position, velocity, acceleration and A at the end of the step that is tried, shape (4, 6 N + P)."""
+    """Position, velocity, acceleration and A at the end of the step that is tried, shape (4, 6 N + D)."""
     counts: IntArray
     """Steps, steps rejected for their error, steps that Newton failed, Newton iterations; shape (4,)."""
 
@@ -68,11 +68,11 @@ class Outputs(NamedTuple):
     step: FloatArray
     """Length of the step, s, shape (k,)."""
     position: FloatArray
-    """At start and end of the step, shape (k, 2, 6 N + P)."""
+    """At start and end of the step, shape (k, 2, 6 N + D)."""
     velocity: FloatArray
     """Alike."""
     work: FloatArray
-    """Works at the instant, shape (k, 4)."""
+    """Works at the instant, shape (k, 7)."""
     horizon: float = np.inf
     """First output instant for which there is no room, s: no step may reach it."""
 
@@ -85,7 +85,7 @@ def empty_outputs(times: FloatArray, size: int) -> Outputs:
     times : ndarray, shape (k,)
         Instants, s, ascending.
     size
-        Size of a state, 6 N + P.
+        Size of a state, 6 N + D.
     """
     count = len(times)
     return Outputs(
@@ -105,7 +105,7 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
     ----------
     time, step
         Where to begin, and the first step to try, s.
-    position, velocity : ndarray, shape (6 N + P,)
+    position, velocity : ndarray, shape (6 N + D,)
         State to begin from; copied.
 
     Returns

@@ -122,15 +122,20 @@ class Recording:
         system, count = self._system, len(chunk.time)
         seen = observe_chunk(system, chunk)
         position, velocity = chunk.interpolate()
-        nodes = NODE * system.nodes
+        nodes, pulleys = NODE * system.nodes, len(system.pulleys.radius)
+        shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners.pulley)
         coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
-        stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
+        stored = np.sum([values for name, values in seen.items() if name.endswith("_energy")], axis=0)
         return {
             **seen,
             **dict(zip(POWERS, chunk.work.T, strict=True)),
             "time": chunk.time,
-            "pulley_speed": velocity[:, nodes:],
-            "pulley_angle": position[:, nodes:],
+            "pulley_speed": velocity[:, nodes : nodes + pulleys],
+            "pulley_angle": position[:, nodes : nodes + pulleys],
+            "shaft_speed": velocity[:, shafts],
+            "shaft_angle": position[:, shafts],
+            "tensioner_position": position[:, tensioners:],
+            "tensioner_speed": velocity[:, tensioners:],
             "node_position": coordinates[..., :2],
             "nodal_coordinates": coordinates,
             "nodal_velocities": velocity[:, :nodes].reshape(coordinates.shape),
@@ -209,4 +214,5 @@ def result_layout(drive: Drive, system: System) -> Layout:
         element_coordinate=starts + 0.5 * lengths,
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
         coordinate_names=COORDINATE_NAMES[: NODE // system.points],
+        tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
     )

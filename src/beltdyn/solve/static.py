@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, FloatArray, IntArray, System
 from beltdyn.system.motion import Equations, linearise, new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import State
@@ -59,8 +59,8 @@ def find_equilibrium(
 ) -> Equilibrium:
     """Find a static equilibrium of a belt from a start.
 
-    Pulleys do not move: the belt slides on them without friction, unless `start` gives them speeds, which then rub
-    the belt at rest.  Forces are in balance there; whether the balance is stable is not looked at.
+    Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, which then rub
+    the belt at rest.  Tensioners move.  Forces are in balance there; whether the balance is stable is not looked at.
 
     Parameters
     ----------
@@ -99,8 +99,7 @@ def find_equilibrium(
         iterates.append(search.nodes.copy())
         norms.append(norm)
         if converged:
-            position = np.concatenate([search.nodes.ravel(), start.position[search.nodes.size :]])
-            state = State(position, start.velocity.copy(), np.zeros_like(position))
+            state = State(search.position.copy(), start.velocity.copy(), np.zeros_like(search.position))
             return Equilibrium(state, np.array(iterates), np.array(norms))
         shift = 0.1 * shift if shift > _SMALLEST_SHIFT else 0.0
     last = f"{norms[-1]:.1e}" if norms else "none"
@@ -111,39 +110,41 @@ def find_equilibrium(
 
 
 class _Search:
-    """A belt on its way to equilibrium, with the linearised equations where it stands."""
+    """Belt and tensioners on their way to equilibrium, with the linearised equations where they stand."""
 
     def __init__(self, system: System, start: State) -> None:
-        still = np.full_like(system.pulleys.unknown, -1)
-        self._system = system._replace(pulleys=system.pulleys._replace(unknown=still))
-        self._position, self._velocity = start.position.copy(), start.velocity
+        self._system = system._replace(bodies=system.bodies._replace(unknown=_only_tensioners(system)))
+        self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = np.zeros(NODE)
         self._here: Equations = new_equations(self._system)
         self._ahead: Equations = new_equations(self._system)
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.section.mass / system.section.axial
         self._scale = system.scale
+        self._reach = system.bodies.reach[system.bodies.reach.size - system.tensioners.pulley.size :]
 
     @property
     def nodes(self) -> FloatArray:
         """Nodal coordinates, shape (N, 6)."""
-        return self._position[: NODE * self._system.nodes].reshape(-1, NODE)
+        return self.position[: NODE * self._system.nodes].reshape(-1, NODE)
 
     @property
     def force(self) -> float:
         """Largest force out of balance where the equations were linearised last, over E A alpha1."""
-        forces = self._here.matrix.node_side / self._scale
-        return float(np.max(np.abs(forces))) / self._system.section.axial
+        nodes = np.abs(self._here.matrix.node_side / self._scale)
+        tensioners = np.abs(self._here.matrix.border_side[: self._reach.size] / self._reach)
+        return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.section.axial
 
     def linearise(self, shift: float) -> float:
         """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step."""
         self._solve(self._here, shift)
-        energy = abs(float(np.sum(self._here.matrix.node_side * self._here.node_part)))
+        matrix, here = self._here.matrix, self._here
+        energy = abs(float(np.sum(matrix.node_side * here.node_part) + matrix.border_side @ here.border_part))
         return float(np.sqrt(energy / (self._system.section.axial * self._length)))
 
     def step(self, length: float) -> None:
         """Take the step, or a part of it."""
-        subtract_solution(self._system, self._here, length, self._position)
+        subtract_solution(self._system, self._here, length, self.position)
         subtract_multipliers(self._system, self._here, length, self._multipliers)
 
     def step_naturally(self) -> bool:
@@ -152,10 +153,9 @@ class _Search:
         while np.isfinite(size) and length >= _SMALLEST_LENGTH:
             self.step(length)
             self._solve(self._ahead, 0.0)
-            side = self._here.matrix.node_side.copy()
-            self._here.matrix.node_side[:] = self._ahead.matrix.node_side
-            solve_ring(self._here.matrix, self._system.closed, self._ahead.node_part, self._ahead.border_part)
-            self._here.matrix.node_side[:] = side
+            here, ahead = self._here.matrix, self._ahead.matrix
+            mixed = here._replace(node_side=ahead.node_side, border_side=ahead.border_side)
+            solve_ring(mixed, self._system.closed, self._ahead.node_part, self._ahead.border_part)
             if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:
                 return True
             self.step(-length)
@@ -164,14 +164,24 @@ class _Search:
 
     def _solve(self, equations: Equations, shift: float) -> None:
         """Linearise and solve; a singular stiffness leaves nan."""
-        at_rest = np.zeros_like(self._position)
+        at_rest = np.zeros_like(self.position)
         shift /= self._time_scale
         solved = linearise(
-            self._system, 0.0, self._position, self._velocity, at_rest, self._multipliers, 1.0, 0.0, shift, equations
+            self._system, 0.0, self.position, self._velocity, at_rest, self._multipliers, 1.0, 0.0, shift, equations
         )
         if not solved:
             equations.node_part[:] = np.nan
 
     def _size(self, equations: Equations) -> float:
-        """Root mean square of a step, m."""
-        return float(np.sqrt(np.mean((equations.node_part * self._scale) ** 2)))
+        """Root mean square of a step of the nodes, or the largest step of a tensioner, m."""
+        nodes = float(np.sqrt(np.mean((equations.node_part * self._scale) ** 2)))
+        tensioners = np.abs(equations.border_part[: self._reach.size] * self._reach)
+        return float(np.max(tensioners, initial=nodes))
+
+
+def _only_tensioners(system: System) -> IntArray:
+    """Places of the bodies in the border when nothing turns and tensioners move."""
+    count = system.tensioners.pulley.size
+    unknown = np.full_like(system.bodies.unknown, -1)
+    unknown[unknown.size - count :] = np.arange(count)
+    return unknown

@@ -23,9 +23,9 @@ class Chunk:
         Where in its step each instant lies, 0 to 1.
     step : ndarray, shape (k,)
         Length of the step, s.
-    position, velocity : ndarray, shape (k, 2, 6 N + P)
-        Nodal coordinates and pulley angles, and their rates, at start and end of the step.
-    work : ndarray, shape (k, 4)
+    position, velocity : ndarray, shape (k, 2, 6 N + D)
+        Nodal coordinates and coordinates of bodies, and their rates, at start and end of the step.
+    work : ndarray, shape (k, 7)
         Time integrals of the powers in `system.arrays.POWERS` at the instants, J.
     reached : float
         Time that the solver has reached, s.
@@ -48,7 +48,7 @@ class Chunk:
         Parameters
         ----------
         time, position, velocity, work, step : ndarray
-            As in a chunk, but position and velocity of shape (k, 6 N + P).
+            As in a chunk, but position and velocity of shape (k, 6 N + D).
         """
         return cls(
             time=time,
@@ -78,7 +78,7 @@ class Chunk:
 
         Returns
         -------
-        position, velocity : ndarray, shape (k, 6 N + P)
+        position, velocity : ndarray, shape (k, 6 N + D)
         """
         x, step = self.fraction[:, None], self.step[:, None]
         before, after = self.position[:, 0], self.position[:, 1]

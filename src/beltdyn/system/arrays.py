@@ -1,8 +1,9 @@
 """What the kernels of the system work on: named tuples of arrays and scalars, nothing else.
 
-The state of a system with N nodes and P pulleys is the vector of 6 N nodal coordinates followed by P pulley angles;
-velocities and accelerations are ordered alike.  Elements couple a node with the next one only, and the centreline of
-an element is made of one or several curves; beyond that the system does not ask how a belt is discretised.
+The state of a system with N nodes is the vector of 6 N nodal coordinates followed by D coordinates of bodies: the
+angles of the P rims, those of the bodies behind the rims in hub chains, and the places of tensioners.  Velocities and
+accelerations are ordered alike.  Elements couple a node with the next one only, and the centreline of an element is
+made of one or several curves; beyond that the system does not ask how a belt is discretised.
 """
 
 from typing import NamedTuple
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from beltdyn.ancf.section import Section
 from beltdyn.contact.law import ContactLaw
+from beltdyn.system.machine_arrays import Couplings, Profiles, Tensioners, Torques
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -31,19 +33,28 @@ class Pulleys(NamedTuple):
     """The P pulleys as arrays."""
 
     center: FloatArray
-    """m, shape (P, 2)."""
+    """m, shape (P, 2); where a tensioner carries the pulley, its place at coordinate zero."""
     radius: FloatArray
-    """m, shape (P,)."""
+    """Effective radii, at which the belt's centreline runs, m, shape (P,)."""
+    friction: FloatArray
+    """Coefficients of friction, shape (P,)."""
+    shaft: IntArray
+    """Body that drivers and loads act on: the rim, or the last body of its hub chain; shape (P,)."""
+    carrier: IntArray
+    """Tensioner that carries the pulley, -1 where its centre is fixed; shape (P,)."""
+
+
+class Bodies(NamedTuple):
+    """The D bodies beside the belt: rims, then bodies of hub chains, then tensioners, each with one coordinate."""
+
     inertia: FloatArray
-    """kg m^2, shape (P,)."""
+    """kg m^2, or kg of a sliding tensioner, shape (D,)."""
     unknown: IntArray
-    """Place among the free pulleys, -1 where the speed is prescribed; shape (P,)."""
-    profile_first: IntArray
-    """First segment of each pulley's profile (speed if prescribed, torque if free), shape (P + 1,)."""
-    profile_start: FloatArray
-    """Instants from which the segments hold, s, shape (S,)."""
-    profile: FloatArray
-    """c0, c1, amplitude, omega, phase of each segment, shape (S, 5)."""
+    """Place in the border of the ring's matrix, -1 where the motion is prescribed; shape (D,)."""
+    reach: FloatArray
+    """What turns a change of the coordinate into a length of belt: a radius, an arm, or 1; m or 1, shape (D,)."""
+    weight: FloatArray
+    """Forces of gravity on tensioners and what they carry, as if at the centre of the pulley, N, shape (K, 2)."""
 
 
 class Supports(NamedTuple):
@@ -53,7 +64,7 @@ class Supports(NamedTuple):
     """Coordinates that do not move, shape (6 N,)."""
     any_fixed: bool
     force: FloatArray
-    """Constant generalised forces on the nodal coordinates, shape (6 N,)."""
+    """Constant generalised forces on the nodal coordinates, weight among them, shape (6 N,)."""
     moment: FloatArray
     """Constant moments that turn the section r_y of a node, N m, shape (N,)."""
 
@@ -78,6 +89,8 @@ class System(NamedTuple):
     """Mass matrices of the elements, shape (elements, 12, 12)."""
     vectors: tuple[int, int, int, int]
     """Where among the 12 coordinates of an element the four vectors begin that carry its centreline."""
+    shift: tuple[float, float, float, float]
+    """What a shift of the whole belt does to these vectors: 1 for places, 0 for slopes."""
     control: FloatArray
     """Control points of the curves of the centreline from these vectors, shape (elements, curves, 4, 4)."""
     section: Section
@@ -85,6 +98,11 @@ class System(NamedTuple):
     law: ContactLaw
     contact: Quadrature
     pulleys: Pulleys
+    bodies: Bodies
+    profiles: Profiles
+    torques: Torques
+    couplings: Couplings
+    tensioners: Tensioners
     supports: Supports
 
 
@@ -125,19 +143,33 @@ class RingMatrix(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """What the pulleys feel and what the energy account needs, at one state."""
+    """What the bodies feel and what the energy account needs, at one state."""
 
     moment: FloatArray
     """Moment of the belt on each pulley, N m, shape (P,)."""
     hub: FloatArray
     """Force of the belt on each pulley, N, shape (P, 2)."""
+    friction: FloatArray
+    """Power lost in friction on each pulley, W, shape (P,)."""
+    damping: FloatArray
+    """Power lost in the contact dampers of each pulley, W, shape (P,)."""
     shaft: FloatArray
-    """Torque on each pulley from outside: the load, or the driver's reaction, N m, shape (P,)."""
+    """Torque on each shaft from outside: the load, or the driver's reaction, N m, shape (P,)."""
+    force: FloatArray
+    """Generalised force on each body, but the driver's reaction; N m, or N on a sliding tensioner; shape (D,)."""
     power: FloatArray
-    """Powers in the order of `POWERS`, W, shape (4,)."""
-    penalty: FloatArray
-    """Energy in the penalty springs, J, shape (1,)."""
+    """Powers in the order of `POWERS`, W, shape (7,)."""
+    stored: FloatArray
+    """Energy in the penalty springs, and in the springs of hub chains and tensioners, J, shape (2,)."""
 
 
-POWERS = ("driver_work", "torque_work", "friction_loss", "damping_loss")
+POWERS = (
+    "driver_work",
+    "torque_work",
+    "friction_loss",
+    "damping_loss",
+    "material_loss",
+    "tensioner_loss",
+    "coupling_loss",
+)
 """Powers integrated over time by a run, by the name of their integral."""

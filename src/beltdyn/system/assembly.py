@@ -1,7 +1,7 @@
-"""Equations of motion of belt and pulleys: residual and exact tangent (Eqs. 23, 25 and 27).
+"""Equations of motion of belt and bodies: residual and exact tangent (Eqs. 23, 25 and 27).
 
 M a + dU/de - Q_c(e, v, omega) - F + C^T lambda = 0        belt
-I domega/dt - moment - T_a = 0                              free pulleys (Eq. 23)
+I domega/dt - moment - T_a = 0                              free bodies (Eq. 23)
 C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
 """
 
@@ -14,12 +14,13 @@ from beltdyn.ancf.elastic_force import ElasticWorkspace, elastic_workspace, elem
 from beltdyn.chain.chain_force import chain_force
 from beltdyn.contact.contact_force import ContactWorkspace, contact_force, contact_workspace
 from beltdyn.contact.contact_zone import out_of_reach
-from beltdyn.contact.law import Wheel
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
-from beltdyn.system.loads import add_contact, clear_loads, take_shafts
+from beltdyn.system.carriage import carriage_of, couple_carriage, keep_drift
+from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
+from beltdyn.system.wheels import law_of, wheel_of
 
 FloatArray = NDArray[np.float64]
 
@@ -38,6 +39,8 @@ class AssemblyWorkspace(NamedTuple):
     """Residual of one element, shape (12,)."""
     tangent: FloatArray
     """Tangent of one element, shape (12, 12)."""
+    drift: FloatArray
+    """Force on the four vectors and moment on the pulley, by a change of its centre's velocity; shape (9,)."""
 
 
 def assembly_workspace() -> AssemblyWorkspace:
@@ -50,12 +53,13 @@ def assembly_workspace() -> AssemblyWorkspace:
         np.zeros((4, 2)),
         np.zeros(12),
         np.zeros((12, 12)),
+        np.zeros(9),
     )
 
 
 def border_size(system: System) -> int:
-    """Unknowns beside the nodes: free pulleys, and the multipliers of the joint where there is one."""
-    free = int(np.count_nonzero(system.pulleys.unknown >= 0))
+    """Unknowns beside the nodes: free bodies, and the multipliers of the joint where there is one."""
+    free = int(np.count_nonzero(system.bodies.unknown >= 0))
     return free + (NODE if system.joint else 0)
 
 
@@ -81,9 +85,9 @@ def assemble(
     system
         Belt, pulleys, supports.
     time
-        s; prescribed pulleys must already have their speed and acceleration in the state (`excitation.prescribe`).
-    position, velocity, acceleration : ndarray, shape (6 N + P,)
-        State: nodal coordinates, then pulley angles, and their rates.
+        s; prescribed bodies must already have their motion in the state (`excitation.prescribe`).
+    position, velocity, acceleration : ndarray, shape (6 N + D,)
+        State: nodal coordinates, then coordinates of bodies, and their rates.
     multipliers : ndarray, shape (6,)
         Lagrange multipliers of the joint; ignored without joint.
     by_position, by_velocity, by_acceleration : float
@@ -103,10 +107,10 @@ def assemble(
         _gather(element, node_j, position, velocity, acceleration, work)
         _elastic_and_inertia(system, element, by_position, by_acceleration, work)
         for curve in range(system.control.shape[1]):
-            _contact(system, element, curve, node_j, velocity, by_position, by_velocity, work, matrix, loads)
+            _contact(system, element, curve, node_j, position, velocity, by_position, by_velocity, work, matrix, loads)
         _scatter(element, node_j, work, matrix)
-    take_shafts(system, time, velocity, acceleration, loads)
-    _pulleys(system, acceleration, by_acceleration, matrix, loads)
+    add_machines(system, time, position, velocity, acceleration, by_position, by_velocity, matrix.corner, loads)
+    _bodies(system, acceleration, by_acceleration, matrix, loads)
     if system.joint:
         _joint(system, acceleration, multipliers, by_acceleration, matrix)
     add_nodal_loads(system, position, by_position, matrix)
@@ -188,6 +192,7 @@ def _contact(
     element: int,
     curve: int,
     node_j: int,
+    position: FloatArray,
     velocity: FloatArray,
     by_position: float,
     by_velocity: float,
@@ -196,33 +201,41 @@ def _contact(
     loads: Loads,
 ) -> None:
     """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
-    pulleys = system.pulleys
     fill_control(system, element, curve, work.coordinates[0], work.control)
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
-    first = velocity.size - pulleys.radius.size
-    for p in range(pulleys.radius.size):
-        wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], velocity[first + p])
+    bodies = system.bodies
+    for p in range(system.pulleys.radius.size):
+        wheel = wheel_of(system, p, position, velocity)
         if out_of_reach(work.control, wheel):
             continue
-        totals = contact_force(
-            work.control,
-            work.control_velocity,
-            system.control[element, curve],
-            wheel,
-            system.law,
-            system.length[element] / system.control.shape[1],
-            system.contact.points,
-            system.contact.weights,
-            by_position,
-            by_velocity,
-            work.contact,
-        )
+        carriage = carriage_of(system, p, position, velocity)
+        rounds = 2 if carriage.unknown >= 0 and by_position != 0.0 and carriage.turning else 1
+        for last in range(2 - rounds, 2):
+            totals = contact_force(
+                work.control,
+                work.control_velocity,
+                system.control[element, curve],
+                wheel,
+                law_of(system, p),
+                system.length[element] / system.control.shape[1],
+                system.contact.points,
+                system.contact.weights,
+                by_position if last == 1 else 0.0,
+                by_velocity if last == 1 else 1.0,
+                work.contact,
+            )
+            if last == 0:
+                keep_drift(system, carriage, work.contact, work.drift)
         _take_contact(system, work)
         add_contact(loads, p, totals)
-        unknown = pulleys.unknown[p]
-        if unknown >= 0:
-            matrix.corner[unknown, unknown] -= by_velocity * totals.moment_by_speed
-            _couple(system, element, node_j, unknown, by_velocity, work.contact, matrix)
+        if bodies.unknown[p] >= 0:
+            matrix.corner[bodies.unknown[p], bodies.unknown[p]] -= by_velocity * totals.moment_by_speed
+            _couple(system, element, node_j, bodies.unknown[p], by_velocity, work.contact, matrix)
+        if carriage.unknown >= 0 and (by_position != 0.0 or by_velocity != 0.0):
+            drift = by_position if rounds == 2 else 0.0
+            couple_carriage(
+                system, element, node_j, bodies.unknown[p], carriage, by_velocity, drift, work.contact, work.drift, matrix
+            )
 
 
 @kernel
@@ -274,19 +287,16 @@ def _scatter(i: int, j: int, work: AssemblyWorkspace, matrix: RingMatrix) -> Non
 
 
 @kernel
-def _pulleys(
+def _bodies(
     system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads
 ) -> None:
-    """Rotation of the free pulleys (Eq. 23)."""
-    pulleys = system.pulleys
-    first = acceleration.size - pulleys.radius.size
-    for p in range(pulleys.radius.size):
-        unknown = pulleys.unknown[p]
+    """Motion of the free bodies (Eq. 23)."""
+    bodies, first = system.bodies, NODE * system.nodes
+    for body in range(bodies.inertia.size):
+        unknown = bodies.unknown[body]
         if unknown >= 0:
-            matrix.corner[unknown, unknown] += by_acceleration * pulleys.inertia[p]
-            matrix.border_side[unknown] = (
-                pulleys.inertia[p] * acceleration[first + p] - loads.moment[p] - loads.shaft[p]
-            )
+            matrix.corner[unknown, unknown] += by_acceleration * bodies.inertia[body]
+            matrix.border_side[unknown] = bodies.inertia[body] * acceleration[first + body] - loads.force[body]
 
 
 @kernel

@@ -95,7 +95,8 @@ def belt_system(
         elastic=_elastic_points(belt),
         law=_contact_law(contact),
         contact=contact_points(contact),
-        pulleys=_pulley_arrays(pulleys),
+        pulleys=_pulley_arrays(pulleys, contact),
+        **_provisional(pulleys),
         supports=_supports(nodes, fixed, forces, moments),
     )
 
@@ -171,8 +172,9 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
     )
 
 
-def _pulley_arrays(pulleys: Sequence[Pulley]) -> Pulleys:
-    """Pulleys with their profiles laid end to end."""
+def _provisional(pulleys):
+    from beltdyn.system.machine_arrays import Couplings, Profiles, Tensioners, Torques
+    from beltdyn.system.arrays import Bodies
     first, starts, segments = [0], [np.empty(0)], [np.empty((0, 5))]
     for pulley in pulleys:
         profile = pulley.speed if pulley.prescribed else pulley.torque
@@ -180,15 +182,27 @@ def _pulley_arrays(pulleys: Sequence[Pulley]) -> Pulleys:
         first.append(first[-1] + len(start))
         starts.append(start)
         segments.append(coefficients)
+    n = len(pulleys)
+    starts, segments = np.concatenate(starts), np.concatenate(segments)
+    zi = lambda k: np.zeros(k, dtype=np.int64)
+    zf = lambda *k: np.zeros(k)
+    profiles = Profiles(np.array(first, dtype=np.int64), starts, segments, zf(len(starts)), zi(n + 1), zf(0, 3))
+    torques = Torques(zi(n + 1), zi(0), zi(0), zf(0, 4), zi(1), zf(0, 2), zi(1), zf(0, 3))
+    couplings = Couplings(zi(0), zi(0), zi(0), zf(0, 3), zi(0))
+    tensioners = Tensioners(zi(0), np.zeros(0, dtype=bool), zf(0, 2), zf(0, 2), *[zf(0) for _ in range(12)])
     free = np.array([not pulley.prescribed for pulley in pulleys], dtype=bool)
+    bodies = Bodies(np.array([p.inertia for p in pulleys], dtype=float), np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
+      np.array([p.radius for p in pulleys], dtype=float), zf(0, 2))
+    return dict(profiles=profiles, torques=torques, couplings=couplings, tensioners=tensioners, bodies=bodies)
+
+
+def _pulley_arrays(pulleys: Sequence[Pulley], contact) -> Pulleys:
     return Pulleys(
         center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
         radius=np.array([pulley.radius for pulley in pulleys], dtype=float),
-        inertia=np.array([pulley.inertia for pulley in pulleys], dtype=float),
-        unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
-        profile_first=np.array(first, dtype=np.int64),
-        profile_start=np.concatenate(starts),
-        profile=np.concatenate(segments),
+        friction=np.array([contact.friction for _ in pulleys], dtype=float),
+        shaft=np.arange(len(pulleys), dtype=np.int64),
+        carrier=np.full(len(pulleys), -1, dtype=np.int64),
     )
 
 

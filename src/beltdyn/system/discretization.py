@@ -21,6 +21,7 @@ class Discretization(NamedTuple):
     length: FloatArray
     mass: FloatArray
     vectors: tuple[int, int, int, int]
+    shift: tuple[float, float, float, float]
     control: FloatArray
 
 
@@ -49,6 +50,7 @@ def discretize(belt: Belt, section: Section) -> Discretization:
             length=np.full(belt.elements, length),
             mass=np.tile(element_mass(section, length), (belt.elements, 1, 1)),
             vectors=(0, 2, 6, 8),
+            shift=(1.0, 0.0, 1.0, 0.0),
             control=np.tile(_hermite_control(length), (belt.elements, 1, 1, 1)),
         )
     pieces = belt.links // LINKS
@@ -60,6 +62,7 @@ def discretize(belt: Belt, section: Section) -> Discretization:
         length=np.full(pieces, length),
         mass=np.tile(lumped_mass(section.mass, length), (pieces, 1, 1)),
         vectors=(0, 2, 4, 6),
+        shift=(1.0, 1.0, 1.0, 1.0),
         control=np.tile(_straight_control(), (pieces, 1, 1, 1)),
     )
 

@@ -1,4 +1,4 @@
-"""Prescribed speeds and applied torques: the segments of a profile at an instant (Eqs. 28 and 29)."""
+"""Prescribed speeds, applied torques and schedules: a profile and its integral at an instant (Eqs. 28 and 29)."""
 
 from math import cos, sin
 
@@ -6,22 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import Pulleys, System
+from beltdyn.system.arrays import NODE, System
+from beltdyn.system.machine_arrays import Profiles
 
 FloatArray = NDArray[np.float64]
 
 
 @kernel
-def profile_value(pulleys: Pulleys, pulley: int, time: float) -> tuple[float, float]:
-    """Value of a pulley's profile and its rate.
+def profile_value(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
+    """Value of a profile and its rate, without harmonics.
 
     A segment holds for start < t <= next start and is c0 + c1 (t - start) + amplitude cos(omega t + phase).
 
     Parameters
     ----------
-    pulleys
-        The pulleys.
-    pulley
+    profiles
+        The profiles.
+    number
         Which one.
     time
         s.
@@ -29,18 +30,11 @@ def profile_value(pulleys: Pulleys, pulley: int, time: float) -> tuple[float, fl
     Returns
     -------
     value, rate : float
-        Speed and angular acceleration of a prescribed pulley (rad/s, rad/s^2), or torque and its rate of a free one
-        (N m, N m/s).
+        Speed and angular acceleration (rad/s, rad/s^2), torque and its rate (N m, N m/s), or factor and rate (1/s).
     """
-    first, last = pulleys.profile_first[pulley], pulleys.profile_first[pulley + 1] - 1
-    while first < last:
-        middle = (first + last + 1) // 2
-        if pulleys.profile_start[middle] < time:
-            first = middle
-        else:
-            last = middle - 1
-    constant, slope, amplitude, omega, phase = pulleys.profile[first]
-    since = time - pulleys.profile_start[first] if slope != 0.0 else 0.0
+    k = _segment(profiles, number, time)
+    constant, slope, amplitude, omega, phase = profiles.segment[k]
+    since = time - profiles.start[k] if slope != 0.0 else 0.0
     return (
         constant + slope * since + amplitude * cos(omega * time + phase),
         slope - amplitude * omega * sin(omega * time + phase),
@@ -48,8 +42,70 @@ def profile_value(pulleys: Pulleys, pulley: int, time: float) -> tuple[float, fl
 
 
 @kernel
-def prescribe(system: System, time: float, velocity: FloatArray, acceleration: FloatArray) -> None:
-    """Write the speeds of the prescribed pulleys and their rates into a state.
+def profile_angle(profiles: Profiles, number: int, time: float) -> float:
+    """Integral of a profile from time zero, without harmonics: the angle of a mean speed.
+
+    Within a segment of start s the integral from s to t is
+    h (c0 + c1 h / 2 + amplitude cos(omega (s + t) / 2 + phase) sin(x) / x) with h = t - s, x = omega h / 2.
+
+    Parameters
+    ----------
+    profiles
+        The profiles.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    float
+        rad, where the profile is a speed.
+    """
+    k = _segment(profiles, number, time)
+    begin = profiles.start[k] if k > profiles.first[number] else 0.0
+    constant, slope, amplitude, omega, phase = profiles.segment[k]
+    since = time - begin
+    half = 0.5 * omega * since
+    wave = sin(half) / half if half != 0.0 else 1.0
+    mean = constant + 0.5 * slope * since + amplitude * wave * cos(0.5 * omega * (begin + time) + phase)
+    return profiles.angle[k] + mean * since
+
+
+@kernel
+def prescribed_motion(profiles: Profiles, number: int, time: float) -> tuple[float, float, float]:
+    """Prescribed speed with its harmonics: omega = m (1 + sum a_k cos(k theta + phi_k)), theta the integral of m.
+
+    Parameters
+    ----------
+    profiles
+        The profiles; the value is the mean speed m.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    angle, speed, acceleration : float
+        rad since time zero, rad/s, rad/s^2.
+    """
+    mean, rate = profile_value(profiles, number, time)
+    angle = profile_angle(profiles, number, time)
+    turned, factor, change = angle, 1.0, 0.0
+    for h in range(profiles.harmonic_first[number], profiles.harmonic_first[number + 1]):
+        order, amplitude, phase = profiles.harmonic[h]
+        turned += amplitude / order * (sin(order * angle + phase) - sin(phase))
+        factor += amplitude * cos(order * angle + phase)
+        change -= amplitude * order * sin(order * angle + phase)
+    return turned, mean * factor, rate * factor + mean * mean * change
+
+
+@kernel
+def prescribe(
+    system: System, time: float, position: FloatArray, velocity: FloatArray, acceleration: FloatArray
+) -> None:
+    """Write the motion of the prescribed shafts into a state.
 
     Parameters
     ----------
@@ -57,10 +113,24 @@ def prescribe(system: System, time: float, velocity: FloatArray, acceleration: F
         The system.
     time
         s.
-    velocity, acceleration : ndarray, shape (6 N + P,)
-        The entries of prescribed pulleys are overwritten.
+    position, velocity, acceleration : ndarray, shape (6 N + D,)
+        The entries of prescribed bodies are overwritten.
     """
-    first = velocity.size - system.pulleys.radius.size
     for p in range(system.pulleys.radius.size):
-        if system.pulleys.unknown[p] < 0:
-            velocity[first + p], acceleration[first + p] = profile_value(system.pulleys, p, time)
+        body = system.pulleys.shaft[p]
+        if system.bodies.unknown[body] < 0:
+            i = NODE * system.nodes + body
+            position[i], velocity[i], acceleration[i] = prescribed_motion(system.profiles, p, time)
+
+
+@kernel
+def _segment(profiles: Profiles, number: int, time: float) -> int:
+    """Segment that holds at an instant."""
+    first, last = profiles.first[number], profiles.first[number + 1] - 1
+    while first < last:
+        middle = (first + last + 1) // 2
+        if profiles.start[middle] < time:
+            first = middle
+        else:
+            last = middle - 1
+    return first

@@ -24,14 +24,14 @@ class FirstOrder:
     Attributes
     ----------
     size : int
-        Number of unknowns, 2 (6 N + P) + 4.
+        Number of unknowns, 2 (6 N + D) + 7.
     evaluations : int
         Calls of `rates` so far.
     """
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._half = NODE * system.nodes + system.pulleys.radius.size
+        self._half = NODE * system.nodes + system.bodies.inertia.size
         self._equations = new_equations(system)
         self._no_multipliers = np.zeros(NODE)
         self.size = 2 * self._half + len(POWERS)
@@ -51,17 +51,17 @@ class FirstOrder:
         Parameters
         ----------
         velocity
-            Allowed error of the velocities of nodes and rims, m/s.
+            Allowed error of the velocities of nodes, rims and other bodies, m/s.
         time
             Positions may err by what the velocity makes in this time, s.
 
         Returns
         -------
         ndarray, shape (size,)
-            The length of an element turns gradients into m, the radius angles; works are not controlled.
+            The length of an element turns gradients into m, radii angles; works are not controlled.
         """
         nodes = np.tile(self._system.scale, self._system.nodes)
-        lengths = np.concatenate([nodes, self._system.pulleys.radius])
+        lengths = np.concatenate([nodes, self._system.bodies.reach])
         return np.concatenate([time * velocity / lengths, velocity / lengths, np.full(len(POWERS), np.inf)])
 
     def rates(self, time: float, y: FloatArray) -> FloatArray:
@@ -70,7 +70,7 @@ class FirstOrder:
         velocity, acceleration = self._assemble(time, y, 0.0, 0.0)
         matrix, nodes, free = self._equations.matrix, NODE * self._system.nodes, self._free
         acceleration[:nodes] = self._flexibility @ -matrix.node_side.ravel()
-        acceleration[nodes + free] = -matrix.border_side[: free.size] / self._system.pulleys.inertia[free]
+        acceleration[nodes + free] = -matrix.border_side[: free.size] / self._system.bodies.inertia[free]
         return np.concatenate([velocity, acceleration, self._equations.loads.power])
 
     def jacobian(self, time: float, y: FloatArray) -> FloatArray:
@@ -78,7 +78,7 @@ class FirstOrder:
         half = self._half
         result = np.zeros((self.size, self.size))
         result[:half, half : 2 * half] = np.eye(half)
-        prescribed = NODE * self._system.nodes + np.flatnonzero(self._system.pulleys.unknown < 0)
+        prescribed = NODE * self._system.nodes + np.flatnonzero(self._system.bodies.unknown < 0)
         result[prescribed, half + prescribed] = 0.0
         self._assemble(time, y, 1.0, 0.0)
         result[half : 2 * half, :half] = self._by_tangent(self._equations.matrix)
@@ -92,7 +92,7 @@ class FirstOrder:
         """Residual without inertia, and one part of its tangent; gives velocity and prescribed accelerations."""
         position, velocity = y[: self._half].copy(), y[self._half : 2 * self._half].copy()
         acceleration = np.zeros(self._half)
-        prescribe(self._system, time, velocity, acceleration)
+        prescribe(self._system, time, position, velocity, acceleration)
         assemble(
             self._system,
             time,
@@ -118,11 +118,11 @@ class FirstOrder:
 
     @cached_property
     def _free(self) -> NDArray[np.intp]:
-        """Numbers of the free pulleys."""
-        return np.flatnonzero(self._system.pulleys.unknown >= 0)
+        """Numbers of the free bodies."""
+        return np.flatnonzero(self._system.bodies.unknown >= 0)
 
     def _by_tangent(self, matrix: RingMatrix) -> FloatArray:
-        """Minus the inverse mass times a tangent, dense, shape (6 N + P, 6 N + P)."""
+        """Minus the inverse mass times a tangent, dense, shape (6 N + D, 6 N + D)."""
         free = self._free
         nodes = NODE * self._system.nodes
         tangent = np.zeros((self._half, self._half))
@@ -135,5 +135,5 @@ class FirstOrder:
             tangent[np.ix_(nodes + free, own)] += matrix.row[k, : free.size]
         tangent[np.ix_(nodes + free, nodes + free)] += matrix.corner[: free.size, : free.size]
         tangent[:nodes] = self._flexibility @ tangent[:nodes]
-        tangent[nodes + free] /= self._system.pulleys.inertia[free, None]
+        tangent[nodes + free] /= self._system.bodies.inertia[free, None]
         return -tangent

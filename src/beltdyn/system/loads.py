@@ -1,28 +1,44 @@
-"""What the pulleys feel: contact summed over the belt, torques on the shafts, and the powers of the energy account."""
+"""What the bodies feel at one state: contact summed over the belt, machines, and the powers of the energy account."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import Loads, System
-from beltdyn.system.excitation import profile_value
+from beltdyn.system.arrays import NODE, POWERS, Loads, System
+from beltdyn.system.coupling import coupling_torque
+from beltdyn.system.shaft_torque import shaft_torque
+from beltdyn.system.tensioner import tensioner_force, tensioner_place
+from beltdyn.system.wheels import tensioner_coordinate
 
 FloatArray = NDArray[np.float64]
 
 
-def new_loads(pulleys: int) -> Loads:
-    """Make zero loads for a number of pulleys."""
-    return Loads(np.zeros(pulleys), np.zeros((pulleys, 2)), np.zeros(pulleys), np.zeros(4), np.zeros(1))
+def new_loads(system: System) -> Loads:
+    """Make zero loads for a system."""
+    pulleys, bodies = system.pulleys.radius.size, system.bodies.inertia.size
+    return Loads(
+        np.zeros(pulleys),
+        np.zeros((pulleys, 2)),
+        np.zeros(pulleys),
+        np.zeros(pulleys),
+        np.zeros(pulleys),
+        np.zeros(bodies),
+        np.zeros(len(POWERS)),
+        np.zeros(2),
+    )
 
 
 @kernel
 def clear_loads(loads: Loads) -> None:
-    """Set moments, hub forces, powers and penalty energy to zero; shaft torques are overwritten later."""
+    """Set everything to zero but the torques on the shafts, which are overwritten later."""
     loads.moment[:] = 0.0
     loads.hub[:] = 0.0
+    loads.friction[:] = 0.0
+    loads.damping[:] = 0.0
+    loads.force[:] = 0.0
     loads.power[:] = 0.0
-    loads.penalty[:] = 0.0
+    loads.stored[:] = 0.0
 
 
 @kernel
@@ -31,14 +47,24 @@ def add_contact(loads: Loads, pulley: int, totals: ContactTotals) -> None:
     loads.moment[pulley] += totals.moment
     loads.hub[pulley, 0] += totals.hub_x
     loads.hub[pulley, 1] += totals.hub_y
-    loads.penalty[0] += totals.penalty_energy
-    loads.power[2] += totals.friction_power
-    loads.power[3] += totals.damping_power
+    loads.friction[pulley] += totals.friction_power
+    loads.damping[pulley] += totals.damping_power
+    loads.stored[0] += totals.penalty_energy
 
 
 @kernel
-def take_shafts(system: System, time: float, velocity: FloatArray, acceleration: FloatArray, loads: Loads) -> None:
-    """Torques on the shafts and their powers, when all contact is summed.
+def add_machines(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Forces on the bodies and their powers, when all contact is summed, and what they add to the tangent.
 
     Parameters
     ----------
@@ -46,18 +72,120 @@ def take_shafts(system: System, time: float, velocity: FloatArray, acceleration:
         The system.
     time
         s.
-    velocity, acceleration : ndarray, shape (6 N + P,)
-        Rates of the state.
+    position, velocity, acceleration : ndarray, shape (6 N + D,)
+        State and rates.
+    by_position, by_velocity
+        Factors of the derivatives in the tangent; with both zero there is none.
+    corner : ndarray, shape (m, m)
+        Tangent of the bodies' equations, changed in place.
     loads
-        The torque of a free pulley is that applied to it; that of a prescribed one is the reaction of its driver
-        (Eq. 23).
+        Contact is there already.  The torque on a free shaft is that applied to it; that on a prescribed one is the
+        reaction of its driver (Eq. 23).
     """
-    pulleys = system.pulleys
-    first = velocity.size - pulleys.radius.size
-    for p in range(pulleys.radius.size):
-        if pulleys.unknown[p] < 0:
-            loads.shaft[p] = pulleys.inertia[p] * acceleration[first + p] - loads.moment[p]
-            loads.power[0] += loads.shaft[p] * velocity[first + p]
-        else:
-            loads.shaft[p] = profile_value(pulleys, p, time)[0]
-            loads.power[1] += loads.shaft[p] * velocity[first + p]
+    wanted = by_position != 0.0 or by_velocity != 0.0
+    for p in range(system.pulleys.radius.size):
+        loads.force[p] += loads.moment[p]
+        loads.power[2] += loads.friction[p]
+        loads.power[3] += loads.damping[p]
+    _add_tensioners(system, position, velocity, by_position, by_velocity, wanted, corner, loads)
+    _add_couplings(system, time, position, velocity, by_position, by_velocity, wanted, corner, loads)
+    _take_shafts(system, time, position, velocity, acceleration, by_position, by_velocity, wanted, corner, loads)
+
+
+@kernel
+def _add_tensioners(
+    system: System,
+    position: FloatArray,
+    velocity: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    wanted: bool,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
+    tensioners, first = system.tensioners, NODE * system.nodes
+    for k in range(tensioners.pulley.size):
+        at = tensioner_coordinate(system, k)
+        _, _, dx, dy, ddx, ddy = tensioner_place(tensioners, k, position[at])
+        force, by_place, by_rate, energy, loss = tensioner_force(tensioners, k, position[at], velocity[at])
+        x = loads.hub[tensioners.pulley[k], 0] + system.bodies.weight[k, 0]
+        y = loads.hub[tensioners.pulley[k], 1] + system.bodies.weight[k, 1]
+        loads.force[at - first] += force + x * dx + y * dy
+        loads.power[5] += loss
+        loads.stored[1] += energy
+        unknown = system.bodies.unknown[at - first]
+        if wanted and unknown >= 0:
+            corner[unknown, unknown] -= by_position * (by_place + x * ddx + y * ddy) + by_velocity * by_rate
+
+
+@kernel
+def _add_couplings(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    wanted: bool,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Torques between the bodies of hub chains."""
+    couplings, first = system.couplings, NODE * system.nodes
+    for number in range(couplings.front.size):
+        front, back = couplings.front[number], couplings.back[number]
+        torque, by_twist, by_rate, energy, loss = coupling_torque(
+            system.profiles,
+            couplings,
+            number,
+            time,
+            position[first + front] - position[first + back],
+            velocity[first + front] - velocity[first + back],
+        )
+        loads.force[front] -= torque
+        loads.force[back] += torque
+        loads.power[6] += loss
+        loads.stored[1] += energy
+        if wanted:
+            slope = by_position * by_twist + by_velocity * by_rate
+            i, j = system.bodies.unknown[front], system.bodies.unknown[back]
+            if i >= 0:
+                corner[i, i] += slope
+            if j >= 0:
+                corner[j, j] += slope
+            if i >= 0 and j >= 0:
+                corner[i, j] -= slope
+                corner[j, i] -= slope
+
+
+@kernel
+def _take_shafts(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    wanted: bool,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Torques on the shafts from outside, and their powers."""
+    first = NODE * system.nodes
+    for p in range(system.pulleys.radius.size):
+        body = system.pulleys.shaft[p]
+        unknown, speed = system.bodies.unknown[body], velocity[first + body]
+        if unknown < 0:
+            loads.shaft[p] = system.bodies.inertia[body] * acceleration[first + body] - loads.force[body]
+            loads.power[0] += loads.shaft[p] * speed
+            continue
+        torque, by_angle, by_speed = shaft_torque(
+            system.profiles, system.torques, p, time, position[first + body], speed
+        )
+        loads.shaft[p] = torque
+        loads.force[body] += torque
+        loads.power[1] += torque * speed
+        if wanted:
+            corner[unknown, unknown] -= by_position * by_angle + by_velocity * by_speed

@@ -22,7 +22,7 @@ class Equations(NamedTuple):
     node_part: FloatArray
     """Solution for the nodes, shape (N, 6)."""
     border_part: FloatArray
-    """Solution for the free pulleys and the multipliers, shape (m,)."""
+    """Solution for the free bodies and the multipliers, shape (m,)."""
     loads: Loads
     work: AssemblyWorkspace
 
@@ -34,7 +34,7 @@ def new_equations(system: System) -> Equations:
         ring_matrix(system.nodes, border),
         np.zeros((system.nodes, NODE)),
         np.zeros(border),
-        new_loads(system.pulleys.radius.size),
+        new_loads(system),
         assembly_workspace(),
     )
 
@@ -87,17 +87,17 @@ def subtract_solution(system: System, equations: Equations, factor: float, vecto
         With a solution.
     factor
         Dimensionless, or the factor between unknown and vector.
-    vector : ndarray, shape (6 N + P,)
-        Positions, velocities or accelerations, changed in place; prescribed pulleys keep theirs.
+    vector : ndarray, shape (6 N + D,)
+        Positions, velocities or accelerations, changed in place; prescribed bodies keep theirs.
     """
     for node in range(system.nodes):
         for c in range(NODE):
             vector[NODE * node + c] -= factor * equations.node_part[node, c]
     first = NODE * system.nodes
-    for p in range(system.pulleys.radius.size):
-        unknown = system.pulleys.unknown[p]
+    for body in range(system.bodies.unknown.size):
+        unknown = system.bodies.unknown[body]
         if unknown >= 0:
-            vector[first + p] -= factor * equations.border_part[unknown]
+            vector[first + body] -= factor * equations.border_part[unknown]
 
 
 @kernel
@@ -126,9 +126,9 @@ def accelerate(
         The system.
     time
         s.
-    position, velocity : ndarray, shape (6 N + P,)
-        The state; speeds of prescribed pulleys are written into `velocity`.
-    acceleration : ndarray, shape (6 N + P,)
+    position, velocity : ndarray, shape (6 N + D,)
+        The state; the motion of prescribed bodies is written into it.
+    acceleration : ndarray, shape (6 N + D,)
         Overwritten.
     multipliers : ndarray, shape (6,)
         Overwritten.
@@ -142,7 +142,7 @@ def accelerate(
     """
     acceleration[:] = 0.0
     multipliers[:] = 0.0
-    prescribe(system, time, velocity, acceleration)
+    prescribe(system, time, position, velocity, acceleration)
     if not linearise(system, time, position, velocity, acceleration, multipliers, 0.0, 0.0, 1.0, equations):
         return False
     subtract_solution(system, equations, 1.0, acceleration)

@@ -23,6 +23,12 @@ class Observations(NamedTuple):
     """Torque on each pulley from outside, N m, shape (k, P)."""
     hub_force: FloatArray
     """Force of the belt on each pulley, N, shape (k, P, 2)."""
+    pulley_center: FloatArray
+    """m, shape (k, P, 2)."""
+    friction_power: FloatArray
+    """Power lost in friction on each pulley, W, shape (k, P)."""
+    contact_damping_power: FloatArray
+    """Power lost in the contact dampers of each pulley, W, shape (k, P)."""
     wrap_angle: FloatArray
     """rad, shape (k, P)."""
     belt_tension: FloatArray
@@ -46,6 +52,10 @@ class Observations(NamedTuple):
     """J, shape (k,)."""
     strain_energy: FloatArray
     penalty_energy: FloatArray
+    spring_energy: FloatArray
+    """Of hub chains and tensioners."""
+    potential_energy: FloatArray
+    """Of weight, zero where everything is at the origin."""
 
 
 class Samples(NamedTuple):
@@ -62,6 +72,8 @@ class Samples(NamedTuple):
     intervals: FloatArray
     pieces: FloatArray
     acceleration: FloatArray
+    corner: FloatArray
+    """No tangent, shape (0, 0)."""
     contact: ContactWorkspace
     loads: Loads
 
@@ -74,6 +86,9 @@ def new_observations(system: System, count: int) -> Observations:
         pulley_torque=np.zeros((count, pulleys)),
         shaft_torque=np.zeros((count, pulleys)),
         hub_force=np.zeros((count, pulleys, 2)),
+        pulley_center=np.zeros((count, pulleys, 2)),
+        friction_power=np.zeros((count, pulleys)),
+        contact_damping_power=np.zeros((count, pulleys)),
         wrap_angle=np.zeros((count, pulleys)),
         belt_tension=np.zeros((count, curves)),
         tension_variation=np.zeros((count, curves)),
@@ -87,6 +102,8 @@ def new_observations(system: System, count: int) -> Observations:
         kinetic_energy=np.zeros(count),
         strain_energy=np.zeros(count),
         penalty_energy=np.zeros(count),
+        spring_energy=np.zeros(count),
+        potential_energy=np.zeros(count),
     )
 
 
@@ -102,7 +119,8 @@ def new_samples(system: System) -> Samples:
         control_velocity=np.zeros((4, 2)),
         intervals=np.zeros((MAX_INTERVALS, 2)),
         pieces=zone_scratch(),
-        acceleration=np.zeros(NODE * system.nodes + system.pulleys.radius.size),
+        acceleration=np.zeros(NODE * system.nodes + system.bodies.inertia.size),
+        corner=np.zeros((0, 0)),
         contact=contact_workspace(),
-        loads=new_loads(system.pulleys.radius.size),
+        loads=new_loads(system),
     )

@@ -11,15 +11,17 @@ from beltdyn.chain.chain_force import chain_energy
 from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
-from beltdyn.contact.law import Wheel
+from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, Loads, System
 from beltdyn.system.assembly import fill_control
 from beltdyn.system.excitation import prescribe
-from beltdyn.system.loads import add_contact, clear_loads, take_shafts
+from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
+from beltdyn.system.tensioner import tensioner_place
+from beltdyn.system.wheels import law_of, tensioner_coordinate, wheel_of
 
 FloatArray = NDArray[np.float64]
 
@@ -33,7 +35,7 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
         Belt, pulleys, supports.
     time : ndarray, shape (k,)
         s.
-    position, velocity : ndarray, shape (k, 6 N + P)
+    position, velocity : ndarray, shape (k, 6 N + D)
         The states.
 
     Returns
@@ -65,9 +67,9 @@ def fill_observations(
     """Fill the observations."""
     for k in range(time.size):
         clear_loads(samples.loads)
-        result.kinetic_energy[k] = result.strain_energy[k] = 0.0
+        result.kinetic_energy[k] = result.strain_energy[k] = result.potential_energy[k] = 0.0
         result.wrap_angle[k] = 0.0
-        prescribe(system, time[k], velocity[k], samples.acceleration)
+        prescribe(system, time[k], position[k], velocity[k], samples.acceleration)
         for element in range(system.length.size):
             _gather(system, element, position[k], velocity[k], samples)
             _observe_energy(system, element, samples, result, k)
@@ -78,22 +80,35 @@ def fill_observations(
                 length = system.length[element] / system.control.shape[1]
                 _observe_tension(system, length, number, samples, result, k)
                 _observe_points(system, length, number, samples, result, k)
-                _observe_contact(system, element, curve, length, velocity[k], samples, result, k)
-        take_shafts(system, time[k], velocity[k], samples.acceleration, samples.loads)
+                _observe_contact(system, element, curve, length, position[k], velocity[k], samples, result, k)
+        add_machines(
+            system,
+            time[k],
+            position[k],
+            velocity[k],
+            samples.acceleration,
+            0.0,
+            0.0,
+            samples.corner,
+            samples.loads,
+        )
         _keep_loads(samples.loads, result, k)
         _observe_spans(system, samples, result, k)
-        _observe_pulleys(system, velocity[k], result, k)
+        _observe_bodies(system, position[k], velocity[k], result, k)
 
 
 @kernel
 def _keep_loads(loads: Loads, result: Observations, k: int) -> None:
-    """Torques, hub forces and penalty energy."""
-    result.penalty_energy[k] = loads.penalty[0]
+    """Torques, hub forces, losses and energies of springs."""
+    result.penalty_energy[k] = loads.stored[0]
+    result.spring_energy[k] = loads.stored[1]
     for p in range(loads.moment.size):
         result.pulley_torque[k, p] = loads.moment[p]
         result.shaft_torque[k, p] = loads.shaft[p]
         result.hub_force[k, p, 0] = loads.hub[p, 0]
         result.hub_force[k, p, 1] = loads.hub[p, 1]
+        result.friction_power[k, p] = loads.friction[p]
+        result.contact_damping_power[k, p] = loads.damping[p]
 
 
 @kernel
@@ -167,16 +182,16 @@ def _observe_contact(
     element: int,
     curve: int,
     length: float,
+    position: FloatArray,
     velocity: FloatArray,
     samples: Samples,
     result: Observations,
     k: int,
 ) -> None:
     """Contact of a curve as it moves the system and at its sampling points, and the angle over which it touches."""
-    pulleys, intervals = system.pulleys, samples.intervals
-    first = velocity.size - pulleys.radius.size
-    for p in range(pulleys.radius.size):
-        wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], velocity[first + p])
+    intervals = samples.intervals
+    for p in range(system.pulleys.radius.size):
+        wheel, law = wheel_of(system, p, position, velocity), law_of(system, p)
         if out_of_reach(samples.control, wheel):
             continue
         totals = contact_force(
@@ -184,7 +199,7 @@ def _observe_contact(
             samples.control_velocity,
             system.control[element, curve],
             wheel,
-            system.law,
+            law,
             length,
             system.contact.points,
             system.contact.weights,
@@ -195,12 +210,19 @@ def _observe_contact(
         add_contact(samples.loads, p, totals)
         for interval in range(touching_intervals(samples.control, wheel, samples.pieces, intervals)):
             result.wrap_angle[k, p] += _angle(samples.control, wheel, intervals[interval, 0], intervals[interval, 1])
-        _touch_points(system, element * system.control.shape[1] + curve, p, wheel, samples, result, k)
+        _touch_points(system, element * system.control.shape[1] + curve, p, wheel, law, samples, result, k)
 
 
 @kernel
 def _touch_points(
-    system: System, curve: int, pulley: int, wheel: Wheel, samples: Samples, result: Observations, k: int
+    system: System,
+    curve: int,
+    pulley: int,
+    wheel: Wheel,
+    law: ContactLaw,
+    samples: Samples,
+    result: Observations,
+    k: int,
 ) -> None:
     """Contact at the sampling points of a curve that touch a pulley."""
     count = system.contact.points.size
@@ -210,7 +232,7 @@ def _touch_points(
         x, y = result.contact_position[k, row, 0], result.contact_position[k, row, 1]
         here = approach(x, y, vx, vy, wheel)
         if here.penetration >= 0.0:
-            force = point_force(here, wheel, system.law)
+            force = point_force(here, wheel, law)
             result.contact_pulley[k, row] = pulley
             result.normal_force[k, row] = force.normal
             result.friction_force[k, row] = force.friction
@@ -264,8 +286,20 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
 
 
 @kernel
-def _observe_pulleys(system: System, velocity: FloatArray, result: Observations, k: int) -> None:
-    """Add the rotation of the pulleys to the kinetic energy."""
-    first = velocity.size - system.pulleys.radius.size
+def _observe_bodies(system: System, position: FloatArray, velocity: FloatArray, result: Observations, k: int) -> None:
+    """Centres of the pulleys, kinetic energy of the bodies and potential energy of weight."""
+    first = NODE * system.nodes
+    for body in range(system.bodies.inertia.size):
+        result.kinetic_energy[k] += 0.5 * system.bodies.inertia[body] * velocity[first + body] ** 2
+    for c in range(first):
+        result.potential_energy[k] -= system.supports.force[c] * position[c]
     for p in range(system.pulleys.radius.size):
-        result.kinetic_energy[k] += 0.5 * system.pulleys.inertia[p] * velocity[first + p] ** 2
+        x, y = system.pulleys.center[p]
+        carrier = system.pulleys.carrier[p]
+        if carrier >= 0:
+            x, y, _, _, _, _ = tensioner_place(
+                system.tensioners, carrier, position[tensioner_coordinate(system, carrier)]
+            )
+            weight = system.bodies.weight[carrier]
+            result.potential_energy[k] -= weight[0] * x + weight[1] * y
+        result.pulley_center[k, p, 0], result.pulley_center[k, p, 1] = x, y

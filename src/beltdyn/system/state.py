@@ -15,8 +15,8 @@ class State:
 
     Parameters
     ----------
-    position, velocity, acceleration : ndarray, shape (6 N + P,)
-        Nodal coordinates (m and 1), then pulley angles (rad), and their rates.
+    position, velocity, acceleration : ndarray, shape (6 N + D,)
+        Nodal coordinates (m and 1), then coordinates of bodies (rad and m), and their rates.
     """
 
     position: FloatArray
@@ -41,15 +41,15 @@ def at_rest(system: System, coordinates: FloatArray) -> State:
     Returns
     -------
     State
-        With pulleys at angle zero.
+        With bodies at coordinate zero.
     """
-    count = coordinates.size + system.pulleys.radius.size
+    count = coordinates.size + system.bodies.inertia.size
     position = np.zeros(count)
     position[: coordinates.size] = coordinates.ravel()
     return State(position, np.zeros(count), np.zeros(count))
 
 
-def laid(system: System, path: Path) -> State:
+def laid(system: System, path: Path, tensioners: FloatArray | None = None) -> State:
     """The belt laid on its path at uniform stretch, at rest.
 
     Node 0 stands where the belt leaves the first pulley; r_x is the stretch times the unit tangent, r_y the unit
@@ -61,6 +61,8 @@ def laid(system: System, path: Path) -> State:
         A closed belt.
     path
         The path around the pulleys.
+    tensioners : ndarray, shape (K,), optional
+        Coordinates of the tensioners, m or rad; by default zero.
 
     Returns
     -------
@@ -69,7 +71,10 @@ def laid(system: System, path: Path) -> State:
     """
     stretch = path.length / float(np.sum(system.length))
     along = stretch * point_coordinates(system)
-    return at_rest(system, nodal_coordinates(system, path.position(along), stretch * path.tangent(along)))
+    state = at_rest(system, nodal_coordinates(system, path.position(along), stretch * path.tangent(along)))
+    if tensioners is not None:
+        state.position[state.position.size - tensioners.size :] = tensioners
+    return state
 
 
 def straight(system: System) -> State:

@@ -59,8 +59,8 @@ def system(small: Drive) -> System:
 
 @pytest.fixture(scope="session")
 def scale(system: System) -> FloatArray:
-    """Coordinates that make a metre, shape (6 N + P,)."""
-    return np.concatenate([np.tile(1.0 / system.scale, system.nodes), 1.0 / system.pulleys.radius])
+    """Coordinates that make a metre, shape (6 N + D,)."""
+    return np.concatenate([np.tile(1.0 / system.scale, system.nodes), 1.0 / system.bodies.reach])
 
 
 @pytest.fixture(scope="session")

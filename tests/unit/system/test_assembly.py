@@ -51,7 +51,7 @@ def test_tangent(
 ) -> None:
     tangent = linear(moving, MULTIPLIERS, factors)[0]
     unknowns = np.concatenate(
-        [np.arange(NODE * system.nodes), NODE * system.nodes + np.flatnonzero(system.pulleys.unknown >= 0)]
+        [np.arange(NODE * system.nodes), NODE * system.nodes + np.flatnonzero(system.bodies.unknown >= 0)]
     )
     step = STEP / max(factors[0], factors[1] / 1e3, factors[2] / 1e6)
 

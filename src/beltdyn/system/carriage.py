@@ -1,0 +1,139 @@
+"""Contact with a pulley that a tensioner carries: what the motion of its centre adds to the tangent.
+
+Contact depends on where the belt is and how it moves against the centre.  With the centre c(q), a change of the
+tensioner's coordinate acts like the opposite shift of the whole curve by c' dq, and like a change of its velocity by
+-(c' dq/dt + c'' dq/dt dq).  With T the tangent of the forces F on the four vectors, w what a shift does to these
+vectors, and hub force -sum_a w_a F_a:
+
+    dF_a/dq = -sum_b T_ab w_b c' - D_a,    D_a = sum_b dF_a/dv_b w_b c'' dq/dt.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.contact.contact_force import ContactWorkspace
+from beltdyn.kernel import kernel
+from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.tensioner import tensioner_place
+from beltdyn.system.wheels import tensioner_coordinate
+
+FloatArray = NDArray[np.float64]
+
+
+class Carriage(NamedTuple):
+    """How the centre of a pulley moves with the coordinate of the tensioner that carries it."""
+
+    unknown: int
+    """Place of the coordinate in the border, -1 where the centre is fixed."""
+    x: float
+    """c', derivative of the centre."""
+    y: float
+    drift_x: float
+    """c'' dq/dt, rate of c'."""
+    drift_y: float
+    turning: bool
+    """Whether c' changes."""
+
+
+@kernel
+def carriage_of(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> Carriage:
+    """The motion of a pulley's centre at a state of shape (6 N + D,)."""
+    carrier = system.pulleys.carrier[pulley]
+    if carrier < 0:
+        return Carriage(-1, 0.0, 0.0, 0.0, 0.0, False)
+    at = tensioner_coordinate(system, carrier)
+    _, _, dx, dy, ddx, ddy = tensioner_place(system.tensioners, carrier, position[at])
+    drift_x, drift_y = ddx * velocity[at], ddy * velocity[at]
+    unknown = system.bodies.unknown[at - NODE * system.nodes]
+    return Carriage(unknown, dx, dy, drift_x, drift_y, drift_x != 0.0 or drift_y != 0.0)
+
+
+@kernel
+def keep_drift(system: System, carriage: Carriage, contact: ContactWorkspace, drift: FloatArray) -> None:
+    """Overwrite drift by D and by its counterpart for the moment.
+
+    Parameters
+    ----------
+    system, carriage
+        The system, and how the centre moves.
+    contact
+        With the derivatives of force and moment with respect to the velocity.
+    drift : ndarray, shape (9,)
+        Forces on the four vectors, x and y in turn, then the moment on the pulley.
+    """
+    x, y = carriage.drift_x, carriage.drift_y
+    drift[8] = 0.0
+    for a in range(4):
+        drift[2 * a], drift[2 * a + 1] = _along(system, contact, a, x, y)
+        drift[8] += system.shift[a] * (contact.moment[2 * a] * x + contact.moment[2 * a + 1] * y)
+
+
+@kernel
+def _along(system: System, contact: ContactWorkspace, a: int, x: float, y: float) -> tuple[float, float]:
+    """Sum over b of T_ab w_b (x, y): what a shift of the curve does to the force on a vector."""
+    fx = fy = 0.0
+    for b in range(4):
+        weight = system.shift[b]
+        fx += weight * (contact.xx[a, b] * x + contact.xy[a, b] * y)
+        fy += weight * (contact.yx[a, b] * x + contact.yy[a, b] * y)
+    return fx, fy
+
+
+@kernel
+def couple_carriage(
+    system: System,
+    node_i: int,
+    node_j: int,
+    rim: int,
+    carriage: Carriage,
+    by_velocity: float,
+    drifting: float,
+    contact: ContactWorkspace,
+    drift: FloatArray,
+    matrix: RingMatrix,
+) -> None:
+    """Couple the tensioner's coordinate to the nodes of a curve and to the rim that they touch.
+
+    Parameters
+    ----------
+    system
+        The system.
+    node_i, node_j
+        The nodes of the element.
+    rim
+        Place of the rim's angle in the border, -1 where it is prescribed.
+    carriage
+        How the centre moves.
+    by_velocity
+        Factor of the derivative with respect to velocity in the tangent.
+    drifting
+        Factor of `drift`: that of the derivative with respect to position, zero where the drift is none.
+    contact
+        Forces with the tangent.
+    drift : ndarray, shape (9,)
+        From `keep_drift`.
+    matrix
+        Changed in place.
+    """
+    own, x, y = carriage.unknown, carriage.x, carriage.y
+    for a in range(4):
+        first, weight = system.vectors[a], system.shift[a]
+        node, c = (node_i, first) if first < NODE else (node_j, first - NODE)
+        fx, fy = _along(system, contact, a, x, y)
+        if drifting != 0.0:
+            fx, fy = fx + drifting * drift[2 * a], fy + drifting * drift[2 * a + 1]
+        matrix.column[node, c, own] += fx
+        matrix.column[node, c + 1, own] += fy
+        matrix.corner[own, own] -= weight * (fx * x + fy * y)
+        for b in range(4):
+            if system.shift[b] != 0.0:
+                matrix.row[node, own, c] += system.shift[b] * (contact.xx[b, a] * x + contact.yx[b, a] * y)
+                matrix.row[node, own, c + 1] += system.shift[b] * (contact.xy[b, a] * x + contact.yy[b, a] * y)
+        if rim >= 0:
+            push = x * contact.by_speed[2 * a] + y * contact.by_speed[2 * a + 1]
+            matrix.corner[own, rim] += by_velocity * weight * push
+            matrix.corner[rim, own] += weight * (x * contact.moment[2 * a] + y * contact.moment[2 * a + 1])
+    if rim >= 0 and drifting != 0.0:
+        matrix.corner[rim, own] += drifting * drift[8]

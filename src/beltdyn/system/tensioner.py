@@ -1,0 +1,117 @@
+"""Tensioners: where they hold their pulley, and how spring, dampers, dry friction and stops press it."""
+
+from math import cos, sin, tanh
+
+from beltdyn.kernel import kernel
+from beltdyn.system.machine_arrays import Tensioners
+
+
+@kernel
+def tensioner_place(
+    tensioners: Tensioners, number: int, q: float
+) -> tuple[float, float, float, float, float, float]:
+    """Center of the carried pulley, and its derivatives with respect to the coordinate of the tensioner.
+
+    On a line, c + q u; on an arm of length a, p + a (cos phi u + sin phi n) with phi = sense q and n the left normal
+    of u.
+
+    Parameters
+    ----------
+    tensioners
+        The tensioners.
+    number
+        Which one.
+    q
+        m or rad; zero at the nominal center, positive where it lengthens the path.
+
+    Returns
+    -------
+    x, y, dx, dy, ddx, ddy : float
+        Center, m, its first and its second derivative.
+    """
+    x, y = tensioners.origin[number]
+    ux, uy = tensioners.direction[number]
+    if not tensioners.rotary[number]:
+        return x + q * ux, y + q * uy, ux, uy, 0.0, 0.0
+    arm, sense = tensioners.arm[number], tensioners.sense[number]
+    cosine, sine = arm * cos(q), arm * sense * sin(q)
+    ax, ay = cosine * ux - sine * uy, cosine * uy + sine * ux
+    return x + ax, y + ay, -sense * ay, sense * ax, -ax, -ay
+
+
+@kernel
+def tensioner_force(
+    tensioners: Tensioners, number: int, q: float, rate: float
+) -> tuple[float, float, float, float, float]:
+    """Generalised force of a tensioner on its coordinate, without weight.
+
+    preload - k q - c v - dry friction + stops, where v is the rate of q.
+
+    Parameters
+    ----------
+    tensioners
+        The tensioners.
+    number
+        Which one.
+    q, rate
+        Its coordinate and the rate v, m and m/s, or rad and rad/s.
+
+    Returns
+    -------
+    force, by_position, by_rate, energy, loss : float
+        Force, N or N m, positive where it lengthens the path, and its derivatives; energy stored by spring and stops
+        since q = 0, J; power lost, W.
+    """
+    preload, stiffness, viscous = tensioners.preload[number], tensioners.rate[number], tensioners.viscous[number]
+    friction, friction_slope = dry_friction(
+        rate,
+        tensioners.tensioning_friction[number],
+        tensioners.yielding_friction[number],
+        tensioners.creep_speed[number],
+    )
+    force = preload - stiffness * q - viscous * rate - friction
+    energy = (0.5 * stiffness * q - preload) * q
+    by_position, by_rate = -stiffness, -viscous - friction_slope
+    loss = (viscous * rate + friction) * rate
+    if q > tensioners.upper[number]:
+        depth, side = q - tensioners.upper[number], 1.0
+    elif q < tensioners.lower[number]:
+        depth, side = tensioners.lower[number] - q, -1.0
+    else:
+        return force, by_position, by_rate, energy, loss
+    stop_stiffness, stop_damping = tensioners.stop_stiffness[number], tensioners.stop_damping[number]
+    spring, approach = stop_stiffness * depth, side * rate
+    stop = spring + stop_damping * approach
+    energy += 0.5 * spring * depth
+    if stop <= 0.0:
+        return force, by_position, by_rate, energy, loss - spring * approach
+    return (
+        force - side * stop,
+        by_position - stop_stiffness,
+        by_rate - stop_damping,
+        energy,
+        loss + stop_damping * rate * rate,
+    )
+
+
+@kernel
+def dry_friction(rate: float, tensioning: float, yielding: float, creep_speed: float) -> tuple[float, float]:
+    """Dry friction against the motion of a tensioner: f tanh(v / v_c), with an f for each sense.
+
+    Parameters
+    ----------
+    rate
+        v, m/s or rad/s, positive where the path gets longer.
+    tensioning, yielding
+        f for positive and for negative rates, N or N m.
+    creep_speed
+        v_c, m/s or rad/s, over which friction builds up.
+
+    Returns
+    -------
+    friction, slope : float
+        Friction, which has the sign of the rate, and its derivative, that for positive rates at zero.
+    """
+    largest = tensioning if rate >= 0.0 else yielding
+    rise = tanh(rate / creep_speed)
+    return largest * rise, largest * (1.0 - rise * rise) / creep_speed

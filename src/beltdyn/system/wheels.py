@@ -1,0 +1,54 @@
+"""Pulleys as contact meets them at a state: turning, and moving where a tensioner carries them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.kernel import kernel
+from beltdyn.system.arrays import NODE, System
+from beltdyn.system.tensioner import tensioner_place
+
+FloatArray = NDArray[np.float64]
+
+
+@kernel
+def tensioner_coordinate(system: System, tensioner: int) -> int:
+    """Place of a tensioner's coordinate in the state."""
+    return NODE * system.nodes + system.bodies.unknown.size - system.tensioners.pulley.size + tensioner
+
+
+@kernel
+def wheel_of(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> Wheel:
+    """A pulley at a state.
+
+    Parameters
+    ----------
+    system
+        The system.
+    pulley
+        Which one.
+    position, velocity : ndarray, shape (6 N + D,)
+        The state.
+    """
+    pulleys, carrier = system.pulleys, system.pulleys.carrier[pulley]
+    speed = velocity[NODE * system.nodes + pulley]
+    if carrier < 0:
+        return Wheel(pulleys.center[pulley, 0], pulleys.center[pulley, 1], pulleys.radius[pulley], speed, 0.0, 0.0)
+    at = tensioner_coordinate(system, carrier)
+    x, y, dx, dy, _, _ = tensioner_place(system.tensioners, carrier, position[at])
+    return Wheel(x, y, pulleys.radius[pulley], speed, velocity[at] * dx, velocity[at] * dy)
+
+
+@kernel
+def law_of(system: System, pulley: int) -> ContactLaw:
+    """Contact constants on a pulley."""
+    law = system.law
+    return ContactLaw(
+        law.stiffness,
+        law.damping,
+        system.pulleys.friction[pulley],
+        law.friction_law,
+        law.creep,
+        law.may_pull,
+        law.follow_zone,
+    )
