@@ -126,16 +126,16 @@ class Recording:
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners.pulley)
         coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
         stored = np.sum([values for name, values in seen.items() if name.endswith("_energy")], axis=0)
+        carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
         return {
             **seen,
+            **(carried if len(system.tensioners.pulley) else {}),
             **dict(zip(POWERS, chunk.work.T, strict=True)),
             "time": chunk.time,
             "pulley_speed": velocity[:, nodes : nodes + pulleys],
             "pulley_angle": position[:, nodes : nodes + pulleys],
             "shaft_speed": velocity[:, shafts],
             "shaft_angle": position[:, shafts],
-            "tensioner_position": position[:, tensioners:],
-            "tensioner_speed": velocity[:, tensioners:],
             "node_position": coordinates[..., :2],
             "nodal_coordinates": coordinates,
             "nodal_velocities": velocity[:, :nodes].reshape(coordinates.shape),

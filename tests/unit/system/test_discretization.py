@@ -158,5 +158,5 @@ def forces(system: System, position: FloatArray) -> FloatArray:
         equations.matrix,
         equations.loads,
     )
-    assert np.max(equations.loads.penalty) > 0.0
+    assert np.max(equations.loads.stored) > 0.0
     return np.asarray(equations.matrix.node_side).ravel()

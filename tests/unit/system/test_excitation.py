@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Constant, CosineRamp, CosineRampPublished, Drive, Profile, Pulley, Ramp, Table
-from beltdyn.system.arrays import Pulleys
+from beltdyn.system.machine_arrays import Profiles
 from beltdyn.system.build import belt_system
 from beltdyn.system.excitation import prescribe, profile_value
 
@@ -23,11 +23,11 @@ ROUNDING = 1e-13
 
 
 @pytest.fixture(scope="module")
-def pulleys(drive: Drive) -> Pulleys:
+def profiles(drive: Drive) -> Profiles:
     """One pulley of prescribed speed for each profile, and a free one with its torque."""
     prescribed = [Pulley(name=k, center=(0, 0), radius=1, speed=p) for k, p in PROFILES.items()]
     free = Pulley(name="free", center=(0, 0), radius=1, inertia=2.0, torque=PROFILES["ramp"])
-    return belt_system(drive.belt, [*prescribed, free], drive.contact).pulleys
+    return belt_system(drive.belt, [*prescribed, free], drive.contact).profiles
 
 
 @pytest.fixture(scope="module", params=list(enumerate(PROFILES)), ids=list(PROFILES))
@@ -37,32 +37,32 @@ def case(request: pytest.FixtureRequest) -> tuple[int, Profile]:
 
 
 @pytest.mark.parametrize("time", [-1.0, 0.0, 0.05, 0.05 + 1e-9, 0.1, 0.2, 0.33, 0.6 - 1e-9, 0.6, 0.6 + 1e-9, 5.0])
-def test_value(pulleys: Pulleys, case: tuple[int, Profile], time: float) -> None:
+def test_value(profiles: Profiles, case: tuple[int, Profile], time: float) -> None:
     number, profile = case
-    assert profile_value(pulleys, number, time)[0] == pytest.approx(float(profile.at(time)), abs=ROUNDING)
+    assert profile_value(profiles, number, time)[0] == pytest.approx(float(profile.at(time)), abs=ROUNDING)
 
 
 @pytest.mark.parametrize("time", [-1.0, 0.02, 0.1, 0.33, 0.59, 5.0])
-def test_rate(pulleys: Pulleys, case: tuple[int, Profile], time: float) -> None:
+def test_rate(profiles: Profiles, case: tuple[int, Profile], time: float) -> None:
     number, profile = case
     step = 1e-5
     difference = (profile.at(time + step) - profile.at(time - step)) / (2 * step)
-    assert profile_value(pulleys, number, time)[1] == pytest.approx(float(difference), abs=1e-7)  # truncation
+    assert profile_value(profiles, number, time)[1] == pytest.approx(float(difference), abs=1e-7)  # truncation
 
 
 @pytest.mark.parametrize("time", np.linspace(0.0, 1.0, 21))
-def test_equations_28_and_29_as_printed(pulleys: Pulleys, time: float) -> None:
+def test_equations_28_and_29_as_printed(profiles: Profiles, time: float) -> None:
     ramp = 0.0 if time <= START else VALUE * (time - START) / (END - START) if time <= END else VALUE
     cosine = 0.0 if time <= START else VALUE / 2 * (1 - cos(pi * time / END)) if time <= END else VALUE
     numbers = list(PROFILES)
-    assert profile_value(pulleys, numbers.index("ramp"), time)[0] == pytest.approx(ramp, abs=ROUNDING)
+    assert profile_value(profiles, numbers.index("ramp"), time)[0] == pytest.approx(ramp, abs=ROUNDING)
     published = numbers.index("cosine_ramp_published")
-    assert profile_value(pulleys, published, time)[0] == pytest.approx(cosine, abs=ROUNDING)
+    assert profile_value(profiles, published, time)[0] == pytest.approx(cosine, abs=ROUNDING)
 
 
-def test_equation_29_jumps_by_1_7_percent_after_its_start(pulleys: Pulleys) -> None:
+def test_equation_29_jumps_by_1_7_percent_after_its_start(profiles: Profiles) -> None:
     published = list(PROFILES).index("cosine_ramp_published")
-    before, after = (profile_value(pulleys, published, t)[0] for t in (START, np.nextafter(START, 1.0)))
+    before, after = (profile_value(profiles, published, t)[0] for t in (START, np.nextafter(START, 1.0)))
     assert before == 0.0
     assert after / VALUE == pytest.approx(0.5 * (1 - cos(pi / 12)), rel=1e-12)
     assert after / VALUE == pytest.approx(0.017, abs=5e-4)  # the three digits of the issue
@@ -70,9 +70,11 @@ def test_equation_29_jumps_by_1_7_percent_after_its_start(pulleys: Pulleys) -> N
 
 def test_prescribe_writes_prescribed_pulleys_only(drive: Drive) -> None:
     system = belt_system(drive.belt, drive.pulleys, drive.contact, "shared_node")
-    velocity, acceleration = np.full((2, 6 * system.nodes + 2), 7.0)
-    prescribe(system, 0.325, velocity, acceleration)
+    position, velocity, acceleration = np.full((3, 6 * system.nodes + 2), 7.0)
+    prescribe(system, 0.325, position, velocity, acceleration)
+    assert position[-2:] == pytest.approx([6.0 * 0.275 / 2.0, 7.0])
     assert velocity[-2:] == pytest.approx([6.0, 7.0])
     assert acceleration[-2:] == pytest.approx([12.0 / 0.55, 7.0])
+    assert np.all(position[:-2] == 7.0)
     assert np.all(velocity[:-2] == 7.0)
     assert np.all(acceleration[:-2] == 7.0)

@@ -87,7 +87,7 @@ def test_spinning_pulleys_have_kinetic_energy(system: System, moving: State) -> 
     still, turning = 0.0 * moving.velocity, 0.0 * moving.velocity
     turning[-1] = 5.0
     energies = [float(see(system, moving.position, velocity).kinetic_energy[0]) for velocity in (still, turning)]
-    assert energies == pytest.approx([0.0, 0.5 * system.pulleys.inertia[1] * 25.0])
+    assert energies == pytest.approx([0.0, 0.5 * system.bodies.inertia[1] * 25.0])
 
 
 @pytest.fixture(scope="module")
