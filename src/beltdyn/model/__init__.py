@@ -4,11 +4,14 @@ from beltdyn.model.advice import advise
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
+from beltdyn.model.hub import FrictionClutch, Isolator, OneWayClutch
 from beltdyn.model.installation import Installation, install, layer_lengths
+from beltdyn.model.load import LoadTable, Motor, Resistance
 from beltdyn.model.path import Path
-from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Table
+from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Harmonic, Profile, Ramp, Step, Table
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.simulation import Simulation
+from beltdyn.model.tensioner import FixedTensioner, MovingTensioner, RotaryTensioner, SlidingTensioner
 from beltdyn.model.toml_reader import json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
 
@@ -19,12 +22,24 @@ __all__ = [
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
+    "FixedTensioner",
+    "FrictionClutch",
+    "Harmonic",
     "Installation",
+    "Isolator",
+    "LoadTable",
+    "Motor",
+    "MovingTensioner",
+    "OneWayClutch",
     "Path",
     "Profile",
     "Pulley",
     "Ramp",
+    "Resistance",
+    "RotaryTensioner",
     "Simulation",
+    "SlidingTensioner",
+    "Step",
     "Table",
     "advise",
     "dumps",

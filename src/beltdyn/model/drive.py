@@ -12,7 +12,9 @@ from beltdyn.model.layout import lay_path
 from beltdyn.model.part import Part
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
+from beltdyn.model.quantity import Acceleration
 from beltdyn.model.simulation import Simulation
+from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, Tensioner, path_gradient
 from beltdyn.model.toml_writer import dumps
 
 _LARGEST_STRAIN = 0.5
@@ -21,14 +23,18 @@ _LARGEST_STRAIN = 0.5
 class Drive(Part):
     """A belt drive, complete and consistent.
 
-    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact` and
-    `simulation`, each a part or a mapping of its arguments.
+    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`
+    (a list) and `simulation`, each a part or a mapping of its arguments.
     """
 
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
     contact: Contact = Field(description="the group [contact]")
+    tensioners: tuple[Tensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
     simulation: Simulation = Field(description="the group [simulation]")
+    gravity: tuple[Acceleration, Acceleration] = Field(
+        (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
+    )
     _source: str | None = PrivateAttr(None)
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
@@ -62,10 +68,39 @@ class Drive(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _tensioners_fit_the_pulleys(self) -> Self:
+        names, carried = [pulley.name for pulley in self.pulleys], [item.pulley for item in self.tensioners]
+        for number, name in enumerate(carried, 1):
+            if name not in names:
+                raise ValueError(
+                    f'tensioner[{number}].pulley = "{name}" is not the name of a pulley. '
+                    f"Known here: {', '.join(names)}."
+                )
+            if carried.count(name) > 1:
+                raise ValueError(
+                    f'pulley "{name}" is carried by {carried.count(name)} tensioners: one can carry it. '
+                    "Remove the others."
+                )
+        for item in self.tensioners:
+            if isinstance(item, MovingTensioner):
+                item.leverage(*path_gradient(self.path, self.carried(item)))
+        return self
+
     @cached_property
     def path(self) -> Path:
         """The path of the belt around its pulleys."""
         return lay_path(self.pulleys)
+
+    def carried(self, tensioner: AnyTensioner) -> int:
+        """Tell the number of the pulley that a tensioner carries."""
+        return [pulley.name for pulley in self.pulleys].index(tensioner.pulley)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants of kinks and jumps in what is prescribed over time, s, ascending."""
+        profiles = [profile for pulley in self.pulleys for profile in pulley.profiles]
+        return tuple(sorted({float(t) for profile in profiles for t in profile.breakpoints()}))
 
     @property
     def text(self) -> str:

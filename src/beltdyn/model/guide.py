@@ -55,6 +55,10 @@ class Guide:
         """List the keys that are known at a location."""
         return list(self.locate(location)[1].get("properties", {}))
 
+    def kinds(self, location: tuple[int | str, ...]) -> list[str]:
+        """List the kinds of what may stand at a location."""
+        return list(self.locate(location)[1].get("discriminator", {}).get("mapping", {}))
+
     def _resolve(self, schema: dict[str, Any]) -> dict[str, Any]:
         """Replace a reference by what it refers to, and an optional value by the value."""
         if "$ref" in schema:

@@ -1,8 +1,7 @@
-"""Prescribed speeds and applied torques over time."""
+"""Prescribed speeds, applied torques and schedules over time, and their harmonics over the angle."""
 
 from abc import abstractmethod
-from collections.abc import Mapping
-from typing import Annotated, Any, Generic, Literal, Self
+from typing import Annotated, Any, Generic, Literal, Self, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,15 +9,15 @@ from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 from typing_extensions import TypeVar
 
 from beltdyn.model.part import Part
-from beltdyn.model.quantity import AngularSpeed, Time, Torque
-from beltdyn.model.table_file import read_table
+from beltdyn.model.quantity import Angle, AngularSpeed, Ratio, Time, Torque, quantity
+from beltdyn.model.table_file import check_points, describe_file, take_file
 
 FloatArray = NDArray[np.float64]
 Value = TypeVar("Value", bound=float, default=float)
 
 
 class Profile(Part, Generic[Value]):
-    """A value over time: rad/s for a speed, N m for a torque, and s for times."""
+    """A value over time: rad/s for a speed, N m for a torque, 1 for a factor; times are in s."""
 
     @classmethod
     def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
@@ -72,6 +71,23 @@ class Constant(Profile[Value], Generic[Value]):
     def segments(self) -> tuple[FloatArray, FloatArray]:
         """One piece: value(t) = value."""
         return _pieces((-np.inf, self.value, 0, 0, 0, 0))
+
+
+class Step(Profile[Value], Generic[Value]):
+    """The value `before` until `time`, and `value` after it."""
+
+    kind: Literal["step"] = Field("step", description="the kind of profile")
+    time: Time = Field(description="the instant of the step, in s")
+    before: Value = Field(cast(Value, 0.0), description="the value before the step")
+    value: Value = Field(description="the value after the step")
+
+    def segments(self) -> tuple[FloatArray, FloatArray]:
+        """Two pieces: before, then value."""
+        return _pieces((-np.inf, self.before), (self.time, self.value))
+
+    def breakpoints(self) -> tuple[float, ...]:
+        """The instant of the step, s."""
+        return (self.time,)
 
 
 class _Rise(Profile[Value], Generic[Value]):
@@ -139,7 +155,9 @@ class Table(Profile[Value], Generic[Value]):
     table is made: a relative path starts at the folder of the drive file.
     """
 
-    model_config = ConfigDict(json_schema_extra=lambda schema: _describe_file(schema))
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: describe_file(schema, "times", "values", "time in s and value in SI units")
+    )
 
     kind: Literal["table"] = Field("table", description="the kind of profile")
     times: tuple[Time, ...] = Field(min_length=2, description="the instants of the points, in s")
@@ -148,23 +166,11 @@ class Table(Profile[Value], Generic[Value]):
     @model_validator(mode="before")
     @classmethod
     def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
-        if not isinstance(data, Mapping) or "file" not in data:
-            return data
-        if "times" in data or "values" in data:
-            raise ValueError("file excludes times and values: keep one of the two forms")
-        times, values = read_table(data["file"], (info.context or {}).get("base"))
-        others = {key: value for key, value in data.items() if key != "file"}
-        return others | {"times": times, "values": values}
+        return take_file(data, info, "times", "values")
 
     @model_validator(mode="after")
     def _is_a_function_of_time(self) -> Self:
-        if len(self.times) != len(self.values):
-            raise ValueError(
-                f"times has {len(self.times)} numbers and values has {len(self.values)}: each time needs one value"
-            )
-        for earlier, later in zip(self.times, self.times[1:], strict=False):
-            if later <= earlier:
-                raise ValueError(f"times must increase, but {later:g} follows {earlier:g}. Sort the points by time")
+        check_points("times", self.times, "values", self.values)
         return self
 
     def segments(self) -> tuple[FloatArray, FloatArray]:
@@ -182,18 +188,21 @@ def _pieces(*rows: tuple[Any, ...]) -> tuple[FloatArray, FloatArray]:
     return table[:, 0], table[:, 1:]
 
 
-def _describe_file(schema: dict[str, Any]) -> None:
-    """Add the key `file`, which is replaced by `times` and `values` on reading, to the JSON schema."""
-    schema["properties"]["file"] = {
-        "type": "string",
-        "description": "a CSV file of two columns, time in s and value in SI units",
-    }
-    schema.pop("required", None)
-    schema["oneOf"] = [{"required": ["file"]}, {"required": ["times", "values"]}]
+class Harmonic(Part):
+    """A wave over the angle theta of a shaft: amplitude cos(order theta + phase)."""
+
+    order: Ratio = Field(gt=0, description="the number of waves in a turn of the shaft, such as 2 or 0.5")
+    amplitude: Ratio = Field(description="the amplitude, over the value without harmonics")
+    phase: Angle = Field(0.0, description="the phase at the angle zero, in rad")
 
 
+Factor = Annotated[float, quantity(""), Field(ge=0, le=1)]
+Schedule = Annotated[
+    Constant[Factor] | Step[Factor] | Ramp[Factor] | CosineRamp[Factor] | Table[Factor], Field(discriminator="kind")
+]
 SpeedProfile = Annotated[
     Constant[AngularSpeed]
+    | Step[AngularSpeed]
     | Ramp[AngularSpeed]
     | CosineRamp[AngularSpeed]
     | CosineRampPublished[AngularSpeed]
@@ -201,6 +210,6 @@ SpeedProfile = Annotated[
     Field(discriminator="kind"),
 ]
 TorqueProfile = Annotated[
-    Constant[Torque] | Ramp[Torque] | CosineRamp[Torque] | CosineRampPublished[Torque] | Table[Torque],
+    Constant[Torque] | Step[Torque] | Ramp[Torque] | CosineRamp[Torque] | CosineRampPublished[Torque] | Table[Torque],
     Field(discriminator="kind"),
 ]

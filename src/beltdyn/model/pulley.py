@@ -1,30 +1,41 @@
-"""A pulley: driven with a prescribed speed, or turning freely."""
+"""A pulley: driven with a prescribed speed, or turning freely, with what is behind its rim and on its shaft."""
 
 from typing import Annotated, Self
 
 from pydantic import Field, StringConstraints, model_validator
 
+from beltdyn.model.hub import AnyHubLink
+from beltdyn.model.load import AnyLoad
 from beltdyn.model.part import Part
-from beltdyn.model.profile import SpeedProfile, TorqueProfile
-from beltdyn.model.quantity import Coordinate, Inertia, Length
+from beltdyn.model.profile import Harmonic, Profile, SpeedProfile, TorqueProfile
+from beltdyn.model.quantity import Coordinate, Inertia, Length, Mass
 
 Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]
 
 
 class Pulley(Part):
-    """A round pulley whose center stays where it is.
+    """A round pulley, whose center stays where it is unless a tensioner carries it.
 
-    With `speed` its motion is prescribed; without, it turns freely with its `inertia` under the belt and
-    `torque`. Speeds and torques are positive counter-clockwise, and `torque` is what is applied to the pulley:
-    a load that opposes a counter-clockwise motion is negative.
+    With `speed` the motion of its shaft is prescribed; without, it turns freely with its `inertia` under the belt,
+    `torque` and its loads. The shaft is the rim itself, or the last body of the hub chain behind the rim. Speeds and
+    torques are positive counter-clockwise, and `torque` is what is applied to the shaft: a load that opposes a
+    counter-clockwise motion is negative.
     """
 
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
     radius: Length = Field(gt=0, description="the radius at which the belt's centerline runs, in m")
-    speed: SpeedProfile | None = Field(None, description="the prescribed speed over time, in rad/s")
-    inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia about the shaft, in kg*m^2")
-    torque: TorqueProfile | None = Field(None, description="the torque applied to the pulley over time, in N*m")
+    speed: SpeedProfile | None = Field(None, description="the prescribed speed of the shaft over time, in rad/s")
+    harmonics: tuple[Harmonic, ...] = Field(
+        (), description="the harmonics of the prescribed speed, over the angle of its mean"
+    )
+    mass: Mass = Field(0.0, ge=0, description="the mass of the pulley, which moves with a tensioner, in kg")
+    inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia about the shaft, of the rim, in kg*m^2")
+    torque: TorqueProfile | None = Field(None, description="the torque applied to the shaft over time, in N*m")
+    load: tuple[AnyLoad, ...] = Field((), description="the loads and motors on the shaft, groups [[pulley.load]]")
+    hub: tuple[AnyHubLink, ...] = Field(
+        (), description="the links of the hub chain, from the rim to the shaft, groups [[pulley.hub]]"
+    )
 
     @model_validator(mode="after")
     def _is_prescribed_or_free(self) -> Self:
@@ -33,6 +44,13 @@ class Pulley(Part):
                 "speed and torque exclude each other: a pulley of prescribed speed takes whatever torque it needs. "
                 "Remove one of them"
             )
+        if self.speed is not None and self.load:
+            raise ValueError(
+                "speed and load exclude each other: a shaft of prescribed speed takes whatever torque it needs. "
+                "Remove one of them"
+            )
+        if self.speed is None and self.harmonics:
+            raise ValueError("has harmonics but no speed. Give speed, the mean, or remove harmonics")
         if self.speed is None and self.inertia == 0:
             raise ValueError(
                 "has neither speed nor inertia. Give speed if its motion is prescribed, "
@@ -40,7 +58,35 @@ class Pulley(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _bodies_have_inertia(self) -> Self:
+        if self.hub and self.inertia == 0:
+            raise ValueError("has a hub chain but no inertia: its rim turns freely. Give an inertia above zero")
+        free = self.hub[:-1] if self.prescribed else self.hub
+        for number, link in enumerate(free, 1):
+            if link.inertia == 0:
+                raise ValueError(
+                    f"hub[{number}] has no inertia: the body behind it turns freely. Give an inertia above zero"
+                )
+        return self
+
     @property
     def prescribed(self) -> bool:
-        """Whether the motion is prescribed."""
+        """Whether the motion of the shaft is prescribed."""
         return self.speed is not None
+
+    @property
+    def turning(self) -> float:
+        """Sense in which an advancing belt turns the pulley: +1, counter-clockwise."""
+        return 1.0
+
+    @property
+    def profiles(self) -> tuple[Profile, ...]:
+        """Everything about the pulley that is prescribed over time."""
+        given = (self.speed, self.torque, *self.schedules)
+        return tuple(profile for profile in given if profile is not None)
+
+    @property
+    def schedules(self) -> tuple[Profile | None, ...]:
+        """The schedules of the loads, then of the links of the hub chain; None where there is none."""
+        return (*(item.schedule for item in self.load), *(getattr(link, "schedule", None) for link in self.hub))

@@ -1,9 +1,91 @@
-"""Points of a profile from a CSV file of two columns."""
+"""Points of a table: from a CSV file of two columns, and what they must obey."""
 
 import csv
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationInfo
 
 from beltdyn.model.messages import reason
+
+
+def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
+    """Replace the key ``file`` of a table by the two columns of that CSV file.
+
+    Parameters
+    ----------
+    data : object
+        What a user gave for a table; returned as it is if it names no file.
+    info : ValidationInfo
+        Its context may hold ``base``, the folder that a relative path starts from.
+    first, second : str
+        The keys of the columns.
+
+    Returns
+    -------
+    object
+        The same table with its columns.
+
+    Raises
+    ------
+    ValueError
+        If there are columns beside the file, or the file cannot be read.
+    """
+    if not isinstance(data, Mapping) or "file" not in data:
+        return data
+    if first in data or second in data:
+        raise ValueError(f"file excludes {first} and {second}: keep one of the two forms")
+    columns = read_table(data["file"], (info.context or {}).get("base"))
+    others = {key: value for key, value in data.items() if key != "file"}
+    return others | dict(zip((first, second), columns, strict=True))
+
+
+def check_points(first: str, arguments: Sequence[float], second: str, values: Sequence[float]) -> None:
+    """Check that the points of a table are a function.
+
+    Parameters
+    ----------
+    first, second : str
+        The keys of the columns.
+    arguments, values : sequence of float
+        The columns.
+
+    Raises
+    ------
+    ValueError
+        If the columns differ in length, or the first one does not increase.
+    """
+    if len(arguments) != len(values):
+        raise ValueError(
+            f"{first} has {len(arguments)} numbers and {second} has {len(values)}: each {first[:-1]} needs one "
+            f"{second[:-1]}"
+        )
+    for earlier, later in pairwise(arguments):
+        if later <= earlier:
+            raise ValueError(
+                f"{first} must increase, but {later:g} follows {earlier:g}. Sort the points by {first[:-1]}"
+            )
+
+
+def describe_file(schema: dict[str, Any], first: str, second: str, content: str) -> None:
+    """Add the key ``file``, which is replaced by two columns on reading, to the JSON schema of a table.
+
+    Parameters
+    ----------
+    schema : dict
+        Changed in place.
+    first, second : str
+        The keys of the columns.
+    content : str
+        What the columns of the file hold.
+    """
+    schema["properties"]["file"] = {"type": "string", "description": f"a CSV file of two columns, {content}"}
+    others = [key for key in schema.pop("required", []) if key not in (first, second)]
+    if others:
+        schema["required"] = others
+    schema["oneOf"] = [{"required": ["file"]}, {"required": [first, second]}]
 
 
 def read_table(name: object, base: Path | None) -> tuple[list[float], list[float]]:

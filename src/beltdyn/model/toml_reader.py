@@ -78,10 +78,11 @@ def _parse(text: str) -> dict[str, Any]:
         ) from error
 
 
-def _refers_to_files(data: dict[str, Any]) -> bool:
+def _refers_to_files(data: Any) -> bool:
     """Tell whether a text is of no use without the CSV files it names."""
-    profiles = [pulley.get(key) for pulley in data["pulley"] for key in ("speed", "torque")]
-    return any(isinstance(profile, dict) and "file" in profile for profile in profiles)
+    if isinstance(data, dict):
+        return "file" in data or any(_refers_to_files(value) for value in data.values())
+    return isinstance(data, list) and any(_refers_to_files(value) for value in data)
 
 
 def json_schema() -> dict[str, Any]:

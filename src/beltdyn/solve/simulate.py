@@ -94,9 +94,10 @@ def _at_rest(drive: Drive, system: System) -> State:
     On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
     then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
     """
-    pulleys = system.pulleys
-    depth = min(np.min(install(drive).penetrations), _DEEPEST_START * np.min(pulleys.radius))
-    return find_equilibrium(system, laid(system, BeltPath(pulleys.center, pulleys.radius - depth))).state
+    path, radii = drive.path, system.pulleys.radius
+    depth = min(np.min(install(drive).penetrations), _DEEPEST_START * np.min(radii))
+    sunk = BeltPath(path.centers, np.copysign(radii - depth, path.radii))
+    return find_equilibrium(system, laid(system, sunk)).state
 
 
 def choose_integrator(drive: Drive) -> Integrator:

@@ -190,9 +190,7 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
     if settings.duration - times[-1] > 1e-9 * settings.duration:
         times = np.append(times, settings.duration)
     times[-1] = settings.duration
-    profiles = [profile for pulley in drive.pulleys for profile in (pulley.speed, pulley.torque) if profile]
-    breakpoints = [t for profile in profiles for t in profile.breakpoints()]
-    return Task(system, start, times, breakpoints, velocity_scale(drive), statistics)
+    return Task(system, start, times, drive.breakpoints, velocity_scale(drive), statistics)
 
 
 def velocity_scale(drive: Drive) -> float:

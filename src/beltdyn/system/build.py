@@ -8,10 +8,19 @@ import numpy as np
 from beltdyn.ancf.section import Section
 from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
 from beltdyn.errors import ModelError
-from beltdyn.model import Belt, Contact, Drive, Pulley
+from beltdyn.model import Belt, Contact, Drive, Path, Pulley
+from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
-from beltdyn.system.arrays import NODE, Pulleys, Quadrature, Supports, System
+from beltdyn.system.arrays import NODE, Bodies, Pulleys, Quadrature, Supports, System
+from beltdyn.system.build_machines import (
+    body_inertias,
+    carried_masses,
+    machine_arrays,
+    shaft_bodies,
+    tensioner_inertias,
+)
 from beltdyn.system.discretization import discretize
+from beltdyn.system.machine_arrays import Tensioners
 
 _REDUCED = 3
 """Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
@@ -33,7 +42,15 @@ def drive_system(drive: Drive) -> System:
     System
         Its belt, closed as ``drive.simulation.joint`` says, and its pulleys.
     """
-    return belt_system(drive.belt, drive.pulleys, drive.contact, drive.simulation.joint)
+    return belt_system(
+        drive.belt,
+        drive.pulleys,
+        drive.contact,
+        drive.simulation.joint,
+        tensioners=drive.tensioners,
+        path=drive.path,
+        gravity=drive.gravity,
+    )
 
 
 def belt_system(
@@ -42,6 +59,9 @@ def belt_system(
     contact: Contact | None = None,
     closure: Closure = "open",
     *,
+    tensioners: Sequence[AnyTensioner] = (),
+    path: Path | None = None,
+    gravity: tuple[float, float] = (0.0, 0.0),
     fixed: Sequence[tuple[int, int]] = (),
     forces: Sequence[tuple[int, tuple[float, float]]] = (),
     moments: Sequence[tuple[int, float]] = (),
@@ -58,6 +78,12 @@ def belt_system(
         Contact constants; needed where there are pulleys.
     closure
         How the ends meet; those of a chain of links share a node, since nothing moves the end of an open one.
+    tensioners
+        What carries some of the pulleys.
+    path
+        The path around the pulleys; needed where there are tensioners.
+    gravity
+        Acceleration of gravity, m/s^2.
     fixed
         Pairs (node, coordinate) that do not move; coordinates 0 to 5 are r, r_x, r_y (Eq. 6).
     forces
@@ -86,6 +112,9 @@ def belt_system(
     mesh = discretize(belt, section)
     elements = mesh.length.size
     nodes = elements if closure == "shared_node" else elements + 1
+    radii = [pulley.radius for pulley in pulleys]
+    frictions = [contact.friction for _ in pulleys] if contact else []
+    machines = machine_arrays(pulleys, tensioners, path)
     return System(
         nodes=nodes,
         closed=closure == "shared_node",
@@ -95,8 +124,9 @@ def belt_system(
         elastic=_elastic_points(belt),
         law=_contact_law(contact),
         contact=contact_points(contact),
-        pulleys=_pulley_arrays(pulleys, contact),
-        **_provisional(pulleys),
+        pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
+        bodies=_bodies(pulleys, radii, tensioners, machines.tensioners, gravity),
+        **machines._asdict(),
         supports=_supports(nodes, fixed, forces, moments),
     )
 
@@ -172,37 +202,39 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
     )
 
 
-def _provisional(pulleys):
-    from beltdyn.system.machine_arrays import Couplings, Profiles, Tensioners, Torques
-    from beltdyn.system.arrays import Bodies
-    first, starts, segments = [0], [np.empty(0)], [np.empty((0, 5))]
-    for pulley in pulleys:
-        profile = pulley.speed if pulley.prescribed else pulley.torque
-        start, coefficients = profile.segments() if profile else (np.array([-np.inf]), np.zeros((1, 5)))
-        first.append(first[-1] + len(start))
-        starts.append(start)
-        segments.append(coefficients)
-    n = len(pulleys)
-    starts, segments = np.concatenate(starts), np.concatenate(segments)
-    zi = lambda k: np.zeros(k, dtype=np.int64)
-    zf = lambda *k: np.zeros(k)
-    profiles = Profiles(np.array(first, dtype=np.int64), starts, segments, zf(len(starts)), zi(n + 1), zf(0, 3))
-    torques = Torques(zi(n + 1), zi(0), zi(0), zf(0, 4), zi(1), zf(0, 2), zi(1), zf(0, 3))
-    couplings = Couplings(zi(0), zi(0), zi(0), zf(0, 3), zi(0))
-    tensioners = Tensioners(zi(0), np.zeros(0, dtype=bool), zf(0, 2), zf(0, 2), *[zf(0) for _ in range(12)])
-    free = np.array([not pulley.prescribed for pulley in pulleys], dtype=bool)
-    bodies = Bodies(np.array([p.inertia for p in pulleys], dtype=float), np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
-      np.array([p.radius for p in pulleys], dtype=float), zf(0, 2))
-    return dict(profiles=profiles, torques=torques, couplings=couplings, tensioners=tensioners, bodies=bodies)
-
-
-def _pulley_arrays(pulleys: Sequence[Pulley], contact) -> Pulleys:
+def _pulley_arrays(
+    pulleys: Sequence[Pulley], radii: Sequence[float], frictions: Sequence[float], tensioners: Tensioners
+) -> Pulleys:
+    """The pulleys, with their shafts and carriers."""
+    carrier = np.full(len(pulleys), -1, dtype=np.int64)
+    carrier[tensioners.pulley] = np.arange(tensioners.pulley.size)
     return Pulleys(
         center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
-        radius=np.array([pulley.radius for pulley in pulleys], dtype=float),
-        friction=np.array([contact.friction for _ in pulleys], dtype=float),
-        shaft=np.arange(len(pulleys), dtype=np.int64),
-        carrier=np.full(len(pulleys), -1, dtype=np.int64),
+        radius=np.array(radii, dtype=float),
+        friction=np.array(frictions, dtype=float),
+        shaft=shaft_bodies(pulleys),
+        carrier=carrier,
+    )
+
+
+def _bodies(
+    pulleys: Sequence[Pulley],
+    radii: Sequence[float],
+    carriers: Sequence[AnyTensioner],
+    tensioners: Tensioners,
+    gravity: tuple[float, float],
+) -> Bodies:
+    """Inertia, unknowns and weight of rims, hub chains and tensioners."""
+    inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, carriers)])
+    free = np.ones(inertia.size, dtype=bool)
+    free[[shaft for shaft, pulley in zip(shaft_bodies(pulleys), pulleys, strict=True) if pulley.prescribed]] = False
+    chains = [radius for radius, pulley in zip(radii, pulleys, strict=True) for _ in pulley.hub]
+    arms = np.where(tensioners.rotary, tensioners.arm, 1.0)
+    return Bodies(
+        inertia=inertia,
+        unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
+        reach=np.concatenate([radii, chains, arms]),
+        weight=carried_masses(pulleys, carriers)[:, None] * np.array(gravity),
     )
 
 

@@ -4,9 +4,17 @@ import numpy as np
 import pytest
 
 from beltdyn.solve.energy import EnergyAccount
+from beltdyn.system.arrays import POWERS
 
 STORED = np.array([10.0, 14.0, 13.0, 11.0])
-WORK = np.array([[0.0, 0, 0, 0], [8.0, -1.0, 2.0, 0.5], [9.0, -2.0, 3.0, 1.0], [7.0, -1.0, 4.0, 1.1]])
+WORK = np.array(
+    [
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [8.0, -1.0, 1.0, 0.5, 0.4, 0.3, 0.3],
+        [9.0, -2.0, 2.0, 1.0, 0.4, 0.3, 0.3],
+        [7.0, -1.0, 3.0, 1.1, 0.4, 0.3, 0.3],
+    ]
+)
 ERROR = [0.0, -0.5, 0.0, 0.1]
 PUT_IN = [10.0, 19.0, 21.0, 21.0]
 
@@ -23,4 +31,4 @@ def test_chunks_do_not_matter(cut: int) -> None:
 
 
 def test_nothing_put_in() -> None:
-    np.testing.assert_array_equal(EnergyAccount().closure(np.zeros(3), np.zeros((3, 4))), 0.0)
+    np.testing.assert_array_equal(EnergyAccount().closure(np.zeros(3), np.zeros((3, len(POWERS)))), 0.0)

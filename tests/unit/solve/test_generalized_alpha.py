@@ -8,7 +8,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL, advance
 from beltdyn.solve.march import FAILED, STEPS, March, Outputs, Settings, empty_outputs, new_march, restart
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
@@ -42,7 +42,7 @@ def test_outputs_within_steps_are_exact_for_constant_acceleration(spinning: Syst
     position, velocity = chunk.interpolate()
     np.testing.assert_allclose(position[:, -1], 0.5 * ACCELERATION * outputs.time**2, atol=ROUNDING)
     np.testing.assert_allclose(velocity[:, -1], ACCELERATION * outputs.time, atol=ROUNDING)
-    works = np.zeros((len(times), 4))
+    works = np.zeros((len(times), len(POWERS)))
     works[:, 1] = 2.0 * 0.5 * ACCELERATION * outputs.time**2  # torque times angle
     np.testing.assert_allclose(outputs.work, works, atol=ROUNDING)
 

@@ -11,7 +11,7 @@ from beltdyn.model import Drive
 from beltdyn.results import open_run
 from beltdyn.solve.recording import Recording, result_layout
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -25,7 +25,7 @@ def system(change: Change) -> System:
 
 def chunk(change: Change, system: System, time: float) -> Chunk:
     state = laid(system, change().path)
-    return Chunk.at(np.array([time]), state.position[None], state.velocity[None], np.zeros((1, 4)), np.array([1e-4]))
+    return Chunk.at(np.array([time]), state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), np.array([1e-4]))
 
 
 @pytest.mark.parametrize(

@@ -47,11 +47,15 @@ def test_the_elements_make_up_the_belt(drive: Drive) -> None:
 
 
 def test_pulleys(drive: Drive) -> None:
-    pulleys = drive_system(drive).pulleys
+    system = drive_system(drive)
+    pulleys = system.pulleys
     np.testing.assert_array_equal(pulleys.center, [pulley.center for pulley in drive.pulleys])
     np.testing.assert_array_equal(pulleys.radius, [pulley.radius for pulley in drive.pulleys])
-    np.testing.assert_array_equal(pulleys.unknown, [-1, 0])
-    assert pulleys.profile_first[-1] == len(pulleys.profile) == len(pulleys.profile_start)
+    np.testing.assert_array_equal(pulleys.friction, [drive.contact.friction] * 2)
+    np.testing.assert_array_equal(pulleys.shaft, [0, 1])
+    np.testing.assert_array_equal(pulleys.carrier, [-1, -1])
+    np.testing.assert_array_equal(system.bodies.unknown, [-1, 0])
+    np.testing.assert_array_equal(system.bodies.reach, pulleys.radius)
 
 
 def test_supports_and_loads(drive: Drive) -> None:

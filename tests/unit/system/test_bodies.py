@@ -1,0 +1,178 @@
+"""A drive with hub chains, loads and a tensioner: its tangent, the balance of its forces, its bodies as arrays."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from beltdyn.model import Drive, Path
+from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.assembly import assemble, border_size
+from beltdyn.system.build import drive_system
+from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State, laid
+
+FloatArray = NDArray[np.float64]
+Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
+
+COMMON: dict[str, Any] = {
+    "pulley": "idler",
+    "tensioning_friction": 3.0,
+    "yielding_friction": 5.0,
+    "stops": (-1e-4, 0.3),
+    "stop_stiffness": 1e4,
+    "stop_damping": 10.0,
+}
+ROTARY = COMMON | {
+    "kind": "rotary",
+    "pivot": (0.35, 0.05),
+    "inertia": 0.01,
+    "mass": 0.4,
+    "preload": 4.0,
+    "rate": 20.0,
+    "damping": 0.5,
+}
+SLIDING = COMMON | {
+    "kind": "sliding",
+    "direction": (0.2, -1.0),
+    "mass": 1.5,
+    "preload": 30.0,
+    "rate": 500.0,
+    "damping": 5.0,
+}
+IDLER, FIRST_HUB, SECOND_HUB, TENSIONER = 2, 3, 4, 5
+"""Numbers of bodies."""
+
+
+@pytest.fixture(scope="module", params=[ROTARY, SLIDING], ids=lambda tensioner: tensioner["kind"])
+def drive(request: pytest.FixtureRequest, drive: Drive) -> Drive:
+    """The paper's drive with an idler on a tensioner, a hub chain behind the driven pulley, and loads on its end."""
+    data = drive.model_dump(by_alias=True, exclude_none=True)
+    data["belt"] |= {"length": 1.2965, "elements": 12}
+    data["contact"] = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2, "creep_rate_factor": 300.0}
+    driver, driven = data["pulley"]
+    driven |= {
+        "torque": {"kind": "constant", "value": -1.0},
+        "load": [
+            {
+                "kind": "resistance",
+                "constant": 1.0,
+                "creep_speed": 0.5,
+                "quadratic": 0.03,
+                "harmonics": [{"order": 2, "amplitude": 0.3, "phase": 0.4}],
+            },
+        ],
+        "hub": [
+            {"kind": "one_way_clutch", "locking_damping": 20.0, "drag_torque": 1.0, "inertia": 0.05},
+            {"kind": "isolator", "stiffness": 50.0, "damping": 0.3, "inertia": 0.1},
+        ],
+    }
+    middle = 0.5 * (driver["center"][0] + driven["center"][0])
+    idler = {"name": "idler", "center": (middle, -0.2), "radius": 0.04, "inertia": 1e-3, "mass": 0.3}
+    data["pulley"] = [driver, idler, driven] if driver["center"][0] < middle else [driver, driven, idler]
+    data["tensioner"] = [request.param]
+    data["gravity"] = (0.0, -9.81)
+    return Drive(**data)
+
+
+@pytest.fixture(scope="module")
+def system(drive: Drive) -> System:
+    return drive_system(drive)
+
+
+@pytest.fixture(scope="module")
+def scale(system: System) -> FloatArray:
+    return np.concatenate([np.tile(1.0 / system.scale, system.nodes), 1.0 / system.bodies.reach])
+
+
+@pytest.fixture(scope="module")
+def moving(system: System, scale: FloatArray) -> State:
+    """In real contact, disturbed, with a turning arm that rests on its lower stop."""
+    rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 1e-4), np.array([-2e-3])).position
+    noise = np.random.default_rng(1).normal(size=(3, rest.size)) * scale
+    noise[0, -1] = 0.0
+    return State(rest + 3e-4 * noise[0], 0.1 * noise[1], 10.0 * noise[2])
+
+
+def residual(system: System, state: State, equations: Equations, factors: tuple[float, float, float]) -> RingMatrix:
+    motion = (state.position, state.velocity, state.acceleration)
+    assemble(system, 0.3, *motion, np.zeros(NODE), *factors, equations.work, equations.matrix, equations.loads)
+    return equations.matrix
+
+
+@pytest.mark.parametrize(
+    "factors",
+    [(1.0, 0.0, 1e-9), (0.0, 1.0, 1e-9), (0.0, 0.0, 1.0), (1.0, 2e3, 1e6)],
+    ids=["position", "velocity", "acceleration", "step"],
+)
+def test_tangent(
+    system: System, moving: State, scale: FloatArray, dense: Dense, factors: tuple[float, float, float]
+) -> None:
+    """Rows and columns of the bodies to the floor of central differences, apart from the far larger ones of the belt."""
+    equations = new_equations(system)
+    tangent = dense(residual(system, moving, equations, factors), True)[0].copy()
+    unknowns = [*range(NODE * system.nodes), *(NODE * system.nodes + np.flatnonzero(system.bodies.unknown >= 0))]
+    step = 1e-8 / max(factors[0], factors[1] / 1e3, factors[2] / 1e6)
+
+    def at(unknown: int, side: float) -> FloatArray:
+        change = np.zeros_like(scale)
+        change[unknown] = side * step * scale[unknown]
+        motion = (moving.position, moving.velocity, moving.acceleration)
+        moved = State(*(part + factor * change for part, factor in zip(motion, factors, strict=True)))
+        return dense(residual(system, moved, equations, (0.0, 0.0, 0.0)), True)[1].copy()
+
+    found = np.transpose([(at(k, 1.0) - at(k, -1.0)) / (2 * step * scale[k]) for k in unknowns])
+    for part in (slice(None), slice(NODE * system.nodes, None)):
+        for block in ((part, slice(None)), (slice(None), part)):
+            rounding = 1e-7 * np.max(np.abs(tangent[block]))
+            np.testing.assert_allclose(tangent[block], found[block], atol=rounding, rtol=0)
+
+
+def test_only_the_prescribed_shaft_is_no_unknown(system: System) -> None:
+    assert np.count_nonzero(system.bodies.unknown < 0) == 1
+    assert border_size(system) == system.bodies.unknown.size - 1 == 5
+
+
+def test_couplings_act_on_both_bodies(system: System, moving: State) -> None:
+    """Without belt and shaft torques, what a chain does to its bodies adds up to nothing."""
+    lifted = State(moving.position.copy(), moving.velocity, moving.acceleration)
+    lifted.position[: NODE * system.nodes] += 10.0
+    equations = new_equations(system)
+    residual(system, lifted, equations, (0.0, 0.0, 0.0))
+    loads = equations.loads
+    assert np.all(loads.moment == 0.0)
+    chain = loads.force[: TENSIONER].sum() - loads.shaft[np.flatnonzero(system.pulleys.shaft == SECOND_HUB)[0]]
+    assert abs(loads.force[FIRST_HUB]) > 0.1
+    assert chain == pytest.approx(0.0, abs=1e-12)
+
+
+def test_power_of_the_bodies_is_what_is_lost_and_stored(system: System, moving: State) -> None:
+    """Work of all forces on the bodies but the belt's = torque work - losses - rate of the springs' energy."""
+    equations, bodies = new_equations(system), slice(NODE * system.nodes, None)
+    lifted = State(moving.position.copy(), moving.velocity.copy(), moving.acceleration)
+    lifted.position[: NODE * system.nodes] += 10.0
+
+    def energy(time: float) -> float:
+        place = (lifted.position + time * lifted.velocity)[None]
+        seen = observe(system, np.zeros(1), place, lifted.velocity[None].copy())
+        belt = system.supports.force @ place[0, : NODE * system.nodes]
+        return float(seen.spring_energy[0] + seen.potential_energy[0] + belt)
+
+    residual(system, lifted, equations, (0.0, 0.0, 0.0))
+    rate = (energy(1e-6) - energy(-1e-6)) / 2e-6
+    loads, velocity = equations.loads, lifted.velocity[bodies]
+    torque_work, losses = loads.power[1], loads.power[5] + loads.power[6]
+    free = system.bodies.unknown >= 0
+    assert loads.power[5] > 0.0 and loads.power[6] > 0.0
+    assert loads.force[free] @ velocity[free] == pytest.approx(torque_work - losses - rate, rel=1e-7)
+
+
+def test_the_carried_pulley_moves(system: System, moving: State) -> None:
+    seen = observe(system, np.zeros(1), moving.position[None], moving.velocity[None].copy())
+    carried = int(system.tensioners.pulley[0])
+    moved = seen.pulley_center[0] - system.pulleys.center
+    assert np.linalg.norm(moved[carried]) == pytest.approx(2e-3 * system.bodies.reach[TENSIONER], rel=1e-3)
+    np.testing.assert_array_equal(np.delete(moved, carried, axis=0), 0.0)
