@@ -1,10 +1,10 @@
-"""Stiffness and inertia of the belt's section, integrated over the thickness (Eqs. 8, 14 and 15)."""
+"""Stiffness, damping and inertia of the belt's section, integrated over the thickness (Eqs. 8, 14 and 15)."""
 
 from typing import NamedTuple
 
 
 class Section(NamedTuple):
-    """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia."""
+    """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia and damping."""
 
     axial: float
     """E A alpha1, N."""
@@ -22,3 +22,7 @@ class Section(NamedTuple):
     """rho A, kg/m."""
     rotary_inertia: float
     """rho I, kg m."""
+    axial_damping: float = 0.0
+    """E A alpha1 times the damping time of stretch, N s."""
+    bending_damping: float = 0.0
+    """E I alpha2 times the damping time of bending, N m^2 s."""

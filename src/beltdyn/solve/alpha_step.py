@@ -210,8 +210,8 @@ def _size(system: System, equations: Equations) -> float:
         for c in range(NODE):
             total += (system.scale[c] * equations.node_part[node, c]) ** 2
     size = sqrt(total / (NODE * system.nodes))
-    for body in range(system.bodies.unknown.size):
-        unknown = system.bodies.unknown[body]
+    for body in range(system.bodies.size):
+        unknown = system.bodies[body].unknown
         if unknown >= 0:
-            size = max(size, abs(system.bodies.reach[body] * equations.border_part[unknown]))
+            size = max(size, abs(system.bodies[body].reach * equations.border_part[unknown]))
     return size

@@ -128,10 +128,10 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
             i = NODE * node + c
             total += (auxiliary[i] - march.auxiliary[i]) ** 2
     largest = sqrt(total / (system.nodes * system.points))
-    for body in range(system.bodies.unknown.size):
-        if system.bodies.unknown[body] >= 0:
+    for body in range(system.bodies.size):
+        if system.bodies[body].unknown >= 0:
             i = NODE * system.nodes + body
-            largest = max(largest, system.bodies.reach[body] * abs(auxiliary[i] - march.auxiliary[i]))
+            largest = max(largest, system.bodies[body].reach * abs(auxiliary[i] - march.auxiliary[i]))
     return method.error * step * step * largest / allowed_error(settings, step)
 
 

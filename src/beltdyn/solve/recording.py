@@ -122,14 +122,14 @@ class Recording:
         system, count = self._system, len(chunk.time)
         seen = observe_chunk(system, chunk)
         position, velocity = chunk.interpolate()
-        nodes, pulleys = NODE * system.nodes, len(system.pulleys.radius)
-        shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners.pulley)
+        nodes, pulleys = NODE * system.nodes, len(system.pulleys)
+        shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
         coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
         stored = np.sum([values for name, values in seen.items() if name.endswith("_energy")], axis=0)
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
         return {
             **seen,
-            **(carried if len(system.tensioners.pulley) else {}),
+            **(carried if len(system.tensioners) else {}),
             **dict(zip(POWERS, chunk.work.T, strict=True)),
             "time": chunk.time,
             "pulley_speed": velocity[:, nodes : nodes + pulleys],

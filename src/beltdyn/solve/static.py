@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.system.arrays import NODE, FloatArray, IntArray, System
+from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.machine_arrays import Records
 from beltdyn.system.motion import Equations, linearise, new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import State
@@ -113,7 +114,7 @@ class _Search:
     """Belt and tensioners on their way to equilibrium, with the linearised equations where they stand."""
 
     def __init__(self, system: System, start: State) -> None:
-        self._system = system._replace(bodies=system.bodies._replace(unknown=_only_tensioners(system)))
+        self._system = system._replace(bodies=_only_tensioners(system))
         self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = np.zeros(NODE)
         self._here: Equations = new_equations(self._system)
@@ -121,7 +122,7 @@ class _Search:
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.section.mass / system.section.axial
         self._scale = system.scale
-        self._reach = system.bodies.reach[system.bodies.reach.size - system.tensioners.pulley.size :]
+        self._reach = system.bodies.reach[system.bodies.size - system.tensioners.size :]
 
     @property
     def nodes(self) -> FloatArray:
@@ -179,9 +180,9 @@ class _Search:
         return float(np.max(tensioners, initial=nodes))
 
 
-def _only_tensioners(system: System) -> IntArray:
-    """Places of the bodies in the border when nothing turns and tensioners move."""
-    count = system.tensioners.pulley.size
-    unknown = np.full_like(system.bodies.unknown, -1)
-    unknown[unknown.size - count :] = np.arange(count)
-    return unknown
+def _only_tensioners(system: System) -> Records:
+    """The bodies when nothing turns and tensioners move."""
+    bodies, count = system.bodies.copy(), system.tensioners.size
+    bodies["unknown"] = -1
+    bodies["unknown"][bodies.size - count :] = np.arange(count)
+    return bodies

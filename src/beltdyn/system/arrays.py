@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from beltdyn.ancf.section import Section
 from beltdyn.contact.law import ContactLaw
-from beltdyn.system.machine_arrays import Couplings, Profiles, Tensioners, Torques
+from beltdyn.system.machine_arrays import Profiles, Records, Torques, record
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -29,32 +29,21 @@ class Quadrature(NamedTuple):
     weights: FloatArray
 
 
-class Pulleys(NamedTuple):
-    """The P pulleys as arrays."""
+PULLEY = record(
+    center="2f8",  # m; where a tensioner carries the pulley, its place at coordinate zero
+    radius="f8",  # effective radius, at which the belt's centreline runs, m
+    friction="f8",  # coefficient of friction
+    shaft="i8",  # body that drivers and loads act on: the rim, or the last body of its hub chain
+    carrier="i8",  # tensioner that carries the pulley, -1 where its centre is fixed
+)
+"""A pulley."""
 
-    center: FloatArray
-    """m, shape (P, 2); where a tensioner carries the pulley, its place at coordinate zero."""
-    radius: FloatArray
-    """Effective radii, at which the belt's centreline runs, m, shape (P,)."""
-    friction: FloatArray
-    """Coefficients of friction, shape (P,)."""
-    shaft: IntArray
-    """Body that drivers and loads act on: the rim, or the last body of its hub chain; shape (P,)."""
-    carrier: IntArray
-    """Tensioner that carries the pulley, -1 where its centre is fixed; shape (P,)."""
-
-
-class Bodies(NamedTuple):
-    """The D bodies beside the belt: rims, then bodies of hub chains, then tensioners, each with one coordinate."""
-
-    inertia: FloatArray
-    """kg m^2, or kg of a sliding tensioner, shape (D,)."""
-    unknown: IntArray
-    """Place in the border of the ring's matrix, -1 where the motion is prescribed; shape (D,)."""
-    reach: FloatArray
-    """What turns a change of the coordinate into a length of belt: a radius, an arm, or 1; m or 1, shape (D,)."""
-    weight: FloatArray
-    """Forces of gravity on tensioners and what they carry, as if at the centre of the pulley, N, shape (K, 2)."""
+BODY = record(
+    inertia="f8",  # kg m^2, or kg of a sliding tensioner
+    unknown="i8",  # place in the border of the ring's matrix, -1 where the motion is prescribed
+    reach="f8",  # what turns a change of the coordinate into a length of belt: a radius or an arm in m, or 1
+)
+"""A body beside the belt: first come the rims, then the bodies of hub chains, then tensioners."""
 
 
 class Supports(NamedTuple):
@@ -97,12 +86,16 @@ class System(NamedTuple):
     elastic: Quadrature
     law: ContactLaw
     contact: Quadrature
-    pulleys: Pulleys
-    bodies: Bodies
+    pulleys: Records
+    """Rows of `PULLEY`, shape (P,)."""
+    bodies: Records
+    """Rows of `BODY`, shape (D,)."""
     profiles: Profiles
     torques: Torques
-    couplings: Couplings
-    tensioners: Tensioners
+    couplings: Records
+    """Rows of `COUPLING`, shape (L,)."""
+    tensioners: Records
+    """Rows of `TENSIONER`, shape (K,)."""
     supports: Supports
 
 

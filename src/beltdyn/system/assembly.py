@@ -1,6 +1,6 @@
 """Equations of motion of belt and bodies: residual and exact tangent (Eqs. 23, 25 and 27).
 
-M a + dU/de - Q_c(e, v, omega) - F + C^T lambda = 0        belt
+M a + dU/de + dR/dv - Q_c(e, v, omega) - F + C^T lambda = 0        belt
 I domega/dt - moment - T_a = 0                              free bodies (Eq. 23)
 C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
 """
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import ElasticWorkspace, elastic_workspace, element_force
+from beltdyn.ancf.material_damping import DampingWorkspace, damping_force, damping_workspace
 from beltdyn.chain.chain_force import chain_force
 from beltdyn.contact.contact_force import ContactWorkspace, contact_force, contact_workspace
 from beltdyn.contact.contact_zone import out_of_reach
@@ -29,6 +30,7 @@ class AssemblyWorkspace(NamedTuple):
     """Scratch arrays of `assemble`, made once by `assembly_workspace`."""
 
     elastic: ElasticWorkspace
+    damping: DampingWorkspace
     contact: ContactWorkspace
     coordinates: FloatArray
     """Position, velocity and acceleration of one element, shape (3, 12)."""
@@ -47,6 +49,7 @@ def assembly_workspace() -> AssemblyWorkspace:
     """Make the scratch arrays of `assemble`."""
     return AssemblyWorkspace(
         elastic_workspace(),
+        damping_workspace(),
         contact_workspace(),
         np.zeros((3, 12)),
         np.zeros((4, 2)),
@@ -102,10 +105,25 @@ def assemble(
     """
     clear(matrix)
     clear_loads(loads)
+    damped = system.section.axial_damping > 0.0 or system.section.bending_damping > 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
         _gather(element, node_j, position, velocity, acceleration, work)
         _elastic_and_inertia(system, element, by_position, by_acceleration, work)
+        if damped:
+            loads.power[4] += damping_force(
+                work.coordinates[0],
+                work.coordinates[1],
+                system.section,
+                system.length[element],
+                system.elastic.points,
+                system.elastic.weights,
+                by_position,
+                by_velocity,
+                work.damping,
+                work.gradient,
+                work.tangent,
+            )
         for curve in range(system.control.shape[1]):
             _contact(system, element, curve, node_j, position, velocity, by_position, by_velocity, work, matrix, loads)
         _scatter(element, node_j, work, matrix)
@@ -204,7 +222,7 @@ def _contact(
     fill_control(system, element, curve, work.coordinates[0], work.control)
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
     bodies = system.bodies
-    for p in range(system.pulleys.radius.size):
+    for p in range(system.pulleys.size):
         wheel = wheel_of(system, p, position, velocity)
         if out_of_reach(work.control, wheel):
             continue
@@ -228,13 +246,13 @@ def _contact(
                 keep_drift(system, carriage, work.contact, work.drift)
         _take_contact(system, work)
         add_contact(loads, p, totals)
-        if bodies.unknown[p] >= 0:
-            matrix.corner[bodies.unknown[p], bodies.unknown[p]] -= by_velocity * totals.moment_by_speed
-            _couple(system, element, node_j, bodies.unknown[p], by_velocity, work.contact, matrix)
+        if bodies[p].unknown >= 0:
+            matrix.corner[bodies[p].unknown, bodies[p].unknown] -= by_velocity * totals.moment_by_speed
+            _couple(system, element, node_j, bodies[p].unknown, by_velocity, work.contact, matrix)
         if carriage.unknown >= 0 and (by_position != 0.0 or by_velocity != 0.0):
             drift = by_position if rounds == 2 else 0.0
             couple_carriage(
-                system, element, node_j, bodies.unknown[p], carriage, by_velocity, drift, work.contact, work.drift, matrix
+                system, element, node_j, bodies[p].unknown, carriage, by_velocity, drift, work.contact, work.drift, matrix
             )
 
 
@@ -292,11 +310,11 @@ def _bodies(
 ) -> None:
     """Motion of the free bodies (Eq. 23)."""
     bodies, first = system.bodies, NODE * system.nodes
-    for body in range(bodies.inertia.size):
-        unknown = bodies.unknown[body]
+    for body in range(bodies.size):
+        unknown = bodies[body].unknown
         if unknown >= 0:
-            matrix.corner[unknown, unknown] += by_acceleration * bodies.inertia[body]
-            matrix.border_side[unknown] = bodies.inertia[body] * acceleration[first + body] - loads.force[body]
+            matrix.corner[unknown, unknown] += by_acceleration * bodies[body].inertia
+            matrix.border_side[unknown] = bodies[body].inertia * acceleration[first + body] - loads.force[body]
 
 
 @kernel

@@ -11,16 +11,15 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
-from beltdyn.system.arrays import NODE, Bodies, Pulleys, Quadrature, Supports, System
+from beltdyn.system.arrays import BODY, NODE, PULLEY, Quadrature, Supports, System
 from beltdyn.system.build_machines import (
     body_inertias,
-    carried_masses,
     machine_arrays,
     shaft_bodies,
     tensioner_inertias,
 )
 from beltdyn.system.discretization import discretize
-from beltdyn.system.machine_arrays import Tensioners
+from beltdyn.system.machine_arrays import Records, records
 
 _REDUCED = 3
 """Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
@@ -114,7 +113,7 @@ def belt_system(
     nodes = elements if closure == "shared_node" else elements + 1
     radii = [pulley.radius for pulley in pulleys]
     frictions = [contact.friction for _ in pulleys] if contact else []
-    machines = machine_arrays(pulleys, tensioners, path)
+    machines = machine_arrays(pulleys, tensioners, path, gravity)
     return System(
         nodes=nodes,
         closed=closure == "shared_node",
@@ -125,7 +124,7 @@ def belt_system(
         law=_contact_law(contact),
         contact=contact_points(contact),
         pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
-        bodies=_bodies(pulleys, radii, tensioners, machines.tensioners, gravity),
+        bodies=_bodies(pulleys, radii, tensioners, machines.tensioners),
         **machines._asdict(),
         supports=_supports(nodes, fixed, forces, moments),
     )
@@ -203,12 +202,13 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
 
 
 def _pulley_arrays(
-    pulleys: Sequence[Pulley], radii: Sequence[float], frictions: Sequence[float], tensioners: Tensioners
-) -> Pulleys:
+    pulleys: Sequence[Pulley], radii: Sequence[float], frictions: Sequence[float], tensioners: Records
+) -> Records:
     """The pulleys, with their shafts and carriers."""
     carrier = np.full(len(pulleys), -1, dtype=np.int64)
-    carrier[tensioners.pulley] = np.arange(tensioners.pulley.size)
-    return Pulleys(
+    carrier[tensioners.pulley] = np.arange(tensioners.size)
+    return records(
+        PULLEY,
         center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
         radius=np.array(radii, dtype=float),
         friction=np.array(frictions, dtype=float),
@@ -221,20 +221,19 @@ def _bodies(
     pulleys: Sequence[Pulley],
     radii: Sequence[float],
     carriers: Sequence[AnyTensioner],
-    tensioners: Tensioners,
-    gravity: tuple[float, float],
-) -> Bodies:
-    """Inertia, unknowns and weight of rims, hub chains and tensioners."""
+    tensioners: Records,
+) -> Records:
+    """Inertia and unknowns of rims, hub chains and tensioners."""
     inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, carriers)])
     free = np.ones(inertia.size, dtype=bool)
     free[[shaft for shaft, pulley in zip(shaft_bodies(pulleys), pulleys, strict=True) if pulley.prescribed]] = False
     chains = [radius for radius, pulley in zip(radii, pulleys, strict=True) for _ in pulley.hub]
     arms = np.where(tensioners.rotary, tensioners.arm, 1.0)
-    return Bodies(
+    return records(
+        BODY,
         inertia=inertia,
         unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
         reach=np.concatenate([radii, chains, arms]),
-        weight=carried_masses(pulleys, carriers)[:, None] * np.array(gravity),
     )
 
 

@@ -23,6 +23,7 @@ from beltdyn.model import (
 )
 from beltdyn.model.tensioner import AnyTensioner, path_gradient
 from beltdyn.system.machine_arrays import (
+    COUPLING,
     FRICTION_CLUTCH,
     ISOLATOR,
     KLOSS,
@@ -30,12 +31,13 @@ from beltdyn.system.machine_arrays import (
     ONE_WAY_CLUTCH,
     POLYNOMIAL,
     TABLE,
-    Couplings,
+    TENSIONER,
     FloatArray,
     IntArray,
     Profiles,
-    Tensioners,
+    Records,
     Torques,
+    records,
 )
 
 
@@ -44,12 +46,15 @@ class Machines(NamedTuple):
 
     profiles: Profiles
     torques: Torques
-    couplings: Couplings
-    tensioners: Tensioners
+    couplings: Records
+    tensioners: Records
 
 
 def machine_arrays(
-    pulleys: Sequence[Pulley], tensioners: Sequence[AnyTensioner] = (), path: Path | None = None
+    pulleys: Sequence[Pulley],
+    tensioners: Sequence[AnyTensioner] = (),
+    path: Path | None = None,
+    gravity: tuple[float, float] = (0.0, 0.0),
 ) -> Machines:
     """Arrays of everything on and behind the pulleys.
 
@@ -61,6 +66,8 @@ def machine_arrays(
         What carries some of them; fixed ones leave no trace.
     path
         The path around the pulleys, with signed radii; needed where there are tensioners.
+    gravity
+        Acceleration of gravity, m/s^2.
 
     Returns
     -------
@@ -75,7 +82,7 @@ def machine_arrays(
     moving = [item for item in tensioners if isinstance(item, SlidingTensioner | RotaryTensioner)]
     if moving and path is None:
         raise ModelError("the path is missing: a tensioner needs it, to know which way the belt gets longer.")
-    return Machines(_profiles(pulleys), _torques(pulleys), _couplings(pulleys), _tensioners(pulleys, moving, path))
+    return Machines(_profiles(pulleys), _torques(pulleys), _couplings(pulleys), _tensioners(pulleys, moving, path, gravity))
 
 
 def shaft_bodies(pulleys: Sequence[Pulley]) -> IntArray:
@@ -195,7 +202,7 @@ def _load_constants(load: Resistance | LoadTable | Motor) -> tuple[int, tuple[fl
     return TABLE, (0.0, 0.0, 0.0, 0.0)
 
 
-def _couplings(pulleys: Sequence[Pulley]) -> Couplings:
+def _couplings(pulleys: Sequence[Pulley]) -> Records:
     """Links of the hub chains, pulley after pulley, from the rim inwards."""
     fronts, backs, kinds = [], [], []
     body = len(pulleys)
@@ -206,10 +213,11 @@ def _couplings(pulleys: Sequence[Pulley]) -> Couplings:
             backs.append(body)
             kinds.append(_link_constants(link, pulley.turning))
             front, body = body, body + 1
-    return Couplings(
-        front=np.array(fronts, dtype=np.int64),
-        back=np.array(backs, dtype=np.int64),
-        kind=np.array([kind for kind, _ in kinds], dtype=np.int64),
+    return records(
+        COUPLING,
+        front=fronts,
+        back=backs,
+        kind=[kind for kind, _ in kinds],
         constants=np.array([constants for _, constants in kinds], dtype=float).reshape(-1, 3),
         schedule=_schedule_numbers(pulleys)[1],
     )
@@ -242,8 +250,11 @@ def _schedule_numbers(pulleys: Sequence[Pulley]) -> tuple[IntArray, IntArray]:
 
 
 def _tensioners(
-    pulleys: Sequence[Pulley], moving: Sequence[SlidingTensioner | RotaryTensioner], path: Path | None
-) -> Tensioners:
+    pulleys: Sequence[Pulley],
+    moving: Sequence[SlidingTensioner | RotaryTensioner],
+    path: Path | None,
+    gravity: tuple[float, float],
+) -> Records:
     """Sliding and rotary tensioners as arrays."""
     names = [pulley.name for pulley in pulleys]
     carried = [names.index(item.pulley) for item in moving]
@@ -253,23 +264,25 @@ def _tensioners(
         return np.array([getattr(item, name) or 0.0 for item in moving], dtype=float)
 
     stops = np.array([item.stops or (-np.inf, np.inf) for item in moving], dtype=float).reshape(-1, 2)
-    return Tensioners(
-        pulley=np.array(carried, dtype=np.int64),
-        rotary=np.array([isinstance(item, RotaryTensioner) for item in moving], dtype=bool),
+    return records(
+        TENSIONER,
+        pulley=carried,
+        rotary=[isinstance(item, RotaryTensioner) for item in moving],
         origin=np.array([origin for origin, _, _, _ in places], dtype=float).reshape(-1, 2),
         direction=np.array([direction for _, direction, _, _ in places], dtype=float).reshape(-1, 2),
-        arm=np.array([arm for _, _, arm, _ in places], dtype=float),
-        sense=np.array([sense for _, _, _, sense in places], dtype=float),
+        arm=[arm for _, _, arm, _ in places],
+        sense=[sense for _, _, _, sense in places],
         preload=each("preload"),
         rate=each("rate"),
         viscous=each("damping"),
         tensioning_friction=each("tensioning_friction"),
         yielding_friction=each("yielding_friction"),
         creep_speed=each("creep_speed"),
-        lower=np.ascontiguousarray(stops[:, 0]),
-        upper=np.ascontiguousarray(stops[:, 1]),
+        lower=stops[:, 0],
+        upper=stops[:, 1],
         stop_stiffness=each("stop_stiffness"),
         stop_damping=each("stop_damping"),
+        weight=carried_masses(pulleys, moving)[:, None] * np.array(gravity),
     )
 
 

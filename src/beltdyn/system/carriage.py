@@ -40,13 +40,13 @@ class Carriage(NamedTuple):
 @kernel
 def carriage_of(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> Carriage:
     """The motion of a pulley's centre at a state of shape (6 N + D,)."""
-    carrier = system.pulleys.carrier[pulley]
+    carrier = system.pulleys[pulley].carrier
     if carrier < 0:
         return Carriage(-1, 0.0, 0.0, 0.0, 0.0, False)
     at = tensioner_coordinate(system, carrier)
     _, _, dx, dy, ddx, ddy = tensioner_place(system.tensioners, carrier, position[at])
     drift_x, drift_y = ddx * velocity[at], ddy * velocity[at]
-    unknown = system.bodies.unknown[at - NODE * system.nodes]
+    unknown = system.bodies[at - NODE * system.nodes].unknown
     return Carriage(unknown, dx, dy, drift_x, drift_y, drift_x != 0.0 or drift_y != 0.0)
 
 

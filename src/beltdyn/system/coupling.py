@@ -2,12 +2,12 @@
 
 from beltdyn.kernel import kernel
 from beltdyn.system.excitation import profile_value
-from beltdyn.system.machine_arrays import ISOLATOR, ONE_WAY_CLUTCH, Couplings, Profiles
+from beltdyn.system.machine_arrays import ISOLATOR, ONE_WAY_CLUTCH, Profiles, Records
 
 
 @kernel
 def coupling_torque(
-    profiles: Profiles, couplings: Couplings, number: int, time: float, twist: float, rate: float
+    profiles: Profiles, couplings: Records, number: int, time: float, twist: float, rate: float
 ) -> tuple[float, float, float, float, float]:
     """Torque from the front body of a coupling on the back one, and as much against the front one.
 
@@ -30,14 +30,14 @@ def coupling_torque(
     torque, by_twist, by_rate, energy, loss : float
         Torque, N m, counter-clockwise on the back body, and its derivatives; energy stored, J; power lost, W.
     """
-    first, second, third = couplings.constants[number]
-    if couplings.kind[number] == ISOLATOR:
+    link = couplings[number]
+    first, second, third = link.constants
+    if link.kind == ISOLATOR:
         return isolator(twist, rate, first, second)
-    if couplings.kind[number] == ONE_WAY_CLUTCH:
+    if link.kind == ONE_WAY_CLUTCH:
         torque, slope = one_way_clutch(rate, first, second, third)
     else:
-        schedule = couplings.schedule[number]
-        scale = profile_value(profiles, schedule, time)[0] if schedule >= 0 else 1.0
+        scale = profile_value(profiles, link.schedule, time)[0] if link.schedule >= 0 else 1.0
         torque, slope = friction_clutch(rate, first, scale * second)
     return torque, 0.0, slope, 0.0, torque * rate
 

@@ -116,9 +116,9 @@ def prescribe(
     position, velocity, acceleration : ndarray, shape (6 N + D,)
         The entries of prescribed bodies are overwritten.
     """
-    for p in range(system.pulleys.radius.size):
-        body = system.pulleys.shaft[p]
-        if system.bodies.unknown[body] < 0:
+    for p in range(system.pulleys.size):
+        body = system.pulleys[p].shaft
+        if system.bodies[body].unknown < 0:
             i = NODE * system.nodes + body
             position[i], velocity[i], acceleration[i] = prescribed_motion(system.profiles, p, time)
 

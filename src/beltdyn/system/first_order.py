@@ -31,7 +31,7 @@ class FirstOrder:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._half = NODE * system.nodes + system.bodies.inertia.size
+        self._half = NODE * system.nodes + system.bodies.size
         self._equations = new_equations(system)
         self._no_multipliers = np.zeros(NODE)
         self.size = 2 * self._half + len(POWERS)

@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 def new_loads(system: System) -> Loads:
     """Make zero loads for a system."""
-    pulleys, bodies = system.pulleys.radius.size, system.bodies.inertia.size
+    pulleys, bodies = system.pulleys.size, system.bodies.size
     return Loads(
         np.zeros(pulleys),
         np.zeros((pulleys, 2)),
@@ -83,7 +83,7 @@ def add_machines(
         reaction of its driver (Eq. 23).
     """
     wanted = by_position != 0.0 or by_velocity != 0.0
-    for p in range(system.pulleys.radius.size):
+    for p in range(system.pulleys.size):
         loads.force[p] += loads.moment[p]
         loads.power[2] += loads.friction[p]
         loads.power[3] += loads.damping[p]
@@ -105,16 +105,16 @@ def _add_tensioners(
 ) -> None:
     """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
     tensioners, first = system.tensioners, NODE * system.nodes
-    for k in range(tensioners.pulley.size):
+    for k in range(tensioners.size):
         at = tensioner_coordinate(system, k)
         _, _, dx, dy, ddx, ddy = tensioner_place(tensioners, k, position[at])
         force, by_place, by_rate, energy, loss = tensioner_force(tensioners, k, position[at], velocity[at])
-        x = loads.hub[tensioners.pulley[k], 0] + system.bodies.weight[k, 0]
-        y = loads.hub[tensioners.pulley[k], 1] + system.bodies.weight[k, 1]
+        hub, weight = loads.hub[tensioners[k].pulley], tensioners[k].weight
+        x, y = hub[0] + weight[0], hub[1] + weight[1]
         loads.force[at - first] += force + x * dx + y * dy
         loads.power[5] += loss
         loads.stored[1] += energy
-        unknown = system.bodies.unknown[at - first]
+        unknown = system.bodies[at - first].unknown
         if wanted and unknown >= 0:
             corner[unknown, unknown] -= by_position * (by_place + x * ddx + y * ddy) + by_velocity * by_rate
 
@@ -133,8 +133,8 @@ def _add_couplings(
 ) -> None:
     """Torques between the bodies of hub chains."""
     couplings, first = system.couplings, NODE * system.nodes
-    for number in range(couplings.front.size):
-        front, back = couplings.front[number], couplings.back[number]
+    for number in range(couplings.size):
+        front, back = couplings[number].front, couplings[number].back
         torque, by_twist, by_rate, energy, loss = coupling_torque(
             system.profiles,
             couplings,
@@ -149,7 +149,7 @@ def _add_couplings(
         loads.stored[1] += energy
         if wanted:
             slope = by_position * by_twist + by_velocity * by_rate
-            i, j = system.bodies.unknown[front], system.bodies.unknown[back]
+            i, j = system.bodies[front].unknown, system.bodies[back].unknown
             if i >= 0:
                 corner[i, i] += slope
             if j >= 0:
@@ -174,11 +174,11 @@ def _take_shafts(
 ) -> None:
     """Torques on the shafts from outside, and their powers."""
     first = NODE * system.nodes
-    for p in range(system.pulleys.radius.size):
-        body = system.pulleys.shaft[p]
-        unknown, speed = system.bodies.unknown[body], velocity[first + body]
+    for p in range(system.pulleys.size):
+        body = system.pulleys[p].shaft
+        unknown, speed = system.bodies[body].unknown, velocity[first + body]
         if unknown < 0:
-            loads.shaft[p] = system.bodies.inertia[body] * acceleration[first + body] - loads.force[body]
+            loads.shaft[p] = system.bodies[body].inertia * acceleration[first + body] - loads.force[body]
             loads.power[0] += loads.shaft[p] * speed
             continue
         torque, by_angle, by_speed = shaft_torque(

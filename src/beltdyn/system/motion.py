@@ -94,8 +94,8 @@ def subtract_solution(system: System, equations: Equations, factor: float, vecto
         for c in range(NODE):
             vector[NODE * node + c] -= factor * equations.node_part[node, c]
     first = NODE * system.nodes
-    for body in range(system.bodies.unknown.size):
-        unknown = system.bodies.unknown[body]
+    for body in range(system.bodies.size):
+        unknown = system.bodies[body].unknown
         if unknown >= 0:
             vector[first + body] -= factor * equations.border_part[unknown]
 

@@ -80,7 +80,7 @@ class Samples(NamedTuple):
 
 def new_observations(system: System, count: int) -> Observations:
     """Make empty observations for a number of instants."""
-    pulleys, curves = system.pulleys.radius.size, system.length.size * system.control.shape[1]
+    pulleys, curves = system.pulleys.size, system.length.size * system.control.shape[1]
     points = curves * system.contact.points.size
     return Observations(
         pulley_torque=np.zeros((count, pulleys)),
@@ -113,13 +113,13 @@ def new_samples(system: System) -> Samples:
     return Samples(
         tension=np.zeros(points),
         speed=np.zeros(points),
-        weight=np.zeros(system.pulleys.radius.size),
+        weight=np.zeros(system.pulleys.size),
         element=np.zeros((2, 2 * NODE)),
         control=np.zeros((4, 2)),
         control_velocity=np.zeros((4, 2)),
         intervals=np.zeros((MAX_INTERVALS, 2)),
         pieces=zone_scratch(),
-        acceleration=np.zeros(NODE * system.nodes + system.bodies.inertia.size),
+        acceleration=np.zeros(NODE * system.nodes + system.bodies.size),
         corner=np.zeros((0, 0)),
         contact=contact_workspace(),
         loads=new_loads(system),

@@ -190,7 +190,7 @@ def _observe_contact(
 ) -> None:
     """Contact of a curve as it moves the system and at its sampling points, and the angle over which it touches."""
     intervals = samples.intervals
-    for p in range(system.pulleys.radius.size):
+    for p in range(system.pulleys.size):
         wheel, law = wheel_of(system, p, position, velocity), law_of(system, p)
         if out_of_reach(samples.control, wheel):
             continue
@@ -255,7 +255,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
     Going along the belt, free points belong to the span of the pulley that was touched last, if the next one
     touched is another.
     """
-    spans = system.pulleys.radius.size
+    spans = system.pulleys.size
     touched, weight = result.contact_pulley[k], samples.weight
     for p in range(spans):
         weight[p] = result.span_tension[k, p] = result.belt_speed[k, p] = 0.0
@@ -289,17 +289,17 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
 def _observe_bodies(system: System, position: FloatArray, velocity: FloatArray, result: Observations, k: int) -> None:
     """Centres of the pulleys, kinetic energy of the bodies and potential energy of weight."""
     first = NODE * system.nodes
-    for body in range(system.bodies.inertia.size):
-        result.kinetic_energy[k] += 0.5 * system.bodies.inertia[body] * velocity[first + body] ** 2
+    for body in range(system.bodies.size):
+        result.kinetic_energy[k] += 0.5 * system.bodies[body].inertia * velocity[first + body] ** 2
     for c in range(first):
         result.potential_energy[k] -= system.supports.force[c] * position[c]
-    for p in range(system.pulleys.radius.size):
-        x, y = system.pulleys.center[p]
-        carrier = system.pulleys.carrier[p]
+    for p in range(system.pulleys.size):
+        x, y = system.pulleys[p].center
+        carrier = system.pulleys[p].carrier
         if carrier >= 0:
             x, y, _, _, _, _ = tensioner_place(
                 system.tensioners, carrier, position[tensioner_coordinate(system, carrier)]
             )
-            weight = system.bodies.weight[carrier]
+            weight = system.tensioners[carrier].weight
             result.potential_energy[k] -= weight[0] * x + weight[1] * y
         result.pulley_center[k, p, 0], result.pulley_center[k, p, 1] = x, y

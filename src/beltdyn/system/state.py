@@ -43,7 +43,7 @@ def at_rest(system: System, coordinates: FloatArray) -> State:
     State
         With bodies at coordinate zero.
     """
-    count = coordinates.size + system.bodies.inertia.size
+    count = coordinates.size + system.bodies.size
     position = np.zeros(count)
     position[: coordinates.size] = coordinates.ravel()
     return State(position, np.zeros(count), np.zeros(count))

@@ -3,12 +3,12 @@
 from math import cos, sin, tanh
 
 from beltdyn.kernel import kernel
-from beltdyn.system.machine_arrays import Tensioners
+from beltdyn.system.machine_arrays import Records
 
 
 @kernel
 def tensioner_place(
-    tensioners: Tensioners, number: int, q: float
+    tensioners: Records, number: int, q: float
 ) -> tuple[float, float, float, float, float, float]:
     """Center of the carried pulley, and its derivatives with respect to the coordinate of the tensioner.
 
@@ -29,19 +29,20 @@ def tensioner_place(
     x, y, dx, dy, ddx, ddy : float
         Center, m, its first and its second derivative.
     """
-    x, y = tensioners.origin[number]
-    ux, uy = tensioners.direction[number]
-    if not tensioners.rotary[number]:
+    item = tensioners[number]
+    x, y = item.origin
+    ux, uy = item.direction
+    if not item.rotary:
         return x + q * ux, y + q * uy, ux, uy, 0.0, 0.0
-    arm, sense = tensioners.arm[number], tensioners.sense[number]
-    cosine, sine = arm * cos(q), arm * sense * sin(q)
+    sense = item.sense
+    cosine, sine = item.arm * cos(q), item.arm * sense * sin(q)
     ax, ay = cosine * ux - sine * uy, cosine * uy + sine * ux
     return x + ax, y + ay, -sense * ay, sense * ax, -ax, -ay
 
 
 @kernel
 def tensioner_force(
-    tensioners: Tensioners, number: int, q: float, rate: float
+    tensioners: Records, number: int, q: float, rate: float
 ) -> tuple[float, float, float, float, float]:
     """Generalised force of a tensioner on its coordinate, without weight.
 
@@ -62,35 +63,29 @@ def tensioner_force(
         Force, N or N m, positive where it lengthens the path, and its derivatives; energy stored by spring and stops
         since q = 0, J; power lost, W.
     """
-    preload, stiffness, viscous = tensioners.preload[number], tensioners.rate[number], tensioners.viscous[number]
-    friction, friction_slope = dry_friction(
-        rate,
-        tensioners.tensioning_friction[number],
-        tensioners.yielding_friction[number],
-        tensioners.creep_speed[number],
-    )
-    force = preload - stiffness * q - viscous * rate - friction
-    energy = (0.5 * stiffness * q - preload) * q
-    by_position, by_rate = -stiffness, -viscous - friction_slope
-    loss = (viscous * rate + friction) * rate
-    if q > tensioners.upper[number]:
-        depth, side = q - tensioners.upper[number], 1.0
-    elif q < tensioners.lower[number]:
-        depth, side = tensioners.lower[number] - q, -1.0
+    item = tensioners[number]
+    friction, friction_slope = dry_friction(rate, item.tensioning_friction, item.yielding_friction, item.creep_speed)
+    force = item.preload - item.rate * q - item.viscous * rate - friction
+    energy = (0.5 * item.rate * q - item.preload) * q
+    by_position, by_rate = -item.rate, -item.viscous - friction_slope
+    loss = (item.viscous * rate + friction) * rate
+    if q > item.upper:
+        depth, side = q - item.upper, 1.0
+    elif q < item.lower:
+        depth, side = item.lower - q, -1.0
     else:
         return force, by_position, by_rate, energy, loss
-    stop_stiffness, stop_damping = tensioners.stop_stiffness[number], tensioners.stop_damping[number]
-    spring, approach = stop_stiffness * depth, side * rate
-    stop = spring + stop_damping * approach
+    spring, approach = item.stop_stiffness * depth, side * rate
+    stop = spring + item.stop_damping * approach
     energy += 0.5 * spring * depth
     if stop <= 0.0:
         return force, by_position, by_rate, energy, loss - spring * approach
     return (
         force - side * stop,
-        by_position - stop_stiffness,
-        by_rate - stop_damping,
+        by_position - item.stop_stiffness,
+        by_rate - item.stop_damping,
         energy,
-        loss + stop_damping * rate * rate,
+        loss + item.stop_damping * rate * rate,
     )
 
 

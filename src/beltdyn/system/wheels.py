@@ -14,7 +14,7 @@ FloatArray = NDArray[np.float64]
 @kernel
 def tensioner_coordinate(system: System, tensioner: int) -> int:
     """Place of a tensioner's coordinate in the state."""
-    return NODE * system.nodes + system.bodies.unknown.size - system.tensioners.pulley.size + tensioner
+    return NODE * system.nodes + system.bodies.size - system.tensioners.size + tensioner
 
 
 @kernel
@@ -30,13 +30,14 @@ def wheel_of(system: System, pulley: int, position: FloatArray, velocity: FloatA
     position, velocity : ndarray, shape (6 N + D,)
         The state.
     """
-    pulleys, carrier = system.pulleys, system.pulleys.carrier[pulley]
+    item = system.pulleys[pulley]
+    carrier = item.carrier
     speed = velocity[NODE * system.nodes + pulley]
     if carrier < 0:
-        return Wheel(pulleys.center[pulley, 0], pulleys.center[pulley, 1], pulleys.radius[pulley], speed, 0.0, 0.0)
+        return Wheel(item.center[0], item.center[1], item.radius, speed, 0.0, 0.0)
     at = tensioner_coordinate(system, carrier)
     x, y, dx, dy, _, _ = tensioner_place(system.tensioners, carrier, position[at])
-    return Wheel(x, y, pulleys.radius[pulley], speed, velocity[at] * dx, velocity[at] * dy)
+    return Wheel(x, y, item.radius, speed, velocity[at] * dx, velocity[at] * dy)
 
 
 @kernel
@@ -46,7 +47,7 @@ def law_of(system: System, pulley: int) -> ContactLaw:
     return ContactLaw(
         law.stiffness,
         law.damping,
-        system.pulleys.friction[pulley],
+        system.pulleys[pulley].friction,
         law.friction_law,
         law.creep,
         law.may_pull,

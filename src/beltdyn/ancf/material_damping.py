@@ -1,0 +1,230 @@
+"""Kelvin-Voigt damping of the belt element in stretch and bending, with the strains of Eqs. 13 and 14.
+
+With the elongation eps = (q . q - 1) / 2 of Eq. 13, q = r_c,x, and the curvature kappa = n . w + |q| p, w = r_c,xx,
+whose square is the first bending term of Eq. 14 (|q| (theta + p) in `strain_energy`), the rate potential is
+
+    R = integral of EA alpha1 tau_s / 2 (deps/dt)^2 + EI alpha2 tau_b / 2 (dkappa/dt)^2 over the reference length.
+
+The damping force is -dR/d(de/dt), its power -2 R.  At the straight belt it is tau_s and tau_b times the linear elastic
+force.  The paper has no damping of the belt's material; shear and the thickness stretch have none here.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.ancf.cross_section import add_shear_curvature, nodal_shear, shear_gradient
+from beltdyn.ancf.elastic_force import centreline
+from beltdyn.ancf.section import Section
+from beltdyn.ancf.shape_functions import Four, bends, slopes
+from beltdyn.kernel import kernel
+
+FloatArray = NDArray[np.float64]
+
+
+class DampingWorkspace(NamedTuple):
+    """Scratch arrays of `damping_force`, made once for many elements by `damping_workspace`."""
+
+    slope: FloatArray
+    """Derivatives of eps and kappa with respect to the coordinates e at a point, shape (2, 12)."""
+    change: FloatArray
+    """Rates of these derivatives, which are the derivatives of the rates of eps and kappa, shape (2, 12)."""
+    by_shear: FloatArray
+    """Derivative of p = ds/dx with respect to e, and its rate, shape (2, 12)."""
+    shear_curvature: FloatArray
+    """Second derivative of p with respect to e, shape (12, 12)."""
+    pull: FloatArray
+    """Sum over the points of the moment times the derivative of |q| with respect to e, shape (12,)."""
+
+
+class _Point(NamedTuple):
+    """A point of the centreline and the rates of its strains."""
+
+    tangent_x: float
+    """Unit tangent u = q / |q|."""
+    tangent_y: float
+    stretch: float
+    """|q|."""
+    strain_rate: float
+    """deps/dt, 1/s."""
+    curvature_rate: float
+    """dkappa/dt, 1/(m s)."""
+    fold: float
+    """u . w / |q|^2, and next the factor of n n^T in the second derivative of kappa with respect to q, 1/m."""
+    cross: float
+
+
+def damping_workspace() -> DampingWorkspace:
+    """Make the scratch arrays of `damping_force`."""
+    return DampingWorkspace(np.zeros((2, 12)), np.zeros((2, 12)), np.zeros((2, 12)), np.zeros((12, 12)), np.zeros(12))
+
+
+@kernel
+def damping_force(
+    e: FloatArray,
+    velocity: FloatArray,
+    section: Section,
+    length: float,
+    points: FloatArray,
+    weights: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    work: DampingWorkspace,
+    gradient: FloatArray,
+    tangent: FloatArray,
+) -> float:
+    """Add dR/d(de/dt), the damping force with the opposite sign, and its exact tangent.
+
+    Parameters
+    ----------
+    e : ndarray, shape (12,)
+        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
+    velocity : ndarray, shape (12,)
+        Their rates.
+    section
+        With its factors of damping.
+    length
+        Reference length L, m.
+    points, weights : ndarray, shape (k,)
+        Quadrature on [0, 1] along the element: that of the elastic force.
+    by_position, by_velocity
+        The tangent is the sum of these times the derivatives with respect to e and to its rate.
+    work
+        Scratch arrays.
+    gradient : ndarray, shape (12,)
+        Changed in place; N for the rows of r, N m for those of the gradients.
+    tangent : ndarray, shape (12, 12)
+        Changed in place.
+
+    Returns
+    -------
+    float
+        Power lost, 2 R, W; never negative.
+    """
+    work.pull[:] = 0.0
+    shear, shear_rate = _shear_rates(e, velocity, length, work)
+    power, twist = 0.0, 0.0
+    for k in range(points.size):
+        weight = weights[k] * length
+        axial, bending = weight * section.axial_damping, weight * section.bending_damping
+        slope, bend = slopes(points[k], length), bends(points[k], length)
+        point = _strain_rates(e, velocity, slope, bend, shear, shear_rate, work)
+        force, moment = axial * point.strain_rate, bending * point.curvature_rate
+        power += force * point.strain_rate + moment * point.curvature_rate
+        twist += moment * point.stretch
+        for row in range(12):
+            along, across = work.slope[0, row], work.slope[1, row]
+            gradient[row] += force * along + moment * across
+            for column in range(12):
+                tangent[row, column] += axial * along * (
+                    by_position * work.change[0, column] + by_velocity * work.slope[0, column]
+                ) + bending * across * (by_position * work.change[1, column] + by_velocity * work.slope[1, column])
+        _add_curvature(point, slope, bend, by_position * force, by_position * moment, tangent)
+        for a in range(4):
+            work.pull[_first(a)] += moment * slope[a] * point.tangent_x
+            work.pull[_first(a) + 1] += moment * slope[a] * point.tangent_y
+    for row in range(12):
+        for column in range(12):
+            tangent[row, column] += by_position * (
+                work.pull[row] * work.by_shear[0, column]
+                + work.by_shear[0, row] * work.pull[column]
+                + twist * work.shear_curvature[row, column]
+            )
+    return power
+
+
+@kernel
+def _first(a: int) -> int:
+    """First coordinate of the centreline's vector a, in the order of `shape_functions`."""
+    return 6 * (a // 2) + 2 * (a % 2)
+
+
+@kernel
+def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: DampingWorkspace) -> tuple[float, float]:
+    """Overwrite the derivatives of p = (s_j - s_i) / L; give p (1/m) and its rate."""
+    work.by_shear[:] = 0.0
+    work.shear_curvature[:] = 0.0
+    total, rate = 0.0, 0.0
+    for node in range(2):
+        first, factor = 6 * node + 2, (2.0 * node - 1.0) / length
+        shear = nodal_shear(e[first], e[first + 1], e[first + 2], e[first + 3])
+        gradient = shear_gradient(shear)
+        total += factor * shear.sine
+        for c in range(4):
+            work.by_shear[0, first + c] = factor * gradient[c]
+            rate += factor * gradient[c] * velocity[first + c]
+        add_shear_curvature(shear, factor, work.shear_curvature, first)
+    for row in range(12):
+        for column in range(12):
+            work.by_shear[1, row] += work.shear_curvature[row, column] * velocity[column]
+    return total, rate
+
+
+@kernel
+def _strain_rates(
+    e: FloatArray,
+    velocity: FloatArray,
+    slope: Four,
+    bend: Four,
+    shear: float,
+    shear_rate: float,
+    work: DampingWorkspace,
+) -> _Point:
+    """Overwrite the derivatives of both strains at a point and their rates.
+
+    With u = q / |q|, n = u turned by 90 degrees and theta = n . w / |q|, kappa = n . w + |q| p has the derivatives
+    p u - (u . w / |q|) n in q, n in w and |q| in p.
+    """
+    qx, qy = centreline(e, slope)
+    wx, wy = centreline(e, bend)
+    rate_x, rate_y = centreline(velocity, slope)
+    bend_x, bend_y = centreline(velocity, bend)
+    stretch = sqrt(qx * qx + qy * qy)
+    ux, uy = qx / stretch, qy / stretch
+    w_along, w_across = ux * wx + uy * wy, ux * wy - uy * wx
+    q_along_rate, q_across_rate = ux * rate_x + uy * rate_y, ux * rate_y - uy * rate_x
+    w_along_rate, w_across_rate = ux * bend_x + uy * bend_y, ux * bend_y - uy * bend_x
+    lean, fold, cross = w_along / stretch, w_along / (stretch * stretch), (shear - w_across / stretch) / stretch
+    along, across = (
+        fold * q_across_rate + shear_rate,
+        fold * q_along_rate + cross * q_across_rate - w_along_rate / stretch,
+    )
+    turn = q_across_rate / stretch
+    for c in range(12):
+        work.slope[0, c], work.change[0, c] = 0.0, 0.0
+        work.slope[1, c] = stretch * work.by_shear[0, c]
+        work.change[1, c] = q_along_rate * work.by_shear[0, c] + stretch * work.by_shear[1, c]
+    for a in range(4):
+        x, y = _first(a), _first(a) + 1
+        work.slope[0, x], work.slope[0, y] = slope[a] * qx, slope[a] * qy
+        work.change[0, x], work.change[0, y] = slope[a] * rate_x, slope[a] * rate_y
+        work.slope[1, x] += slope[a] * (shear * ux + lean * uy) - bend[a] * uy
+        work.slope[1, y] += slope[a] * (shear * uy - lean * ux) + bend[a] * ux
+        work.change[1, x] += slope[a] * (along * ux - across * uy) - bend[a] * turn * ux
+        work.change[1, y] += slope[a] * (along * uy + across * ux) - bend[a] * turn * uy
+    strain_rate = stretch * q_along_rate
+    curvature_rate = shear * q_along_rate - lean * q_across_rate + w_across_rate + stretch * shear_rate
+    return _Point(ux, uy, stretch, strain_rate, curvature_rate, fold, cross)
+
+
+@kernel
+def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment: float, tangent: FloatArray) -> None:
+    """Add force times the second derivative of eps and moment times that of kappa in the centreline's vectors.
+
+    The latter is fold (n u^T + u n^T) + cross n n^T in q and q, -n u^T / |q| in q and w.
+    """
+    ux, uy = point.tangent_x, point.tangent_y
+    fold, cross, turn = moment * point.fold, moment * point.cross, moment / point.stretch
+    xx = force - 2.0 * fold * ux * uy + cross * uy * uy
+    xy = fold * (ux * ux - uy * uy) - cross * ux * uy
+    yy = force + 2.0 * fold * ux * uy + cross * ux * ux
+    for a in range(4):
+        for b in range(4):
+            row, column = _first(a), _first(b)
+            qq, qw, wq = slope[a] * slope[b], turn * slope[a] * bend[b], turn * bend[a] * slope[b]
+            tangent[row, column] += qq * xx + (qw + wq) * ux * uy
+            tangent[row, column + 1] += qq * xy + qw * uy * uy - wq * ux * ux
+            tangent[row + 1, column] += qq * xy - qw * ux * ux + wq * uy * uy
+            tangent[row + 1, column + 1] += qq * yy - (qw + wq) * ux * uy
