@@ -10,10 +10,38 @@ import matplotlib.pyplot as plt
 import pytest
 import tomli_w
 
-from beltdyn.model import Belt, Contact, Drive, Pulley, Simulation, loads
+from beltdyn.model import (
+    Belt,
+    Contact,
+    Drive,
+    FixedTensioner,
+    FrictionClutch,
+    Harmonic,
+    Isolator,
+    LoadTable,
+    Motor,
+    OneWayClutch,
+    Pulley,
+    Resistance,
+    RotaryTensioner,
+    Simulation,
+    SlidingTensioner,
+    dumps,
+    loads,
+)
+from beltdyn.model.part import Part
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
+MACHINES = ROOT / "docs" / "machines.md"
+DRIVE_FILE = ROOT / "docs" / "drive_file.md"
+PARTS = {
+    DRIVE_FILE: [Belt, Pulley, Contact, Simulation],
+    MACHINES: [
+        *(Harmonic, Resistance, LoadTable, Motor, Isolator, OneWayClutch, FrictionClutch),
+        *(FixedTensioner, SlidingTensioner, RotaryTensioner),
+    ],
+}
 
 
 def blocks(file: Path, language: str) -> list[str]:
@@ -36,12 +64,23 @@ def test_the_readmes_drive_is_the_papers(drive: Drive) -> None:
     assert mine == drive.replace(pulley=[drive.pulleys[0], without_load])
 
 
-@pytest.mark.parametrize("part", [Belt, Pulley, Contact, Simulation])
-def test_every_key_is_documented(part: type[Belt | Pulley | Contact | Simulation]) -> None:
-    text = (ROOT / "docs" / "drive_file.md").read_text(encoding="utf-8")
+@pytest.mark.parametrize(("document", "part"), [(file, part) for file, parts in PARTS.items() for part in parts])
+def test_every_key_is_documented(document: Path, part: type[Part]) -> None:
+    text = document.read_text(encoding="utf-8")
     for key, field in part.model_fields.items():
         description = re.escape(str(field.description)[1:])
-        assert re.search(rf"\| `{key}` \| .{description} \|", text)
+        assert key == "kind" or re.search(rf"\| `{key}` \| .{description} \|", text)
+
+
+@pytest.mark.parametrize("example", blocks(MACHINES, "toml"))
+def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) -> None:
+    """Their pulleys say only what differs; what a motor drives has no other torque."""
+    data, changes = tomllib.loads(new_drive), tomllib.loads(example)
+    given = {pulley["name"]: pulley for pulley in changes.get("pulley", [])}
+    data["pulley"] = [pulley | given.get(pulley["name"], {}) for pulley in data["pulley"]]
+    drive = loads(tomli_w.dumps(data | {"tensioner": changes.get("tensioner", [])}))
+    assert drive != loads(new_drive)
+    assert loads(dumps(drive)) == drive
 
 
 @pytest.mark.parametrize("document", ["README.md", "docs/tutorial.md"])

@@ -14,7 +14,7 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.quantity import Acceleration
 from beltdyn.model.simulation import Simulation
-from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, Tensioner, path_gradient
+from beltdyn.model.tensioner import AnyTensioner, Tensioner, check_tensioners
 from beltdyn.model.toml_writer import dumps
 
 _LARGEST_STRAIN = 0.5
@@ -70,21 +70,7 @@ class Drive(Part):
 
     @model_validator(mode="after")
     def _tensioners_fit_the_pulleys(self) -> Self:
-        names, carried = [pulley.name for pulley in self.pulleys], [item.pulley for item in self.tensioners]
-        for number, name in enumerate(carried, 1):
-            if name not in names:
-                raise ValueError(
-                    f'tensioner[{number}].pulley = "{name}" is not the name of a pulley. '
-                    f"Known here: {', '.join(names)}."
-                )
-            if carried.count(name) > 1:
-                raise ValueError(
-                    f'pulley "{name}" is carried by {carried.count(name)} tensioners: one can carry it. '
-                    "Remove the others."
-                )
-        for item in self.tensioners:
-            if isinstance(item, MovingTensioner):
-                item.leverage(*path_gradient(self.path, self.carried(item)))
+        check_tensioners(self.tensioners, self.pulleys, self.path)
         return self
 
     @cached_property

@@ -20,7 +20,7 @@ class Isolator(HubLink):
 
     kind: Literal["isolator"] = Field(description="the kind of link")
     stiffness: TorsionalStiffness = Field(gt=0, description="the torque over the twist, in N*m/rad")
-    damping: TorsionalDamping = Field(0.0, ge=0, description="the torque over the rate of twist, in N*m*s/rad")
+    damping: TorsionalDamping = Field(0.0, ge=0, description="the torque over the rate of twist, in N m s/rad")
 
 
 class OneWayClutch(HubLink):
@@ -31,7 +31,7 @@ class OneWayClutch(HubLink):
 
     kind: Literal["one_way_clutch"] = Field(description="the kind of link")
     locking_damping: TorsionalDamping = Field(
-        gt=0, description="the torque over the slip speed while it drives, in N*m*s/rad"
+        gt=0, description="the torque over the slip speed while it drives, in N m s/rad"
     )
     drag_torque: Torque = Field(0.0, ge=0, description="the largest torque while it overruns, in N*m")
     drives: Literal["forward", "backward"] = Field(
@@ -46,7 +46,7 @@ class FrictionClutch(HubLink):
     kind: Literal["friction_clutch"] = Field(description="the kind of link")
     capacity: Torque = Field(gt=0, description="the largest torque, in N*m")
     locking_damping: TorsionalDamping = Field(
-        gt=0, description="the torque over the slip speed below the capacity, in N*m*s/rad"
+        gt=0, description="the torque over the slip speed below the capacity, in N m s/rad"
     )
     schedule: Schedule | None = Field(None, description="the factor on the capacity over time, from 0 to 1")
 

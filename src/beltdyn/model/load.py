@@ -25,8 +25,8 @@ class Resistance(Load):
     creep_speed: AngularSpeed = Field(
         0.1, gt=0, description="the speed at which the constant part has reached 76 %, in rad/s"
     )
-    linear: TorsionalDamping = Field(0.0, ge=0, description="the part linear in the speed, in N*m*s/rad")
-    quadratic: QuadraticDamping = Field(0.0, ge=0, description="the part quadratic in the speed, in N*m*s^2/rad^2")
+    linear: TorsionalDamping = Field(0.0, ge=0, description="the part linear in the speed, in N m s/rad")
+    quadratic: QuadraticDamping = Field(0.0, ge=0, description="the part quadratic in the speed, in N m s^2/rad^2")
 
     @model_validator(mode="after")
     def _resists(self) -> Self:

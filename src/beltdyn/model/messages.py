@@ -84,7 +84,8 @@ def _sentence(detail: ErrorDetails, guide: Guide) -> str:
     if kind in ("literal_error", "union_tag_invalid"):
         return _choice_sentence(path, detail)
     if kind in ("union_tag_not_found", "model_attributes_type"):
-        return f"{path} = {value} has no kind. Known here: {', '.join(guide.kinds(location))}"
+        kinds = ", ".join(guide.kinds(location))
+        return f'{path} = {value} has no kind. Write {{ kind = "...", ... }} with one of {kinds}'
     rule = _RULES.get(kind)
     reason = rule.format(**context) if rule else detail["msg"]
     return f"{path} = {value} {reason}. {_remedy(schema)}".strip()

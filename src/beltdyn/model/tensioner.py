@@ -1,6 +1,7 @@
 """Tensioners: what presses a pulley against the belt."""
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from typing import Annotated, Literal, Self
 
 import numpy as np
@@ -9,7 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from beltdyn.model.part import Part
 from beltdyn.model.path import Path
-from beltdyn.model.pulley import Name
+from beltdyn.model.pulley import Name, Pulley
 from beltdyn.model.quantity import (
     Angle,
     AngularSpeed,
@@ -107,6 +108,18 @@ class MovingTensioner(_Carrier):
             If the tensioner cannot tension the belt.
         """
 
+    @abstractmethod
+    def moved_inertia(self, center: FloatArray, mass: float) -> float:
+        """Inertia of the tensioner with its pulley, a point mass since it turns on its own: kg, or kg m^2.
+
+        Parameters
+        ----------
+        center : ndarray, shape (2,), m
+            Nominal center of the pulley.
+        mass : float
+            Mass of the pulley, kg.
+        """
+
 
 class SlidingTensioner(MovingTensioner):
     """A pulley that slides along a line, pressed by a spring in `direction`."""
@@ -136,6 +149,10 @@ class SlidingTensioner(MovingTensioner):
             )
         return found
 
+    def moved_inertia(self, center: FloatArray, mass: float) -> float:
+        """As in the base, kg."""
+        return self.mass + mass
+
 
 class RotaryTensioner(MovingTensioner):
     """A pulley on an arm, pressed against the belt by a torsional spring about the pivot of the arm."""
@@ -151,7 +168,7 @@ class RotaryTensioner(MovingTensioner):
     )
     preload: Torque = Field(description="the moment of the spring at the pulley's center, in N*m")
     rate: TorsionalStiffness = Field(0.0, ge=0, description="the rate of the spring, in N*m/rad")
-    damping: TorsionalDamping = Field(0.0, ge=0, description="the viscous damping, in N*m*s/rad")
+    damping: TorsionalDamping = Field(0.0, ge=0, description="the viscous damping, in N m s/rad")
     tensioning_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path gets longer, in N*m")
     yielding_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path gets shorter, in N*m")
     creep_speed: AngularSpeed = Field(
@@ -161,7 +178,7 @@ class RotaryTensioner(MovingTensioner):
         None, description="the lower and the upper stop, from the pulley's center the way the path gets longer, in rad"
     )
     stop_stiffness: TorsionalStiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N*m/rad")
-    stop_damping: TorsionalDamping = Field(0.0, ge=0, description="the damping of the stops, in N*m*s/rad")
+    stop_damping: TorsionalDamping = Field(0.0, ge=0, description="the damping of the stops, in N m s/rad")
 
     def arm_length(self, center: FloatArray) -> float:
         """Distance of the pulley's center from the pivot, m."""
@@ -182,6 +199,48 @@ class RotaryTensioner(MovingTensioner):
                 "length of the path. Move its pivot"
             )
         return found
+
+    def moved_inertia(self, center: FloatArray, mass: float) -> float:
+        """As in the base, kg m^2."""
+        return self.inertia + mass * self.arm_length(center) ** 2
+
+
+def check_tensioners(tensioners: Sequence["AnyTensioner"], pulleys: Sequence[Pulley], path: Path) -> None:
+    """Check that tensioners carry the pulleys of a drive, and can tension its belt.
+
+    Parameters
+    ----------
+    tensioners : sequence
+        The tensioners.
+    pulleys : sequence of Pulley
+        The pulleys.
+    path : Path
+        Around all pulleys.
+
+    Raises
+    ------
+    ValueError
+        If a pulley does not exist or is carried twice, or a tensioner does not tension or has no inertia.
+    """
+    names, carried = [pulley.name for pulley in pulleys], [item.pulley for item in tensioners]
+    for position, (item, name) in enumerate(zip(tensioners, carried, strict=True), 1):
+        if name not in names:
+            raise ValueError(
+                f'tensioner[{position}].pulley = "{name}" is not the name of a pulley. Known here: {", ".join(names)}'
+            )
+        if carried.count(name) > 1:
+            raise ValueError(
+                f'pulley "{name}" is carried by {carried.count(name)} tensioners, and one can carry it. '
+                "Remove the others"
+            )
+        if isinstance(item, MovingTensioner):
+            center, gradient = path_gradient(path, names.index(name))
+            item.leverage(center, gradient)
+            if item.moved_inertia(center, pulleys[names.index(name)].mass) == 0:
+                raise ValueError(
+                    f'the tensioner of "{name}" moves nothing that has inertia. Give the pulley\'s mass, or that of '
+                    "the tensioner"
+                )
 
 
 def path_gradient(path: Path, pulley: int) -> tuple[FloatArray, FloatArray]:

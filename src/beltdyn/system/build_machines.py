@@ -99,17 +99,11 @@ def body_inertias(pulleys: Sequence[Pulley]) -> FloatArray:
 
 
 def tensioner_inertias(pulleys: Sequence[Pulley], tensioners: Sequence[AnyTensioner]) -> FloatArray:
-    """Inertia of each sliding or rotary tensioner with its pulley: kg along a line, kg m^2 about a pivot; shape (K,).
-
-    The pulley turns on its own, so that it counts as a point at its center.
-    """
-    found = []
-    for item, pulley in _carriers(pulleys, tensioners):
-        if isinstance(item, RotaryTensioner):
-            found.append(item.inertia + pulley.mass * item.arm_length(np.array(pulley.center)) ** 2)
-        else:
-            found.append(item.mass + pulley.mass)
-    return np.array(found, dtype=float)
+    """Inertia of each moving tensioner with its pulley: kg along a line, kg m^2 about a pivot; shape (K,)."""
+    return np.array(
+        [item.moved_inertia(np.array(pulley.center), pulley.mass) for item, pulley in _carriers(pulleys, tensioners)],
+        dtype=float,
+    )
 
 
 def carried_masses(pulleys: Sequence[Pulley], tensioners: Sequence[AnyTensioner]) -> FloatArray:

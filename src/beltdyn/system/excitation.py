@@ -69,7 +69,7 @@ def profile_angle(profiles: Profiles, number: int, time: float) -> float:
     half = 0.5 * omega * since
     wave = sin(half) / half if half != 0.0 else 1.0
     mean = constant + 0.5 * slope * since + amplitude * wave * cos(0.5 * omega * (begin + time) + phase)
-    return profiles.angle[k] + mean * since
+    return float(profiles.angle[k] + mean * since)
 
 
 @kernel
@@ -133,4 +133,4 @@ def _segment(profiles: Profiles, number: int, time: float) -> int:
             first = middle
         else:
             last = middle - 1
-    return first
+    return int(first)

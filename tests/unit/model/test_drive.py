@@ -108,3 +108,13 @@ def test_a_drive_travels_between_processes_with_its_text(drive: Drive) -> None:
     assert (again, again.text) == (drive, drive.text)
     changed = drive.replace(simulation=drive.simulation.replace(rtol=1 / 3e4))
     assert pickle.loads(pickle.dumps(changed)) == changed
+
+
+def test_breakpoints_are_those_of_all_profiles(drive: Drive) -> None:
+    """Of the paper's ramps, which coincide, and of what switches loads and clutches."""
+    schedule = {"kind": "step", "time": 0.3, "value": 1.0}
+    load = {"kind": "resistance", "linear": 0.1, "schedule": schedule}
+    clutch = {"kind": "friction_clutch", "capacity": 1.0, "locking_damping": 1.0, "inertia": 1.0}
+    changed = drive.pulleys[1].replace(load=[load], hub=[clutch | {"schedule": schedule | {"time": 0.1}}])
+    assert drive.breakpoints == (0.05, 0.6)
+    assert drive.replace(pulley=[drive.pulleys[0], changed]).breakpoints == (0.05, 0.1, 0.3, 0.6)

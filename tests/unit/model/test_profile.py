@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Constant, CosineRamp, CosineRampPublished, Profile, Pulley, Ramp, Table
+from beltdyn.model import Constant, CosineRamp, CosineRampPublished, Profile, Pulley, Ramp, Step, Table
 
 RISE = {"start": 0.05, "end": 0.6, "value": 12.0}
 
@@ -43,6 +43,13 @@ def test_table_is_linear_between_its_points() -> None:
     assert table.breakpoints() == ()
 
 
+def test_step_holds_from_just_after_its_instant() -> None:
+    step = Step(time=0.5, before=1.0, value=3.0)
+    np.testing.assert_array_equal(step.at([-1.0, 0.5, np.nextafter(0.5, 1.0), 2.0]), [1.0, 1.0, 3.0, 3.0])
+    assert step.breakpoints() == (0.5,)
+    assert Step(time=0.5, value=3.0).before == 0.0
+
+
 @pytest.mark.parametrize("kind", [Ramp, CosineRamp, CosineRampPublished])
 def test_rises_tell_their_breakpoints(kind: type[Ramp[float]]) -> None:
     assert kind(**RISE).breakpoints() == (0.05, 0.6)
@@ -52,6 +59,7 @@ def test_rises_tell_their_breakpoints(kind: type[Ramp[float]]) -> None:
     "profile",
     [
         Constant(value=2.0),
+        Step(time=0.3, before=-1.0, value=2.0),
         Ramp(**RISE),
         CosineRamp(**RISE),
         CosineRampPublished(**RISE),

@@ -1,0 +1,110 @@
+"""Machines as arrays: numbering of bodies, schedules, loads; inertia and weight of tensioners."""
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import FixedTensioner, Pulley, RotaryTensioner, SlidingTensioner
+from beltdyn.model.layout import lay_path
+from beltdyn.system.build_machines import (
+    body_inertias,
+    carried_masses,
+    machine_arrays,
+    shaft_bodies,
+    tensioner_inertias,
+)
+from beltdyn.system.excitation import profile_value
+from beltdyn.system.machine_arrays import (
+    FRICTION_CLUTCH,
+    ISOLATOR,
+    KLOSS,
+    NO_SCHEDULE,
+    ONE_WAY_CLUTCH,
+    POLYNOMIAL,
+    TABLE,
+)
+
+ISOLATING = {"kind": "isolator", "stiffness": 30.0, "damping": 0.4, "inertia": 0.1}
+OVERRUNNING = {"kind": "one_way_clutch", "locking_damping": 5.0, "drag_torque": 0.2, "inertia": 0.2}
+ENGAGING = {
+    "kind": "friction_clutch",
+    "locking_damping": 5.0,
+    "capacity": 2.0,
+    "inertia": 0.3,
+    "schedule": {"kind": "constant", "value": 0.5},
+}
+RESISTING = {"kind": "resistance", "linear": 0.1, "schedule": {"kind": "constant", "value": 0.25}}
+CURVE = {"kind": "table", "speeds": [0.0, 10.0], "torques": [0.0, -1.0], "harmonics": [{"order": 3, "amplitude": 0.1}]}
+MOTOR = {"kind": "motor", "breakdown_torque": 10.0, "breakdown_slip": 0.2, "synchronous_speed": -150.0}
+PULLEYS = [
+    Pulley(name="crank", center=(0, 0), radius=0.1, speed={"kind": "constant", "value": 7.0}, mass=3.0),
+    Pulley(
+        name="alternator",
+        center=(1, 0),
+        radius=0.05,
+        inertia=1.0,
+        load=[CURVE, RESISTING],
+        hub=[ISOLATING, OVERRUNNING],
+    ),
+    Pulley(name="compressor", center=(0.4, 0.5), radius=0.08, inertia=2.0, mass=1.5, load=[MOTOR], hub=[ENGAGING]),
+]
+ARM = RotaryTensioner(
+    kind="rotary", pulley="compressor", pivot=(0.1, 0.1), inertia=0.3, mass=0.5, center_of_mass=0.4, preload=5.0
+)
+SLIDE = SlidingTensioner(kind="sliding", pulley="alternator", direction=(1, 0), mass=2.0, preload=50.0)
+FIXED = FixedTensioner(kind="fixed", pulley="crank", direction=(0, 2))
+
+
+def test_bodies_are_the_rims_and_then_the_chains() -> None:
+    np.testing.assert_array_equal(shaft_bodies(PULLEYS), [0, 4, 5])
+    np.testing.assert_array_equal(body_inertias(PULLEYS), [0.0, 1.0, 2.0, 0.1, 0.2, 0.3])
+    couplings = machine_arrays(PULLEYS).couplings
+    np.testing.assert_array_equal(couplings.front, [1, 3, 2])
+    np.testing.assert_array_equal(couplings.back, [3, 4, 5])
+    np.testing.assert_array_equal(couplings.kind, [ISOLATOR, ONE_WAY_CLUTCH, FRICTION_CLUTCH])
+    np.testing.assert_array_equal(couplings.constants, [[30.0, 0.4, 0.0], [5.0, 0.2, 1.0], [5.0, 2.0, 0.0]])
+
+
+def test_schedules_follow_the_profiles_of_the_pulleys() -> None:
+    machines = machine_arrays(PULLEYS)
+    np.testing.assert_array_equal(machines.torques.schedule, [NO_SCHEDULE, 3, NO_SCHEDULE])
+    np.testing.assert_array_equal(machines.couplings.schedule, [NO_SCHEDULE, NO_SCHEDULE, 4])
+    assert [profile_value(machines.profiles, k, 0.0)[0] for k in range(5)] == [7.0, 0.0, 0.0, 0.25, 0.5]
+
+
+def test_loads_are_sorted_by_pulley() -> None:
+    torques = machine_arrays(PULLEYS).torques
+    np.testing.assert_array_equal(torques.first, [0, 0, 2, 3])
+    np.testing.assert_array_equal(torques.kind, [TABLE, POLYNOMIAL, KLOSS])
+    np.testing.assert_array_equal(torques.table_first, [0, 2, 2, 2])
+    np.testing.assert_array_equal(torques.table, [[0.0, 0.0], [10.0, -1.0]])
+    np.testing.assert_array_equal(torques.harmonic_first, [0, 1, 1, 1])
+    np.testing.assert_array_equal(torques.harmonic, [[3.0, 0.1, 0.0]])
+
+
+def test_moving_tensioners_keep_their_order_and_fixed_ones_leave_no_trace() -> None:
+    tensioners = machine_arrays(PULLEYS, (FIXED, ARM, SLIDE), lay_path(PULLEYS)).tensioners
+    np.testing.assert_array_equal(tensioners.pulley, [2, 1])
+    np.testing.assert_array_equal(tensioners.rotary, [True, False])
+    np.testing.assert_allclose(tensioners.origin, [[0.1, 0.1], [1.0, 0.0]])
+    np.testing.assert_allclose(tensioners.direction, [[0.6, 0.8], [1.0, 0.0]])
+    np.testing.assert_allclose(tensioners.arm, [0.5, 0.0])
+
+
+def test_inertia_and_weight_of_tensioners() -> None:
+    """A pulley on an arm is a point mass; an arm weighs on its coordinate as its share does at the pulley's center."""
+    some = (FIXED, ARM, SLIDE)
+    np.testing.assert_allclose(tensioner_inertias(PULLEYS, some), [0.3 + 1.5 * 0.5**2, 2.0 + 0.0])
+    np.testing.assert_allclose(carried_masses(PULLEYS, some), [1.5 + 0.4 * 0.5, 2.0 + 0.0])
+
+
+def test_a_drive_without_machines() -> None:
+    machines = machine_arrays(())
+    assert [len(machines.torques.kind), len(machines.couplings.kind), len(machines.tensioners.pulley)] == [0, 0, 0]
+    assert [len(item) for item in (machines.profiles.first, machines.torques.first)] == [1, 1]
+    assert machines.tensioners.origin.shape == (0, 2)
+
+
+def test_tensioners_need_a_path() -> None:
+    with pytest.raises(ModelError, match="the path is missing"):
+        machine_arrays(PULLEYS, [ARM])
