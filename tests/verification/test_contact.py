@@ -133,7 +133,7 @@ class TestRoundBelt:
         loads = self.loads(system, 0.0)
         np.testing.assert_allclose(loads.hub, 0.0, atol=1e-9)  # rounding
         assert loads.moment[0] == pytest.approx(0.0, abs=1e-12)
-        assert loads.penalty[0] == pytest.approx(STIFFNESS * self.DEPTH**2 / 2 * self.LENGTH, rel=self.MESH)
+        assert loads.stored[0] == pytest.approx(STIFFNESS * self.DEPTH**2 / 2 * self.LENGTH, rel=self.MESH)
 
     @pytest.mark.parametrize("speed", [-1.0, 1.0])
     def test_creep(self, system: System, contact: Contact, speed: float) -> None:

@@ -30,7 +30,8 @@ class DampingWorkspace(NamedTuple):
     slope: FloatArray
     """Derivatives of eps and kappa with respect to the coordinates e at a point, shape (2, 12)."""
     change: FloatArray
-    """Rates of these derivatives, which are the derivatives of the rates of eps and kappa, shape (2, 12)."""
+    """Rates of these derivatives, which are the derivatives of the rates of eps and kappa; then derivatives of the
+    stress in both, the tangent's part; shape (2, 12)."""
     by_shear: FloatArray
     """Derivative of p = ds/dx with respect to e, and its rate, shape (2, 12)."""
     shear_curvature: FloatArray
@@ -114,25 +115,27 @@ def damping_force(
         force, moment = axial * point.strain_rate, bending * point.curvature_rate
         power += force * point.strain_rate + moment * point.curvature_rate
         twist += moment * point.stretch
-        for row in range(12):
-            along, across = work.slope[0, row], work.slope[1, row]
-            gradient[row] += force * along + moment * across
-            for column in range(12):
-                tangent[row, column] += axial * along * (
-                    by_position * work.change[0, column] + by_velocity * work.slope[0, column]
-                ) + bending * across * (by_position * work.change[1, column] + by_velocity * work.slope[1, column])
+        _add_products(axial, bending, point, by_position, by_velocity, work, gradient, tangent)
         _add_curvature(point, slope, bend, by_position * force, by_position * moment, tangent)
         for a in range(4):
             work.pull[_first(a)] += moment * slope[a] * point.tangent_x
             work.pull[_first(a) + 1] += moment * slope[a] * point.tangent_y
-    for row in range(12):
-        for column in range(12):
-            tangent[row, column] += by_position * (
-                work.pull[row] * work.by_shear[0, column]
-                + work.by_shear[0, row] * work.pull[column]
-                + twist * work.shear_curvature[row, column]
-            )
+    _add_shear_products(by_position, twist, work, tangent)
     return power
+
+
+@kernel
+def damping_tension(metric: float, metric_rate: float, section: Section) -> float:
+    """Tension by the rate of stretch, EA alpha1 tau_s |q| deps/dt, N: to be added to `strain_energy.axial_force`.
+
+    Parameters
+    ----------
+    metric, metric_rate
+        q . q and its rate, 1/s.
+    section
+        With its factors of damping.
+    """
+    return 0.5 * section.axial_damping * metric_rate * sqrt(metric)
 
 
 @kernel
@@ -156,9 +159,9 @@ def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: Dampi
             work.by_shear[0, first + c] = factor * gradient[c]
             rate += factor * gradient[c] * velocity[first + c]
         add_shear_curvature(shear, factor, work.shear_curvature, first)
-    for row in range(12):
-        for column in range(12):
-            work.by_shear[1, row] += work.shear_curvature[row, column] * velocity[column]
+        for c in range(first, first + 4):
+            for d in range(first, first + 4):
+                work.by_shear[1, c] += work.shear_curvature[c, d] * velocity[d]
     return total, rate
 
 
@@ -210,6 +213,31 @@ def _strain_rates(
 
 
 @kernel
+def _add_products(
+    axial: float,
+    bending: float,
+    point: _Point,
+    by_position: float,
+    by_velocity: float,
+    work: DampingWorkspace,
+    gradient: FloatArray,
+    tangent: FloatArray,
+) -> None:
+    """Add the force at a point, and what the rates of the strains contribute to the tangent."""
+    force, moment = axial * point.strain_rate, bending * point.curvature_rate
+    for column in range(12):
+        gradient[column] += force * work.slope[0, column] + moment * work.slope[1, column]
+        for k, stiffness in ((0, axial), (1, bending)):
+            work.change[k, column] = stiffness * (
+                by_position * work.change[k, column] + by_velocity * work.slope[k, column]
+            )
+    for row in range(12):
+        along, across = work.slope[0, row], work.slope[1, row]
+        for column in range(12):
+            tangent[row, column] += along * work.change[0, column] + across * work.change[1, column]
+
+
+@kernel
 def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment: float, tangent: FloatArray) -> None:
     """Add force times the second derivative of eps and moment times that of kappa in the centreline's vectors.
 
@@ -228,3 +256,15 @@ def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment:
             tangent[row, column + 1] += qq * xy + qw * uy * uy - wq * ux * ux
             tangent[row + 1, column] += qq * xy - qw * ux * ux + wq * uy * uy
             tangent[row + 1, column + 1] += qq * yy - (qw + wq) * ux * uy
+
+
+@kernel
+def _add_shear_products(by_position: float, twist: float, work: DampingWorkspace, tangent: FloatArray) -> None:
+    """Add the sum over the points of the moment times the second derivative of kappa in q and p, and in p alone."""
+    for row in range(12):
+        for column in range(12):
+            tangent[row, column] += by_position * (
+                work.pull[row] * work.by_shear[0, column]
+                + work.by_shear[0, row] * work.pull[column]
+                + twist * work.shear_curvature[row, column]
+            )

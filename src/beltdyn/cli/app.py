@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError
 
 from beltdyn import __version__
+from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error
 from beltdyn.cli.demo import demo
@@ -28,7 +29,7 @@ app = App(
     "`beltdyn run drive.toml`.",
     suppress_keyboard_interrupt=False,
 )
-_COMMANDS: tuple[Callable[..., object], ...] = (new, check, run, static, plot, demo, paper, schema)
+_COMMANDS: tuple[Callable[..., object], ...] = (new, check, run, static, plot, demo, paper, catalogue, schema)
 for position, command in enumerate(_COMMANDS):
     app.command(command, sort_key=position)
 

@@ -2,6 +2,7 @@
 
 from beltdyn.model.advice import advise
 from beltdyn.model.belt import Belt
+from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.hub import FrictionClutch, Isolator, OneWayClutch
@@ -22,6 +23,7 @@ __all__ = [
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
+    "Entry",
     "FixedTensioner",
     "FrictionClutch",
     "Harmonic",
@@ -48,4 +50,5 @@ __all__ = [
     "layer_lengths",
     "load",
     "loads",
+    "read_catalogue",
 ]

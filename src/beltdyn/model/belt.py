@@ -1,15 +1,20 @@
 """The belt: a closed loop of rectangular section."""
 
-from typing import Literal, Self
+from math import pi, sin
+from typing import Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
+from beltdyn.model.belt_form import describe_forms, to_material
 from beltdyn.model.part import Part
-from beltdyn.model.quantity import Count, Density, Length, Ratio, Stress
+from beltdyn.model.quantity import Angle, Count, Density, Length, Ratio, Stress, Time
 
 _LINKS = {"truss": 1, "three-node-beam": 2}
 _GROUP = 3
 _FEWEST_LINKS = 9
+
+Side = Literal["inside", "outside"]
+"""The side of the belt that touches a pulley; the outside is the belt's back."""
 
 
 class Belt(Part):
@@ -17,7 +22,13 @@ class Belt(Part):
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
     or text such as ``"25 mm"``.
+
+    In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
+    `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
+    number of `ribs`; they are turned into density, modulus and factors when the belt is made.
     """
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
 
     length: Length = Field(gt=0, description="the unstretched length of the closed belt, in m")
     width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
@@ -25,6 +36,25 @@ class Belt(Part):
     density: Density = Field(gt=0, description="the density of the belt, in kg/m^3")
     youngs_modulus: Stress = Field(gt=0, description="Young's modulus of the belt, in Pa")
     poissons_ratio: Ratio = Field(gt=-1, lt=0.5, description="Poisson's ratio of the belt")
+    pitch_offset: Length = Field(
+        0.0, ge=0, description="the distance from the inside surface to the line that carries the tension, in m"
+    )
+    back_offset: Length = Field(
+        0.0, ge=0, description="the distance from the back surface to the line that carries the tension, in m"
+    )
+    wedge_angle: Angle | None = Field(
+        None,
+        gt=0,
+        le=pi,
+        description="the angle between the flanks of a V-belt, or of the ribs, in their grooves, in rad; "
+        "none for a flat belt",
+    )
+    stretch_damping_time: Time = Field(
+        0.0, ge=0, description="the time that multiplies the rate of strain in the tension, in s"
+    )
+    bending_damping_time: Time = Field(
+        0.0, ge=0, description="the time that multiplies the rate of curvature in the bending moment, in s"
+    )
     axial_factor: Ratio = Field(1.0, gt=0, description="the factor α₁ on the axial stiffness")
     bending_factor: Ratio = Field(1.0, gt=0, description="the factor α₂ on the bending and shear stiffness")
     shear_correction: Ratio | None = Field(
@@ -46,6 +76,22 @@ class Belt(Part):
     quadrature_points: Count = Field(
         4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_any_form(cls, data: Any, info: ValidationInfo) -> Any:
+        return to_material(data, (info.context or {}).get("base"))
+
+    @model_validator(mode="after")
+    def _only_the_papers_element_is_damped(self) -> Self:
+        for key in ("stretch_damping_time", "bending_damping_time"):
+            time = getattr(self, key)
+            if self.links and time > 0:
+                raise ValueError(
+                    f'{key} = {time:g} s does not fit discretization = "{self.discretization}", which has no '
+                    'damping. Remove it, or set discretization = "ancf"'
+                )
+        return self
 
     @model_validator(mode="after")
     def _links_come_in_threes(self) -> Self:
@@ -106,6 +152,11 @@ class Belt(Part):
     def bending_stiffness(self) -> float:
         """Bending stiffness E I α₂, N m²."""
         return self.youngs_modulus * self.second_moment * self.bending_factor
+
+    @property
+    def wedge_factor(self) -> float:
+        """Factor 1 / sin(wedge_angle / 2) on the coefficient of friction in grooves; 1 for a flat belt."""
+        return 1.0 if self.wedge_angle is None else 1.0 / sin(self.wedge_angle / 2)
 
     @property
     def mass_per_length(self) -> float:

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Self
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.model.belt import Belt
@@ -11,11 +13,13 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.layout import lay_path
 from beltdyn.model.part import Part
 from beltdyn.model.path import Path
-from beltdyn.model.pulley import Pulley
+from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.quantity import Acceleration
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.tensioner import AnyTensioner, Tensioner, check_tensioners
 from beltdyn.model.toml_writer import dumps
+
+FloatArray = NDArray[np.float64]
 
 _LARGEST_STRAIN = 0.5
 
@@ -24,7 +28,7 @@ class Drive(Part):
     """A belt drive, complete and consistent.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`
-    (a list) and `simulation`, each a part or a mapping of its arguments.
+    (a list) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
     """
 
     belt: Belt = Field(description="the group [belt]")
@@ -87,6 +91,11 @@ class Drive(Part):
         """Instants of kinks and jumps in what is prescribed over time, s, ascending."""
         profiles = [profile for pulley in self.pulleys for profile in pulley.profiles]
         return tuple(sorted({float(t) for profile in profiles for t in profile.breakpoints()}))
+
+    @property
+    def frictions(self) -> FloatArray:
+        """Coefficients of friction of the pulleys, with the wedge factor on those that touch the inside; shape (n,)."""
+        return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])
 
     @property
     def text(self) -> str:

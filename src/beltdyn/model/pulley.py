@@ -4,11 +4,13 @@ from typing import Annotated, Self
 
 from pydantic import Field, StringConstraints, model_validator
 
+from beltdyn.model.belt import Belt, Side
+from beltdyn.model.contact import Contact
 from beltdyn.model.hub import AnyHubLink
 from beltdyn.model.load import AnyLoad
 from beltdyn.model.part import Part
 from beltdyn.model.profile import Harmonic, Profile, SpeedProfile, TorqueProfile
-from beltdyn.model.quantity import Coordinate, Inertia, Length, Mass
+from beltdyn.model.quantity import Coordinate, Inertia, Length, Mass, Ratio
 
 Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]
 
@@ -25,6 +27,12 @@ class Pulley(Part):
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
     radius: Length = Field(gt=0, description="the radius at which the belt's centerline runs, in m")
+    side: Side = Field("inside", description="the side of the belt that touches the pulley; the outside is its back")
+    friction: Ratio | None = Field(
+        None,
+        ge=0,
+        description="the coefficient of friction on this pulley, without the wedge; by default that of the contact",
+    )
     speed: SpeedProfile | None = Field(None, description="the prescribed speed of the shaft over time, in rad/s")
     harmonics: tuple[Harmonic, ...] = Field(
         (), description="the harmonics of the prescribed speed, over the angle of its mean"
@@ -90,3 +98,9 @@ class Pulley(Part):
     def schedules(self) -> tuple[Profile | None, ...]:
         """The schedules of the loads, then of the links of the hub chain; None where there is none."""
         return (*(item.schedule for item in self.load), *(getattr(link, "schedule", None) for link in self.hub))
+
+
+def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
+    """Coefficient of friction of a belt on a pulley, with the wedge factor where its inside touches."""
+    given = contact.friction if pulley.friction is None else pulley.friction
+    return given * (belt.wedge_factor if pulley.side == "inside" else 1.0)

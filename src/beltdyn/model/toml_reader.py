@@ -79,9 +79,9 @@ def _parse(text: str) -> dict[str, Any]:
 
 
 def _refers_to_files(data: Any) -> bool:
-    """Tell whether a text is of no use without the CSV files it names."""
+    """Tell whether a text is of no use without the files it names: CSV files, or the user's catalogue."""
     if isinstance(data, dict):
-        return "file" in data or any(_refers_to_files(value) for value in data.values())
+        return not {"file", "catalogue"}.isdisjoint(data) or any(_refers_to_files(value) for value in data.values())
     return isinstance(data, list) and any(_refers_to_files(value) for value in data)
 
 

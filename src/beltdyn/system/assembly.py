@@ -252,7 +252,16 @@ def _contact(
         if carriage.unknown >= 0 and (by_position != 0.0 or by_velocity != 0.0):
             drift = by_position if rounds == 2 else 0.0
             couple_carriage(
-                system, element, node_j, bodies[p].unknown, carriage, by_velocity, drift, work.contact, work.drift, matrix
+                system,
+                element,
+                node_j,
+                bodies[p].unknown,
+                carriage,
+                by_velocity,
+                drift,
+                work.contact,
+                work.drift,
+                matrix,
             )
 
 
@@ -305,9 +314,7 @@ def _scatter(i: int, j: int, work: AssemblyWorkspace, matrix: RingMatrix) -> Non
 
 
 @kernel
-def _bodies(
-    system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads
-) -> None:
+def _bodies(system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads) -> None:
     """Motion of the free bodies (Eq. 23)."""
     bodies, first = system.bodies, NODE * system.nodes
     for body in range(bodies.size):

@@ -9,6 +9,7 @@ from beltdyn.ancf.section import Section
 from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
+from beltdyn.model.pulley import friction_on
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
 from beltdyn.system.arrays import BODY, NODE, PULLEY, Quadrature, Supports, System
@@ -20,6 +21,7 @@ from beltdyn.system.build_machines import (
 )
 from beltdyn.system.discretization import discretize
 from beltdyn.system.machine_arrays import Records, records
+from beltdyn.system.weight import weight_forces
 
 _REDUCED = 3
 """Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
@@ -82,7 +84,7 @@ def belt_system(
     path
         The path around the pulleys; needed where there are tensioners.
     gravity
-        Acceleration of gravity, m/s^2.
+        Acceleration of gravity, m/s^2; the belt's weight joins the forces on the nodes.
     fixed
         Pairs (node, coordinate) that do not move; coordinates 0 to 5 are r, r_x, r_y (Eq. 6).
     forces
@@ -112,8 +114,9 @@ def belt_system(
     elements = mesh.length.size
     nodes = elements if closure == "shared_node" else elements + 1
     radii = [pulley.radius for pulley in pulleys]
-    frictions = [contact.friction for _ in pulleys] if contact else []
+    frictions = [friction_on(pulley, belt, contact) for pulley in pulleys] if contact else []
     machines = machine_arrays(pulleys, tensioners, path, gravity)
+    supports = _supports(nodes, fixed, forces, moments)
     return System(
         nodes=nodes,
         closed=closure == "shared_node",
@@ -126,12 +129,12 @@ def belt_system(
         pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
         bodies=_bodies(pulleys, radii, tensioners, machines.tensioners),
         **machines._asdict(),
-        supports=_supports(nodes, fixed, forces, moments),
+        supports=supports._replace(force=supports.force + weight_forces(mesh, nodes, gravity)),
     )
 
 
 def belt_section(belt: Belt) -> Section:
-    """Stiffness and inertia of a belt's section.
+    """Stiffness, damping and inertia of a belt's section.
 
     Parameters
     ----------
@@ -153,6 +156,8 @@ def belt_section(belt: Belt) -> Section:
         thickness=belt.youngs_modulus * belt.area,
         mass=belt.mass_per_length,
         rotary_inertia=belt.rotary_inertia,
+        axial_damping=belt.axial_stiffness * belt.stretch_damping_time,
+        bending_damping=belt.bending_stiffness * belt.bending_damping_time,
     )
 
 

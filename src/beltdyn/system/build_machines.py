@@ -82,7 +82,9 @@ def machine_arrays(
     moving = [item for item in tensioners if isinstance(item, SlidingTensioner | RotaryTensioner)]
     if moving and path is None:
         raise ModelError("the path is missing: a tensioner needs it, to know which way the belt gets longer.")
-    return Machines(_profiles(pulleys), _torques(pulleys), _couplings(pulleys), _tensioners(pulleys, moving, path, gravity))
+    return Machines(
+        _profiles(pulleys), _torques(pulleys), _couplings(pulleys), _tensioners(pulleys, moving, path, gravity)
+    )
 
 
 def shaft_bodies(pulleys: Sequence[Pulley]) -> IntArray:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-Records = NDArray[np.void]
+Records = np.recarray[Any, Any]
 """Rows of one kind: `table.name` is a column, `table[k].name` a value."""
 
 
@@ -17,7 +17,7 @@ def record(**fields: str) -> np.dtype[np.void]:
     return np.dtype(list(fields.items()), align=True)
 
 
-def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Any:
+def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Records:
     """Make a table of rows of a kind; fields that are not given are zero.
 
     One array takes the place of one for every field, which spares the compiler most of its work.
@@ -33,7 +33,7 @@ def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Any:
     -------
     recarray
     """
-    table = np.zeros(len(np.asarray(next(iter(columns.values())))), kind).view(np.recarray)
+    table: Records = np.zeros(len(np.asarray(next(iter(columns.values())))), kind).view(np.recarray)
     for name, values in columns.items():
         table[name] = values
     return table

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import element_energy
+from beltdyn.ancf.material_damping import damping_tension
 from beltdyn.ancf.strain_energy import axial_force
 from beltdyn.chain.chain_force import chain_energy
 from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
@@ -136,10 +137,16 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
 
 
 @kernel
-def _slope(samples: Samples, xi: float, length: float) -> tuple[float, float]:
-    """Derivative of the centreline with respect to the belt coordinate."""
-    x, y = combine(samples.control, bernstein_rates(xi))
-    return x / length, y / length
+def _stretch(system: System, samples: Samples, xi: float, length: float) -> tuple[float, float, float]:
+    """Derivative of the centreline with respect to the belt coordinate, and the tension."""
+    weights = bernstein_rates(xi)
+    x, y = combine(samples.control, weights)
+    vx, vy = combine(samples.control_velocity, weights)
+    square = length * length
+    metric = (x * x + y * y) / square
+    tension = axial_force(metric, system.section)
+    tension += damping_tension(metric, 2.0 * (x * vx + y * vy) / square, system.section)
+    return x / length, y / length, tension
 
 
 @kernel
@@ -148,8 +155,7 @@ def _observe_tension(system: System, length: float, curve: int, samples: Samples
     mean = square = 0.0
     for point in range(system.elastic.points.size):
         weight = system.elastic.weights[point]
-        qx, qy = _slope(samples, system.elastic.points[point], length)
-        force = axial_force(qx * qx + qy * qy, system.section)
+        _, _, force = _stretch(system, samples, system.elastic.points[point], length)
         mean += weight * force
         square += weight * force * force
     result.belt_tension[k, curve] = mean
@@ -166,10 +172,8 @@ def _observe_points(system: System, length: float, curve: int, samples: Samples,
         weights = bernstein(xi)
         x, y = combine(samples.control, weights)
         vx, vy = combine(samples.control_velocity, weights)
-        qx, qy = _slope(samples, xi, length)
-        metric = qx * qx + qy * qy
-        samples.tension[row] = axial_force(metric, system.section)
-        samples.speed[row] = (qx * vx + qy * vy) / sqrt(metric)
+        qx, qy, samples.tension[row] = _stretch(system, samples, xi, length)
+        samples.speed[row] = (qx * vx + qy * vy) / sqrt(qx * qx + qy * qy)
         result.contact_position[k, row, 0] = x
         result.contact_position[k, row, 1] = y
         result.contact_pulley[k, row] = -1

@@ -7,9 +7,7 @@ from beltdyn.system.machine_arrays import Records
 
 
 @kernel
-def tensioner_place(
-    tensioners: Records, number: int, q: float
-) -> tuple[float, float, float, float, float, float]:
+def tensioner_place(tensioners: Records, number: int, q: float) -> tuple[float, float, float, float, float, float]:
     """Center of the carried pulley, and its derivatives with respect to the coordinate of the tensioner.
 
     On a line, c + q u; on an arm of length a, p + a (cos phi u + sin phi n) with phi = sense q and n the left normal

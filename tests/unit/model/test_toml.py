@@ -46,7 +46,7 @@ def test_tables_are_read_beside_the_drive_file(drive_file: Path) -> None:
 
 def test_schema_knows_every_group() -> None:
     schema = json_schema()
-    assert set(schema["properties"]) == {"belt", "pulley", "contact", "tensioner", "simulation"}
+    assert set(schema["properties"]) == {"belt", "pulley", "contact", "tensioner", "simulation", "gravity"}
     assert {"Belt", "Pulley", "Contact", "Simulation"} <= set(schema["$defs"])
     assert "in m" in json.dumps(schema["$defs"]["Belt"]["properties"]["length"])
 
@@ -72,6 +72,7 @@ KEYS = st.sampled_from(
     [
         *("belt", "pulley", "contact", "simulation", "length", "width", "name", "center", "radius", "speed", "torque"),
         *("tensioner", "load", "hub", "harmonics", "mass"),
+        *("profile", "ribs", "catalogue", "axial_stiffness", "wedge_angle", "gravity", "side"),
         *("inertia", "kind", "start", "end", "value", "file", "times", "values", "friction", "elements", "duration"),
     ]
 )
@@ -106,8 +107,9 @@ def test_arbitrary_toml(data: dict[str, Any]) -> None:
 @settings(max_examples=300)
 def test_the_papers_drive_with_an_arbitrary_value(drive: Drive, data: st.DataObject) -> None:
     content = drive.model_dump(by_alias=True, exclude_none=True)
-    group = data.draw(st.sampled_from(["belt", "contact", "pulley", "simulation"]))
-    target = data.draw(st.sampled_from(content["pulley"])) if group == "pulley" else content[group]
+    group = data.draw(st.sampled_from(sorted(content)))
+    target = {"pulley": data.draw(st.sampled_from(content["pulley"]))}.get(group, content[group])
+    target = target if isinstance(target, dict) else content
     target[data.draw(st.sampled_from(sorted(target)) | KEYS)] = data.draw(VALUES)
     read(tomli_w.dumps(content))
 

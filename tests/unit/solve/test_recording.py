@@ -25,7 +25,9 @@ def system(change: Change) -> System:
 
 def chunk(change: Change, system: System, time: float) -> Chunk:
     state = laid(system, change().path)
-    return Chunk.at(np.array([time]), state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), np.array([1e-4]))
+    return Chunk.at(
+        np.array([time]), state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), np.array([1e-4])
+    )
 
 
 @pytest.mark.parametrize(

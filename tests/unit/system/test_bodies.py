@@ -111,7 +111,7 @@ def residual(system: System, state: State, equations: Equations, factors: tuple[
 def test_tangent(
     system: System, moving: State, scale: FloatArray, dense: Dense, factors: tuple[float, float, float]
 ) -> None:
-    """Rows and columns of the bodies to the floor of central differences, apart from the far larger ones of the belt."""
+    """The bodies' rows and columns to the floor of central differences, apart from the far larger ones of the belt."""
     equations = new_equations(system)
     tangent = dense(residual(system, moving, equations, factors), True)[0].copy()
     unknowns = [*range(NODE * system.nodes), *(NODE * system.nodes + np.flatnonzero(system.bodies.unknown >= 0))]
@@ -144,7 +144,7 @@ def test_couplings_act_on_both_bodies(system: System, moving: State) -> None:
     residual(system, lifted, equations, (0.0, 0.0, 0.0))
     loads = equations.loads
     assert np.all(loads.moment == 0.0)
-    chain = loads.force[: TENSIONER].sum() - loads.shaft[np.flatnonzero(system.pulleys.shaft == SECOND_HUB)[0]]
+    chain = loads.force[:TENSIONER].sum() - loads.shaft[np.flatnonzero(system.pulleys.shaft == SECOND_HUB)[0]]
     assert abs(loads.force[FIRST_HUB]) > 0.1
     assert chain == pytest.approx(0.0, abs=1e-12)
 
@@ -166,7 +166,8 @@ def test_power_of_the_bodies_is_what_is_lost_and_stored(system: System, moving: 
     loads, velocity = equations.loads, lifted.velocity[bodies]
     torque_work, losses = loads.power[1], loads.power[5] + loads.power[6]
     free = system.bodies.unknown >= 0
-    assert loads.power[5] > 0.0 and loads.power[6] > 0.0
+    assert loads.power[5] > 0.0
+    assert loads.power[6] > 0.0
     assert loads.force[free] @ velocity[free] == pytest.approx(torque_work - losses - rate, rel=1e-7)
 
 

@@ -23,7 +23,22 @@ def test_section_of_the_papers_belt(drive: Drive) -> None:
 def test_factors_leave_thickness_and_inertia_alone(drive: Drive, factor: str, field: str) -> None:
     before, after = belt_section(drive.belt), belt_section(drive.belt.replace(**{factor: 3.0}))
     assert getattr(after, field) != getattr(before, field)
-    assert after[-3:] == before[-3:]
+    assert (after.thickness, after.mass, after.rotary_inertia) == (before.thickness, before.mass, before.rotary_inertia)
+
+
+def test_damping_is_stiffness_times_its_time(drive: Drive) -> None:
+    belt = drive.belt.replace(stretch_damping_time=2e-4, bending_damping_time="3 ms", axial_factor=2.0)
+    section = belt_section(belt)
+    assert section.axial_damping == pytest.approx(2e-4 * section.axial)
+    assert section.bending_damping == pytest.approx(3e-3 * section.bending)
+
+
+def test_weight_joins_the_forces_on_the_nodes(drive: Drive) -> None:
+    heavy = drive_system(drive.replace(gravity=(0.0, "-9.81 m/s^2")))
+    weight = drive.belt.mass_per_length * drive.belt.length * 9.81
+    assert heavy.supports.force.reshape(-1, 6)[:, :2].sum(axis=0) == pytest.approx([0.0, -weight])
+    pulled = belt_system(drive.belt, forces=[(0, (0.0, 5.0))], gravity=(0.0, -9.81))
+    assert pulled.supports.force.reshape(-1, 6)[:, 1].sum() == pytest.approx(5.0 - weight)
 
 
 @pytest.mark.parametrize(("closure", "extra"), [("shared_node", 0), ("multipliers", 1), ("open", 1)])

@@ -108,7 +108,8 @@ def test_harmonics_ride_on_the_angle_of_the_mean(profiles: Profiles, case: tuple
     amplitudes, phases = np.array([0.1, -0.05]), np.array([0.3, 0.0])
     waves = amplitudes * np.exp(1j * (orders * angle + phases))
     turned = angle + np.sum((waves.imag - amplitudes * np.sin(phases)) / orders)
-    expected = turned, mean * (1 + np.sum(waves.real)), rate * (1 + np.sum(waves.real)) - mean**2 * np.sum(orders * waves.imag)
+    factor, change = 1 + np.sum(waves.real), np.sum(orders * waves.imag)
+    expected = turned, mean * factor, rate * factor - mean**2 * change
     found = prescribed_motion(profiles, len(PROFILES) + 1 + number, time)
     assert found == pytest.approx(expected, rel=1e-13, abs=ROUNDING)
 

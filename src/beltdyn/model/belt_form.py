@@ -1,0 +1,144 @@
+"""The forms in which a belt's section is given, and the one into which they are turned.
+
+A belt is made of a material: density, Young's modulus, and the factors on axial and bending stiffness. What a user
+knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import Field
+
+from beltdyn.model.catalogue import Entry, read_catalogue
+from beltdyn.model.part import Part
+from beltdyn.model.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
+
+_POISSONS_RATIO = 0.3
+_MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
+_EXTENSIVE = ("width", "axial_stiffness", "bending_stiffness", "mass_per_length")
+_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "stretch_damping_time", "bending_damping_time")
+
+
+class Stiffnesses(Part):
+    """A belt's section by its stiffnesses."""
+
+    width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
+    thickness: Length = Field(gt=0, description="the thickness of the belt, in the plane of the drive, in m")
+    axial_stiffness: AxialStiffness = Field(gt=0, description="the axial stiffness E A of the belt, in N")
+    bending_stiffness: BendingStiffness = Field(gt=0, description="the bending stiffness E I of the belt, in N*m^2")
+    mass_per_length: MassPerLength = Field(gt=0, description="the mass of a metre of the belt, in kg/m")
+
+
+class Sold(Part):
+    """A belt's section as it is sold."""
+
+    profile: str = Field(description="the name of the belt's profile in the catalogue, as text")
+    ribs: Count | None = Field(
+        None, ge=1, le=1000, description="the number of ribs of the profile, or of V-belts or cords side by side"
+    )
+    catalogue: str | None = Field(None, description="the path of a catalogue of your own, a TOML file, as text")
+
+
+_OWN = [key for key in Stiffnesses.model_fields if key not in ("width", "thickness")]
+
+
+def to_material(data: Any, base: Path | None) -> Any:
+    """Turn a belt given by a profile or by stiffnesses into one given by its material.
+
+    Parameters
+    ----------
+    data : Any
+        The keys of a belt as the user gave them; anything but a mapping is returned as it is.
+    base : Path or None
+        Folder that the path of a catalogue starts from; None for the working directory.
+
+    Returns
+    -------
+    Any
+        Keys that are fields of `Belt`: E = EA / bh, alpha2 = EI / (E b h^3 / 12), rho = m / bh, and what the catalogue
+        says of the profile and the user does not.
+
+    Raises
+    ------
+    ValueError
+        If two forms are mixed, or a profile and its size do not give a belt.
+    """
+    if not isinstance(data, Mapping):
+        return data
+    given = [key for key in (*Sold.model_fields, *_OWN) if key in data]
+    if not given:
+        return data
+    both = [key for key in _MATERIAL if key in data]
+    if both:
+        raise ValueError(
+            f"{given[0]} and {both[0]} exclude each other: a belt is given by a profile, or by its stiffnesses and its "
+            "mass per length, or by its material. Keep one of the forms"
+        )
+    values = dict(data)
+    if any(key in data for key in Sold.model_fields):
+        sold = Sold.model_validate({key: values.pop(key) for key in Sold.model_fields if key in values})
+        values = _section(sold, data.get("width"), base) | values
+    given_section = {key: values.pop(key) for key in Stiffnesses.model_fields if key in values}
+    return {"poissons_ratio": _POISSONS_RATIO} | values | _material(Stiffnesses.model_validate(given_section))
+
+
+def _material(section: Stiffnesses) -> dict[str, float]:
+    """Give the material of a rectangle that has the stiffnesses and the mass."""
+    area = section.width * section.thickness
+    modulus = section.axial_stiffness / area
+    return {
+        "width": section.width,
+        "thickness": section.thickness,
+        "density": section.mass_per_length / area,
+        "youngs_modulus": modulus,
+        "bending_factor": section.bending_stiffness / (modulus * area * section.thickness**2 / 12),
+    }
+
+
+def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
+    """Look up a profile, and give the keys of a belt of its size."""
+    catalogue = read_catalogue(sold.catalogue, base)
+    entry = catalogue.get(sold.profile)
+    if entry is None:
+        raise ValueError(
+            f'profile = "{sold.profile}" is not in the catalogue. Known are {", ".join(catalogue)}; a catalogue of '
+            'your own extends them: catalogue = "file.toml"'
+        )
+    size = _size(sold, entry, width)
+    section = {key: size * getattr(entry, key) for key in _EXTENSIVE}
+    return section | {key: getattr(entry, key) for key in ("thickness", *_TAKEN_OVER)}
+
+
+def _size(sold: Sold, entry: Entry, width: object) -> float:
+    """How many times the entry's own size a belt is."""
+    if entry.sold_by == "ribs":
+        if sold.ribs is None:
+            raise ValueError(
+                f'ribs is missing: profile "{sold.profile}" is sold by ribs, each {1e3 * entry.width:.3g} mm wide. '
+                "Give their number"
+            )
+        return sold.ribs
+    if sold.ribs is not None:
+        raise ValueError(
+            f'ribs = {sold.ribs} does not fit profile "{sold.profile}", which is flat and sold by width. '
+            "Give width in its place"
+        )
+    if width is None:
+        raise ValueError(f'width is missing: profile "{sold.profile}" is flat and sold by width. Give width')
+    return _Width.model_validate({"width": width}).width / entry.width
+
+
+class _Width(Part):
+    width: Length = Field(gt=0)
+
+
+def describe_forms(schema: dict[str, Any]) -> None:
+    """Add the keys of the other forms, which are replaced by those of the material on reading, to the JSON schema."""
+    forms = (Sold.model_json_schema(), Stiffnesses.model_json_schema())
+    for form in forms:
+        schema["properties"] = form["properties"] | schema["properties"]
+    required = schema.pop("required")
+    material = [key for key in required if key in (*_MATERIAL, "width", "thickness", "poissons_ratio")]
+    schema["required"] = [key for key in required if key not in material]
+    schema["anyOf"] = [{"required": keys} for keys in (material, forms[1]["required"], ["profile"])]

@@ -1,0 +1,100 @@
+"""The catalogue: belts as they are sold, by the name of their profile."""
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from math import pi
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, ValidationError
+
+from beltdyn.model.messages import explain, reason
+from beltdyn.model.part import Part
+from beltdyn.model.quantity import Angle, AxialStiffness, BendingStiffness, Length, MassPerLength, Time
+
+
+class Entry(Part):
+    """A profile of the catalogue: a belt of one rib, or of a certain width.
+
+    A profile sold by ribs gives the values of one rib, one V-belt or one cord; one that is sold by width gives those
+    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses and the mass.
+    """
+
+    title: str = Field(description="the name of the profile in words, as text")
+    sold_by: Literal["ribs", "width"] = Field("ribs", description="the measure of a belt's size: ribs or width")
+    width: Length = Field(gt=0, description="the width of a rib, or of the belt that the values belong to, in m")
+    thickness: Length = Field(gt=0, description="the thickness of the belt, in m")
+    axial_stiffness: AxialStiffness = Field(gt=0, description="the axial stiffness E A, in N")
+    bending_stiffness: BendingStiffness = Field(gt=0, description="the bending stiffness E I, in N*m^2")
+    mass_per_length: MassPerLength = Field(gt=0, description="the mass of a metre, in kg/m")
+    pitch_offset: Length = Field(
+        0.0, ge=0, description="the distance from the inside surface to the tension line, in m"
+    )
+    back_offset: Length = Field(0.0, ge=0, description="the distance from the back surface to the tension line, in m")
+    wedge_angle: Angle | None = Field(None, gt=0, le=pi, description="the angle between the flanks, in rad")
+    stretch_damping_time: Time = Field(0.0, ge=0, description="the damping time of stretch, in s")
+    bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")
+    generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")
+    source: str = Field(min_length=1, description="the source of the values, as text")
+
+
+def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, Entry]:
+    """Read the catalogue of the package, and that of a user over it.
+
+    Parameters
+    ----------
+    name : object, optional
+        Path of the user's file, as the user wrote it: a TOML table for each profile, whose keys are those of `Entry`.
+    base : Path, optional
+        Folder that a relative path starts from; by default the working directory.
+
+    Returns
+    -------
+    dict
+        Entries by the name of their profile.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, or is not a catalogue.
+    """
+    if name is None:
+        return dict(_shipped())
+    if not isinstance(name, str | Path):
+        raise ValueError(f"catalogue = {name!r} must be the path of a TOML file, as text")
+    try:
+        text = ((base or Path()) / name).read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f'catalogue = "{name}" is not a text in UTF-8. A catalogue is TOML') from error
+    except (OSError, ValueError) as error:
+        raise ValueError(
+            f'catalogue = "{name}" cannot be read: {reason(error)}. A relative path starts at the folder of the '
+            "drive file"
+        ) from error
+    return _shipped() | _entries(text, str(name))
+
+
+@cache
+def _shipped() -> dict[str, Entry]:
+    resource = files("beltdyn.model").joinpath("catalogue.toml")
+    return _entries(resource.read_text(encoding="utf-8"), resource.name)
+
+
+def _entries(text: str, name: str) -> dict[str, Entry]:
+    try:
+        tables: dict[str, Any] = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f'catalogue = "{name}" is not valid TOML: {error}. Correct the file there') from error
+    return {profile: _entry(profile, table, name) for profile, table in tables.items()}
+
+
+def _entry(profile: str, table: object, name: str) -> Entry:
+    if not isinstance(table, Mapping):
+        raise ValueError(f'catalogue = "{name}": {profile} must be a group of keys, such as [{profile}]. Correct it')
+    try:
+        return Entry.model_validate(table)
+    except ValidationError as error:
+        told = explain(error, Entry, table).splitlines()
+        raise ValueError("\n".join(f'catalogue = "{name}", profile {profile}: {line}' for line in told)) from None

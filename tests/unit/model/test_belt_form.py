@@ -1,0 +1,105 @@
+from math import pi, sin
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from beltdyn.model import Belt, Drive, json_schema, load, loads, read_catalogue
+
+FORM = {"length": 1.0, "width": 0.02, "thickness": "5 mm"}
+STIFF = {"axial_stiffness": "120 kN", "bending_stiffness": 0.05, "mass_per_length": 0.1}
+
+
+def make(**keys: Any) -> Belt:
+    return Belt.model_validate(keys)
+
+
+def test_stiffnesses_are_met() -> None:
+    belt = make(**FORM, **STIFF)
+    assert belt.axial_stiffness == pytest.approx(120e3, rel=1e-14)
+    assert belt.bending_stiffness == pytest.approx(0.05, rel=1e-14)
+    assert belt.mass_per_length == pytest.approx(0.1, rel=1e-14)
+    assert belt.poissons_ratio == 0.3
+    assert belt.axial_factor == 1.0
+    assert make(**FORM, **STIFF, poissons_ratio=0.45).poissons_ratio == 0.45
+
+
+def test_the_belt_of_ribs() -> None:
+    """Six ribs have six times everything but the thickness, the offsets and the angle."""
+    one, belt = read_catalogue()["PK"], make(length=1.0, profile="PK", ribs=6)
+    for key in ("width", "axial_stiffness", "bending_stiffness", "mass_per_length"):
+        assert getattr(belt, key) == pytest.approx(6 * getattr(one, key), rel=1e-14)
+    for key in ("thickness", "pitch_offset", "back_offset", "wedge_angle"):
+        assert getattr(belt, key) == getattr(one, key)
+
+
+def test_the_flat_belt_is_sold_by_width() -> None:
+    one, belt = read_catalogue()["flat-aramid"], make(length=1.0, profile="flat-aramid", width="25 mm")
+    assert belt.width == 0.025
+    assert belt.axial_stiffness == pytest.approx(0.025 / one.width * one.axial_stiffness, rel=1e-14)
+    assert belt.wedge_angle is None
+
+
+def test_what_the_user_gives_goes_before_the_catalogue() -> None:
+    belt = make(length=1.0, profile="PK", ribs=6, axial_stiffness=1e5, pitch_offset=0.0, wedge_angle="36 deg")
+    assert belt.axial_stiffness == pytest.approx(1e5)
+    assert belt.bending_stiffness == pytest.approx(6 * read_catalogue()["PK"].bending_stiffness)
+    assert belt.pitch_offset == 0.0
+    assert belt.wedge_angle == pytest.approx(pi / 5)
+
+
+def test_a_belt_has_one_form_once_made() -> None:
+    """It can be replaced, compared and written like any other."""
+    belt = make(length=1.0, profile="PK", ribs=6)
+    assert belt == Belt(**belt.arguments)
+    assert belt.replace(length=2.0).replace(length=1.0) == belt
+
+
+@pytest.fixture
+def sold(drive_text: str) -> str:
+    """The paper's drive with a belt as sold."""
+    start, end = drive_text.index("width"), drive_text.index("[[pulley]]")
+    return f'{drive_text[:start]}profile = "PK"\nribs = 6\n\n{drive_text[end:]}'
+
+
+def test_the_text_of_a_drive_stays(sold: str) -> None:
+    drive = loads(sold)
+    assert drive.text == sold
+    assert loads(drive.text) == drive
+
+
+def test_the_text_does_without_ones_own_catalogue(sold: str, tmp_path: Path) -> None:
+    """A relative path starts at the drive file; the drive is complete without the catalogue from then on."""
+    entry = read_catalogue()["PK"]
+    lines = [f'{key} = "{value}"' for key, value in (("title", "ours"), ("source", "our rig"))]
+    lines += [
+        f"{key} = {getattr(entry, key)}" for key in ("width", "thickness", "bending_stiffness", "mass_per_length")
+    ]
+    (tmp_path / "mine.toml").write_text("\n".join(["[PK]", "axial_stiffness = 21e3", *lines]))
+    (tmp_path / "drive.toml").write_text(sold.replace("ribs = 6", 'ribs = 6\ncatalogue = "mine.toml"'))
+    drive = load(tmp_path / "drive.toml")
+    assert drive.belt.axial_stiffness == pytest.approx(6 * 21e3)
+    (tmp_path / "mine.toml").unlink()
+    assert loads(drive.text) == drive
+
+
+def test_schema_knows_the_forms() -> None:
+    belt = json_schema()["$defs"]["Belt"]
+    assert {"profile", "ribs", "catalogue", "axial_stiffness", "youngs_modulus"} <= set(belt["properties"])
+    assert "youngs_modulus" not in belt["required"]
+    material, stiffnesses, profile = (form["required"] for form in belt["anyOf"])
+    assert set(material) == {"width", "thickness", "density", "youngs_modulus", "poissons_ratio"}
+    assert set(stiffnesses) == {"width", "thickness", *STIFF}
+    assert profile == ["profile"]
+
+
+@pytest.mark.parametrize(("angle", "factor"), [(None, 1.0), (pi, 1.0), ("40 deg", 1 / sin(pi / 9))])
+def test_wedge(drive: Drive, angle: Any, factor: float) -> None:
+    """Grooves multiply friction on the inside, the pulley's own or the contact's, not on the back."""
+    driver, driven = drive.pulleys
+    wedged = drive.replace(
+        belt=drive.belt.replace(wedge_angle=angle),
+        pulley=[driver.replace(friction=0.3), driven],
+    )
+    assert wedged.belt.wedge_factor == pytest.approx(factor)
+    assert wedged.frictions == pytest.approx([0.3 * factor, drive.contact.friction * factor])

@@ -1,0 +1,92 @@
+"""Verified: a soft belt that hangs between two pins under its weight.
+
+Against: the elastic catenary with the material law of the element, N = EA (g^2 - 1) g / 2 at the stretch g, whose
+half span and sag are integrals over the reference length s of g H / T and g w s / T with T = sqrt(H^2 + (w s)^2); and
+the parabola w l^2 / 8H of a taut belt.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from beltdyn.model import Belt
+from beltdyn.solve.static import find_equilibrium
+from beltdyn.system.arrays import System
+from beltdyn.system.build import belt_section, belt_system
+from beltdyn.system.state import State
+from beltdyn.theory.stretch import stretch
+
+FloatArray = NDArray[np.float64]
+
+GRAVITY = 9.81
+PINS = [(0, 0), (0, 1), (-1, 0), (-1, 1)]
+
+
+def hang(elements: int) -> tuple[Belt, System]:
+    """A belt of 1 m without bending stiffness to speak of: E I / w L^3 = 8e-11."""
+    belt = Belt(
+        length=1.0,
+        width=0.01,
+        thickness=1e-3,
+        density=1000.0,
+        youngs_modulus=1e7,
+        poissons_ratio=0.3,
+        elements=elements,
+        bending_factor=1e-6,
+    )
+    return belt, belt_system(belt, closure="open", fixed=PINS, gravity=(0.0, -GRAVITY))
+
+
+def half_shape(pull: float, weight: float, axial: float, upto: float) -> FloatArray:
+    """Place (x, y) over the lowest point of the belt's point at the reference length s = upto from it."""
+    points, weights = np.polynomial.legendre.leggauss(100)
+    s = 0.5 * upto * (points + 1.0)
+    tension = np.hypot(pull, weight * s)
+    factor = 0.5 * upto * weights * stretch(tension, axial) / tension
+    return np.array([factor.sum() * pull, (factor * s).sum() * weight])
+
+
+def catenary(belt: Belt, span: float) -> tuple[float, FloatArray, FloatArray]:
+    """Horizontal pull, places of the nodes over the lowest point, and their tangents' angles."""
+    axial, weight = belt_section(belt).axial, belt.mass_per_length * GRAVITY
+    half = 0.5 * belt.length
+    pull = float(
+        brentq(lambda h: half_shape(h, weight, axial, half)[0] - 0.5 * span, 1e-3 * weight, 1e2 * weight, xtol=1e-16)
+    )
+    s = np.linspace(-half, half, belt.elements + 1)
+    places = np.array([half_shape(pull, weight, axial, abs(u)) * [np.sign(u), 1.0] for u in s])
+    return pull, places, np.arctan2(weight * s, pull)
+
+
+def test_hangs_as_an_elastic_catenary(
+    along: Callable[[System, FloatArray, FloatArray], State],
+    order: Callable[..., float],
+    measured: Callable[..., None],
+) -> None:
+    """Order 4, and 1e-9 m with 64 elements at a sag of 0.19 m."""
+    meshes, errors = [8, 16, 32, 64], []
+    for elements in meshes:
+        belt, system = hang(elements)
+        _, exact, angles = catenary(belt, 0.9)
+        nodes = find_equilibrium(system, along(system, exact, angles)).state.nodes(system)
+        errors.append(float(np.abs(nodes[:, :2] - exact).max()))
+    measured(**{f"error_{n}": error for n, error in zip(meshes, errors, strict=True)}, order=order(meshes, errors))
+    assert order(meshes, errors) > 4.0
+    assert errors[-1] < 1e-9
+
+
+def test_a_taut_belt_sags_as_a_parabola(
+    along: Callable[[System, FloatArray, FloatArray], State], measured: Callable[..., None]
+) -> None:
+    """Sag w l^2 / 8H, short of terms (sag / l)^2 of the catenary and of the stretch, H / EA."""
+    belt, system = hang(32)
+    span = 0.999
+    pull, exact, angles = catenary(belt, span)
+    nodes = find_equilibrium(system, along(system, exact, angles)).state.nodes(system)
+    sag = nodes[0, 1] - nodes[16, 1]
+    parabola = belt.mass_per_length * GRAVITY * span**2 / (8.0 * pull)
+    measured(sag=sag, parabola=parabola)
+    assert sag == pytest.approx(parabola, rel=4.0 * (parabola / span) ** 2 + pull / belt.axial_stiffness)
