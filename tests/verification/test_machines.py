@@ -8,13 +8,15 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad, solve_ivp
 
-from beltdyn.model import Pulley, SlidingTensioner
+from beltdyn.model import Belt, Pulley, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.system.build_machines import Machines, body_inertias, machine_arrays
 from beltdyn.system.coupling import coupling_torque
 from beltdyn.system.excitation import prescribed_motion, profile_angle
 from beltdyn.system.shaft_torque import shaft_torque
 from beltdyn.system.tensioner import tensioner_force
+
+BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
 
 FloatArray = NDArray[np.float64]
 RTOL = 1e-10
@@ -111,7 +113,7 @@ def test_losses_of_a_tensioner_in_a_cycle() -> None:
         kind="sliding", pulley="loose", direction=(1, 0), preload=40.0, rate=900.0, damping=3.0,
         tensioning_friction=2.0, yielding_friction=6.0, creep_speed=creep,
     )  # fmt: skip
-    tensioners = machine_arrays(pulleys, [slide], lay_path(pulleys)).tensioners
+    tensioners = machine_arrays(pulleys, [slide], lay_path(pulleys, BELT)).tensioners
 
     def power(time: float, pick: Callable[[tuple[float, ...], float], float]) -> float:
         rate = amplitude * omega * np.cos(omega * time)

@@ -2,7 +2,9 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from beltdyn.cli.console import show, show_facts, show_table, show_warnings
 
@@ -10,35 +12,55 @@ if TYPE_CHECKING:
     from beltdyn.model import Drive, Installation
 
 
-def check(file: Path, /) -> None:
-    """Validate a drive file, and say what to expect of the drive.
+def check(file: Path, /, *, figure: Annotated[Path | None, Parameter(alias="-f")] = None) -> None:
+    """Validate a drive file, and say what to expect of the drive at rest.
 
     Parameters
     ----------
     file
         The drive file, TOML.
+    figure
+        Draw the layout into this file too, such as layout.png.
     """
     from beltdyn.model import advise, install, load
 
     drive = load(file)
     installation = install(drive)
     show_facts(_facts(drive, installation))
-    show_table("\nPulleys", ("", "motion", "radius", "wrap angle", "penetration"), _pulleys(drive, installation))
-    show_table("\nSpans", ("", "length"), _spans(drive))
+    show_table(
+        "\nPulleys",
+        ("", "motion", "turns", "wrap angle", "effective radius", "speed ratio"),
+        _pulleys(drive, installation),
+    )
+    show_table("\nPulleys at rest", ("", "penetration", "hub load", "direction"), _loads(drive, installation))
+    show_table("\nSpans at rest", ("", "length", "tension", "first frequency"), _spans(drive, installation))
+    if installation.tensioner_positions.size:
+        show_table("\nTensioners at rest", ("", "position", "spring", "stops"), _tensioners(drive, installation))
     show()
     show_warnings(advise(drive, installation))
+    if figure is None:
+        show(f"To see the layout: beltdyn check {file} --figure layout.png")
+        return
+    from beltdyn import plot
+
+    show(f"Layout: {plot.save_layout(drive, figure, installation)}")
 
 
 def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]]:
-    lost = 1 - installation.tension / installation.laid_tension
     return [
-        ("path length", f"{drive.path.length:.5g} m"),
+        ("path length", f"{installation.path.length:.5g} m"),
         ("belt length", f"{drive.belt.length:.5g} m unstretched, {drive.belt.elements} elements"),
         ("installed strain", f"{installation.strain:.4%}"),
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
         ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
-        ("tension at rest", f"about {installation.tension:.4g} N: {lost:.1%} is lost by sinking into the pulleys"),
+        ("tension at rest", f"about {installation.tension:.4g} N{_lost(installation)}"),
     ]
+
+
+def _lost(installation: "Installation") -> str:
+    if installation.tensioner_positions.size:
+        return ", which tensioners set"
+    return f": {1 - installation.tension / installation.laid_tension:.1%} is lost by sinking into the pulleys"
 
 
 def _layers(drive: "Drive", installation: "Installation") -> str:
@@ -52,19 +74,59 @@ def _layers(drive: "Drive", installation: "Installation") -> str:
 
 
 def _pulleys(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
+    """The ratio of speeds is that of a belt that does not creep; a negative one means the other sense."""
+    path = installation.path
     return [
         (
             pulley.name,
             "prescribed" if pulley.prescribed else "free",
-            f"{pulley.radius:.5g} m",
+            "ccw" if pulley.turning > 0 else "cw",
             f"{math.degrees(wrap):.1f}°",
-            f"{depth:.2e} m ({depth / pulley.radius:.2%} of the radius)",
+            f"{abs(radius):.5g} m",
+            f"{path.radii[0] / radius:.4f}",
         )
-        for pulley, wrap, depth in zip(drive.pulleys, drive.path.wrap_angles, installation.penetrations, strict=True)
+        for pulley, wrap, radius in zip(drive.pulleys, path.wrap_angles, path.radii, strict=True)
     ]
 
 
-def _spans(drive: "Drive") -> list[tuple[str, ...]]:
+def _loads(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
+    return [
+        (
+            pulley.name,
+            f"{depth:.2e} m ({depth / radius:.2%} of the radius)",
+            f"{math.hypot(*load):.4g} N",
+            f"{math.degrees(math.atan2(load[1], load[0])):.1f}°",
+        )
+        for pulley, depth, radius, load in zip(
+            drive.pulleys, installation.penetrations, drive.radii, installation.hub_loads.tolist(), strict=True
+        )
+    ]
+
+
+def _spans(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
     names = [pulley.name for pulley in drive.pulleys]
-    ends = zip(names, names[1:] + names[:1], drive.path.span_lengths, strict=True)
-    return [(f"{start} to {end}", f"{length:.5g} m") for start, end, length in ends]
+    columns = installation.path.span_lengths, installation.span_tensions, installation.span_frequencies
+    return [
+        (f"{start} to {end}", f"{length:.5g} m", f"{tension:.4g} N", f"{frequency:.4g} Hz")
+        for start, end, length, tension, frequency in zip(names, names[1:] + names[:1], *columns, strict=True)
+    ]
+
+
+def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
+    from beltdyn.model import RotaryTensioner, SlidingTensioner
+
+    rows = list[tuple[str, ...]]()
+    moving = [one for one in drive.tensioners if isinstance(one, RotaryTensioner | SlidingTensioner)]
+    for tensioner, position in zip(moving, installation.tensioner_positions.tolist(), strict=True):
+        rotary = isinstance(tensioner, RotaryTensioner)
+        size, unit = (math.degrees, "°") if rotary else (lambda value: value, " m")
+        stops = tensioner.stops or ()
+        rows.append(
+            (
+                tensioner.pulley,
+                f"{size(position):.4g}{unit}",
+                f"{tensioner.preload - tensioner.rate * position:.4g} {'N m' if rotary else 'N'}",
+                " to ".join(f"{size(stop):.4g}{unit}" for stop in stops),
+            )
+        )
+    return rows

@@ -2,11 +2,15 @@
 
 import math
 
+import numpy as np
+
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
 from beltdyn.model.resolution import arc_angle, arc_error, elements_needed
+from beltdyn.model.tensioner import MovingTensioner
+from beltdyn.theory.stretch import stretch
 
-_MOST_TENSION_LOST = 0.1
+_MOST_TENSION_LOST = 0.02
 _DEEPEST_PENETRATION = 0.1
 _LARGEST_STRAIN = 0.1
 
@@ -27,7 +31,8 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
     """
     return [
         *_strain_warnings(installation),
-        *_tension_warnings(installation),
+        *_tension_warnings(drive, installation),
+        *_tensioner_warnings(drive, installation),
         *_penetration_warnings(drive, installation),
         *_mesh_warnings(drive, installation),
     ]
@@ -42,22 +47,47 @@ def _strain_warnings(installation: Installation) -> list[str]:
     ]
 
 
-def _tension_warnings(installation: Installation) -> list[str]:
+def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
+    """Compare the tension with that on hard pulleys, where no spring makes up for what is lost."""
     lost = 1 - installation.tension / installation.laid_tension
-    if lost <= _MOST_TENSION_LOST:
+    if lost <= _MOST_TENSION_LOST or installation.tensioner_positions.size:
         return []
     return [
-        f"sinking into the pulleys takes {lost:.0%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
-        "raise contact.stiffness."
+        f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
+        f"raise contact.stiffness to {_stiffness_needed(drive, installation):.1e} N/m^2 or more, or count on "
+        f"{installation.tension:.4g} N."
     ]
+
+
+def _stiffness_needed(drive: Drive, installation: Installation) -> float:
+    """Stiffness of contact with which as much tension is lost as a drive may lose, rounded up to two digits, N/m^2."""
+    tension, path = (1 - _MOST_TENSION_LOST) * installation.laid_tension, installation.path
+    stretched = float(stretch(tension, drive.belt.axial_stiffness))
+    room = path.length - stretched * drive.belt.length
+    stiffness = tension * stretched * float(np.sum(path.wrap_angles / drive.radii)) / room
+    digit = 10.0 ** (math.floor(math.log10(stiffness)) - 1)
+    return math.ceil(stiffness / digit) * digit
+
+
+def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:
+    warnings = []
+    moving = [tensioner for tensioner in drive.tensioners if isinstance(tensioner, MovingTensioner)]
+    for tensioner, position in zip(moving, installation.tensioner_positions, strict=True):
+        if tensioner.stops is not None and not tensioner.stops[0] < position < tensioner.stops[1]:
+            which, remedy = ("upper", "shorten") if position > 0 else ("lower", "lengthen")
+            warnings.append(
+                f'the tensioner of "{tensioner.pulley}" rests on its {which} stop, where its spring does not set the '
+                f"tension: {remedy} the belt, or move the stops."
+            )
+    return warnings
 
 
 def _penetration_warnings(drive: Drive, installation: Installation) -> list[str]:
     warnings = []
-    for pulley, depth in zip(drive.pulleys, installation.penetrations, strict=True):
-        if depth > _DEEPEST_PENETRATION * pulley.radius:
+    for pulley, radius, depth in zip(drive.pulleys, drive.radii, installation.penetrations, strict=True):
+        if depth > _DEEPEST_PENETRATION * radius:
             warnings.append(
-                f'the belt is expected to sink {depth / pulley.radius:.0%} of the radius into "{pulley.name}", '
+                f'the belt is expected to sink {depth / radius:.0%} of the radius into "{pulley.name}", '
                 f"more than {_DEEPEST_PENETRATION:.0%}: raise contact.stiffness."
             )
     return warnings
@@ -68,15 +98,15 @@ def _mesh_warnings(drive: Drive, installation: Installation) -> list[str]:
     if not installation.tension > 0 or drive.contact.sampling == "nodal":
         return []
     needs = [
-        (elements_needed(drive.belt, pulley.radius, float(depth)), pulley, depth)
-        for pulley, depth in zip(drive.pulleys, installation.penetrations, strict=True)
+        (elements_needed(drive.belt, radius, float(depth)), pulley, radius, depth)
+        for pulley, radius, depth in zip(drive.pulleys, drive.radii.tolist(), installation.penetrations, strict=True)
     ]
-    needed, pulley, depth = max(needs, key=lambda need: need[0])
+    needed, pulley, radius, depth = max(needs, key=lambda need: need[0])
     if needed <= drive.belt.elements:
         return []
     return [
-        f'an element covers {math.degrees(arc_angle(drive.belt, pulley.radius)):.0f}° of "{pulley.name}" and misses '
-        f"its circle by {arc_error(drive.belt, pulley.radius):.1e} m, where the belt sinks in by {depth:.1e} m: "
+        f'an element covers {math.degrees(arc_angle(drive.belt, radius)):.0f}° of "{pulley.name}" and misses '
+        f"its circle by {arc_error(drive.belt, radius):.1e} m, where the belt sinks in by {depth:.1e} m: "
         f"contact forces will be uneven along the arc. For smooth ones, set belt.elements = {needed} or more; "
         "speeds and torques need fewer."
     ]

@@ -6,8 +6,8 @@ from typing import Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
 from beltdyn.model.belt_form import describe_forms, to_material
-from beltdyn.model.part import Part
-from beltdyn.model.quantity import Angle, Count, Density, Length, Ratio, Stress, Time
+from beltdyn.model.part import Part, computed
+from beltdyn.model.quantity import Angle, Count, Density, Force, Length, Ratio, Stress, Time
 
 _LINKS = {"truss": 1, "three-node-beam": 2}
 _GROUP = 3
@@ -21,7 +21,8 @@ class Belt(Part):
     """A closed belt of rectangular section, made of equal elements.
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
-    or text such as ``"25 mm"``.
+    or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is None until the belt is part
+    of a drive, which computes it.
 
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
@@ -30,7 +31,10 @@ class Belt(Part):
 
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
 
-    length: Length = Field(gt=0, description="the unstretched length of the closed belt, in m")
+    length: Length = computed(gt=0, description="the unstretched length of the closed belt, in m")
+    installed_tension: Force | None = Field(
+        None, gt=0, description="the tension of the belt at rest in the drive, in place of its length, in N"
+    )
     width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in the plane of the drive, in m")
     density: Density = Field(gt=0, description="the density of the belt, in kg/m^3")
@@ -42,6 +46,7 @@ class Belt(Part):
     back_offset: Length = Field(
         0.0, ge=0, description="the distance from the back surface to the line that carries the tension, in m"
     )
+    crossed: bool = Field(False, description="whether spans of the belt cross each other")
     wedge_angle: Angle | None = Field(
         None,
         gt=0,
@@ -94,6 +99,12 @@ class Belt(Part):
         return self
 
     @model_validator(mode="after")
+    def _has_length_or_tension(self) -> Self:
+        if self.length is None and self.installed_tension is None:
+            raise ValueError("length is missing. Give the unstretched length, or installed_tension in its place")
+        return self
+
+    @model_validator(mode="after")
     def _links_come_in_threes(self) -> Self:
         links, each = self.links, _LINKS.get(self.discretization, 0)
         if each and (links % _GROUP or links < _FEWEST_LINKS):
@@ -105,6 +116,10 @@ class Belt(Part):
                 f"elements is a multiple of {_GROUP}, at least {fewest}. Choose {choice}"
             )
         return self
+
+    def offset(self, side: Side) -> float:
+        """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""
+        return self.pitch_offset if side == "inside" else self.back_offset
 
     @property
     def links(self) -> int:

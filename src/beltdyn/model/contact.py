@@ -4,8 +4,8 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from beltdyn.model.part import Part
-from beltdyn.model.quantity import Count, CreepRate, LineDamping, LineStiffness, Ratio, Speed
+from beltdyn.model.part import Part, computed
+from beltdyn.model.quantity import Count, CreepRate, Length, LineDamping, LineStiffness, Ratio, Speed
 
 _SLOPE_OF_LAW = {"force_slope": "creep_rate_factor", "coefficient_slope": "creep_velocity"}
 
@@ -18,8 +18,13 @@ class Contact(Part):
     the coefficient of friction is reached.
     """
 
-    stiffness: LineStiffness = Field(
+    stiffness: LineStiffness = computed(
         gt=0, description="the normal force per metre of belt and metre of penetration, in N/m^2"
+    )
+    allowed_penetration: Length | None = Field(
+        None,
+        gt=0,
+        description="the depth to which the belt at rest may sink in anywhere, in place of stiffness, in m",
     )
     damping: LineDamping = Field(
         0.0, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
@@ -46,6 +51,14 @@ class Contact(Part):
     quadrature_points: Count = Field(
         5, ge=1, le=64, description="the number of Gauss points an element for distributed contact forces"
     )
+
+    @model_validator(mode="after")
+    def _has_stiffness_or_penetration(self) -> Self:
+        if self.stiffness is None and self.allowed_penetration is None:
+            raise ValueError("stiffness is missing. Give it, or allowed_penetration in its place")
+        if self.stiffness is not None and self.allowed_penetration is not None:
+            raise ValueError("stiffness and allowed_penetration exclude each other. Remove one of them")
+        return self
 
     @model_validator(mode="after")
     def _has_the_slope_of_its_law(self) -> Self:

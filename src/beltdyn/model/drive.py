@@ -9,19 +9,18 @@ from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.model.belt import Belt
+from beltdyn.model.completion import complete
 from beltdyn.model.contact import Contact
-from beltdyn.model.layout import lay_path
+from beltdyn.model.layout import radii, trace
 from beltdyn.model.part import Part
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.quantity import Acceleration
 from beltdyn.model.simulation import Simulation
-from beltdyn.model.tensioner import AnyTensioner, Tensioner, check_tensioners
+from beltdyn.model.tensioner import AnyTensioner, Tensioner
 from beltdyn.model.toml_writer import dumps
 
 FloatArray = NDArray[np.float64]
-
-_LARGEST_STRAIN = 0.5
 
 
 class Drive(Part):
@@ -29,6 +28,9 @@ class Drive(Part):
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`
     (a list) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
+
+    What may be left open is computed: the length of a belt of given tension, the take-up of a fixed tensioner, which
+    moves its pulley, and the stiffness of contact that keeps to an allowed penetration.
     """
 
     belt: Belt = Field(description="the group [belt]")
@@ -48,19 +50,8 @@ class Drive(Part):
         return loads, (self.text,)
 
     @model_validator(mode="after")
-    def _belt_fits_its_path(self) -> Self:
-        length, path = self.belt.length, self.path.length
-        if length >= path:
-            raise ValueError(
-                f"belt.length = {length:.5g} m is longer than the path around the pulleys ({path:.5g} m): "
-                "the belt would hang slack. Shorten it, or move the pulleys apart."
-            )
-        if path / length - 1 > _LARGEST_STRAIN:
-            raise ValueError(
-                f"belt.length = {length:.5g} m is too short for the path around the pulleys ({path:.5g} m): "
-                f"it would be stretched by {path / length - 1:.0%}, and {_LARGEST_STRAIN:.0%} is the limit. "
-                "Lengthen it, or move the pulleys together."
-            )
+    def _becomes_definite(self) -> Self:
+        self.__dict__.update(complete(self.belt, self.pulleys, self.contact, self.tensioners))
         return self
 
     @model_validator(mode="after")
@@ -72,15 +63,20 @@ class Drive(Part):
             )
         return self
 
-    @model_validator(mode="after")
-    def _tensioners_fit_the_pulleys(self) -> Self:
-        check_tensioners(self.tensioners, self.pulleys, self.path)
-        return self
-
     @cached_property
     def path(self) -> Path:
-        """The path of the belt around its pulleys."""
-        return lay_path(self.pulleys)
+        """The path of the line that carries the belt's tension, with spring-loaded tensioners at zero."""
+        return trace(self.pulleys, self.belt)
+
+    @cached_property
+    def radii(self) -> FloatArray:
+        """Effective radii, shape (n,), m: those of the pulleys, and the belt's offset on the side that touches."""
+        return radii(self.pulleys, self.belt)
+
+    @cached_property
+    def centers(self) -> FloatArray:
+        """Centers of the pulleys, shape (n, 2), m, with spring-loaded tensioners at zero."""
+        return np.array([pulley.center for pulley in self.pulleys])
 
     def carried(self, tensioner: AnyTensioner) -> int:
         """Tell the number of the pulley that a tensioner carries."""

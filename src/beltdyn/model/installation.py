@@ -7,7 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model.drive import Drive
-from beltdyn.theory.stretch import tension as stretch_tension
+from beltdyn.model.path import Path
+from beltdyn.model.rest import carriers_of, come_to_rest
+from beltdyn.theory.stretch import tension as tension_of
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -24,12 +28,29 @@ class Installation:
         Tension once the belt has sunk into the pulleys, N.
     penetrations : ndarray, shape (n,), m
         How deep it sinks into each pulley.
+    tensioner_positions : ndarray, shape (K,), m or rad
+        Where springs hold the sliding and the rotary tensioners.
+    path : Path
+        The path with the tensioners there, before the belt sinks in.
+    hub_loads : ndarray, shape (n, 2), N
+        Force of the belt on each pulley, T (u_out - u_in), of size 2 T sin(wrap angle / 2).
+    span_frequencies : ndarray, shape (n,), Hz
+        Lowest frequency at which each span swings across, with the bending stiffness of the belt.
     """
 
     strain: float
     laid_tension: float
     tension: float
-    penetrations: NDArray[np.float64]
+    penetrations: FloatArray
+    tensioner_positions: FloatArray
+    path: Path
+    hub_loads: FloatArray
+    span_frequencies: FloatArray
+
+    @property
+    def span_tensions(self) -> FloatArray:
+        """Tension of each span, shape (n,), N: the same in all, without friction."""
+        return np.full(self.path.count, self.tension)
 
 
 def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
@@ -44,11 +65,9 @@ def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
 
 
 def install(drive: Drive) -> Installation:
-    """Estimate tension and penetration of the belt at rest.
+    """Estimate tension, penetration and the place of tensioners for the belt at rest.
 
-    At the stretch g the tension is T = E A alpha1 (g^2 - 1) g / 2 (the axial term of the strain energy). On a
-    pulley of radius R it presses with T g / R per unstretched metre, so the belt sinks by d = T g / (R k_p),
-    which shortens the path by the wrap angle times d.
+    `beltdyn.model.rest` has the equations.
 
     Parameters
     ----------
@@ -58,20 +77,27 @@ def install(drive: Drive) -> Installation:
     -------
     Installation
     """
-    from scipy.optimize import brentq
+    carriers = carriers_of(drive.tensioners, [pulley.name for pulley in drive.pulleys], drive.path)
+    rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, carriers)
+    path, laid = rest.path, rest.path.length / drive.belt.length
+    turned = path.span_directions - np.roll(path.span_directions, 1, axis=0)
+    return Installation(
+        strain=laid - 1,
+        laid_tension=float(tension_of(laid, drive.belt.axial_stiffness)),
+        tension=rest.tension,
+        penetrations=rest.penetrations,
+        tensioner_positions=positions,
+        path=path,
+        hub_loads=rest.tension * turned,
+        span_frequencies=_span_frequencies(drive, path, rest.tension),
+    )
 
-    length, path = drive.belt.length, drive.path
-    radii = np.array([pulley.radius for pulley in drive.pulleys])
 
-    def tension(stretch: float) -> float:
-        return float(stretch_tension(stretch, drive.belt.axial_stiffness))
+def _span_frequencies(drive: Drive, path: Path, tension: float) -> FloatArray:
+    """First frequency of simply supported spans, 1 / (2 l) sqrt(T / m (1 + E I (pi / l)^2 / T)), Hz.
 
-    def penetrations(stretch: float) -> NDArray[np.float64]:
-        return np.asarray(tension(stretch) * stretch / (radii * drive.contact.stiffness))
-
-    def excess(stretch: float) -> float:
-        return stretch * length + float(path.wrap_angles @ penetrations(stretch)) - path.length
-
-    laid = path.length / length
-    stretch = float(brentq(excess, 1.0, laid * (1 + 1e-9), xtol=1e-14))
-    return Installation(laid - 1, tension(laid), tension(stretch), penetrations(stretch))
+    The mass of a metre, m, is that of the stretched belt.
+    """
+    wave = np.pi / path.span_lengths
+    mass = drive.belt.mass_per_length * drive.belt.length / path.length
+    return np.asarray(wave * np.sqrt((tension + drive.belt.bending_stiffness * wave**2) / mass) / (2 * np.pi))

@@ -1,24 +1,37 @@
 """Rules that the pulleys of a drive must obey together, so that a belt can run around them."""
 
-from collections.abc import Sequence
-from itertools import combinations
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations, pairwise, permutations
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from beltdyn.model.belt import Belt
+from beltdyn.model.clearance import Surroundings, crossings, obstacle
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
 _LEAST_WRAP = 1e-6  # rad
 _ROUNDING = 1e-6  # rad
+_MOST_TO_TRY = 16
 
 
-def lay_path(pulleys: Sequence[Pulley]) -> Path:
-    """Lay a path around pulleys listed counter-clockwise, and check that it is one.
+class _Fault(NamedTuple):
+    rule: str
+    remedy: str | None
+    """None where it is worth a search."""
+
+
+def lay_path(pulleys: Sequence[Pulley], belt: Belt) -> Path:
+    """Lay a path around pulleys in the order in which the belt meets them, and check that it is one.
 
     Parameters
     ----------
     pulleys : sequence of Pulley
-        In the order in which the belt meets them.
+        In the order in which the belt meets them when it turns those on its inside counter-clockwise.
+    belt : Belt
+        What it adds to the radii, and whether its spans may cross.
 
     Returns
     -------
@@ -27,21 +40,31 @@ def lay_path(pulleys: Sequence[Pulley]) -> Path:
     Raises
     ------
     ValueError
-        If there are fewer than two pulleys, names are used twice, pulleys overlap, the order is not
-        counter-clockwise, or the belt misses a pulley or would run through one.
+        If there are fewer than two pulleys, names are used twice, pulleys overlap or are too close for the belt to
+        pass between them, the order or a side is wrong, or the belt misses a pulley, would run through one, or
+        through itself.
     """
     if len(pulleys) < 2:
         raise ValueError(f"the drive has {len(pulleys)} pulley: a belt drive needs two or more. Add a [[pulley]]")
     _check_names(pulleys)
     _check_distances(pulleys)
-    path = _path(pulleys)
-    _check_turning(pulleys, path)
-    _check_spans(pulleys, path)
+    _check_tangents(pulleys, belt)
+    path = trace(pulleys, belt)
+    fault = next(_faults(pulleys, belt, path), None)
+    if fault:
+        raise ValueError(f"{fault.rule}. {fault.remedy or _remedy(pulleys, belt)}")
     return path
 
 
-def _path(pulleys: Sequence[Pulley]) -> Path:
-    return Path(np.array([pulley.center for pulley in pulleys]), np.array([pulley.radius for pulley in pulleys]))
+def radii(pulleys: Sequence[Pulley], belt: Belt) -> NDArray[np.float64]:
+    """Effective radii, at which the line that carries the tension runs, shape (n,), m."""
+    return np.array([pulley.radius + belt.offset(pulley.side) for pulley in pulleys])
+
+
+def trace(pulleys: Sequence[Pulley], belt: Belt) -> Path:
+    """Path around pulleys, without a check."""
+    turning = np.array([pulley.turning for pulley in pulleys])
+    return Path(np.array([pulley.center for pulley in pulleys]), turning * radii(pulleys, belt))
 
 
 def _check_names(pulleys: Sequence[Pulley]) -> None:
@@ -61,20 +84,54 @@ def _check_distances(pulleys: Sequence[Pulley]) -> None:
             )
 
 
-def _check_turning(pulleys: Sequence[Pulley], path: Path) -> None:
+def _check_tangents(pulleys: Sequence[Pulley], belt: Belt) -> None:
+    """Where the belt changes sides it runs between two pulleys; elsewhere there always is a tangent."""
+    for one, other in pairwise([*pulleys, pulleys[0]]):
+        if one.side == other.side:
+            continue
+        distance = np.hypot(*np.subtract(one.center, other.center))
+        needed = one.radius + other.radius + belt.pitch_offset + belt.back_offset
+        if not distance > needed:
+            raise ValueError(
+                f'no straight line leads the belt from "{one.name}" to "{other.name}": it runs between them, which '
+                f"takes more than {needed:.5g} m from center to center (their radii, belt.pitch_offset and "
+                f"belt.back_offset), and these are {distance:.5g} m apart. Move them apart, or make one smaller"
+            )
+
+
+def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path) -> Iterator[_Fault]:
+    """Reasons why a path is none that a belt can take, each found when it is asked for."""
+    if not belt.crossed and all(pulley.side == "inside" for pulley in pulleys):
+        yield from _disorder(pulleys, path)
+    for pulley, wrap in zip(pulleys, path.wrap_angles, strict=True):
+        if wrap < _LEAST_WRAP or wrap > 2 * np.pi - _LEAST_WRAP:
+            yield _missed(pulley)
+    crossing = crossings(path)
+    if belt.crossed and not crossing:
+        yield _Fault(
+            "belt.crossed = true, but no spans cross each other",
+            'Remove it, or set side = "outside" for the pulleys between two crossings, which turn clockwise',
+        )
+    if crossing and not belt.crossed:
+        one, other = (_span(pulleys, span) for span in crossing[0])
+        yield _Fault(f"the belt would cross itself: {one} meets {other}", None)
+    if not belt.crossed and abs(path.total_turning - 2 * np.pi) > _ROUNDING:
+        turns = round(path.total_turning / (2 * np.pi))
+        yield _Fault(f"the belt would turn {turns} times counter-clockwise in one round, not once", None)
+    yield from _collisions(pulleys, belt, path)
+
+
+def _disorder(pulleys: Sequence[Pulley], path: Path) -> Iterator[_Fault]:
+    """What keeps a path with all pulleys on its inside from being a round of left turns."""
     if abs(path.total_turning - 2 * np.pi) < _ROUNDING:
-        for pulley, wrap in zip(pulleys, path.wrap_angles, strict=True):
-            if wrap < _LEAST_WRAP:
-                raise ValueError(_missed(pulley))
         return
     outermost = _outermost(path)
     for index, pulley in enumerate(pulleys):
         if index not in outermost:
-            raise ValueError(_missed(pulley))
-    order = ", ".join(f'"{pulleys[index].name}"' for index in outermost)
-    raise ValueError(
-        "the pulleys are not listed in the order in which the belt meets them when it runs counter-clockwise. "
-        f"List them so: {order}"
+            yield _missed(pulley)
+    yield _Fault(
+        "the pulleys are not listed in the order in which the belt meets them when it runs counter-clockwise",
+        f"List them so: {_listed(pulleys[index] for index in outermost)}",
     )
 
 
@@ -88,21 +145,78 @@ def _outermost(path: Path) -> list[int]:
     return found[start:] + found[:start]
 
 
-def _missed(pulley: Pulley) -> str:
-    return (
-        f'pulley "{pulley.name}" is not touched by the belt: it lies inside the path around the others. '
-        "Move it outwards, or remove it"
+def _missed(pulley: Pulley) -> _Fault:
+    where, remedy = ("inside", "outwards") if pulley.side == "inside" else ("outside", "inwards")
+    return _Fault(
+        f'pulley "{pulley.name}" is not touched by the belt: it lies {where} the path around the others',
+        f"Move it {remedy}, or remove it",
     )
 
 
-def _check_spans(pulleys: Sequence[Pulley], path: Path) -> None:
-    for span, (start, direction) in enumerate(zip(path.span_points[:, 0], path.span_directions, strict=True)):
-        ends = (span, (span + 1) % len(pulleys))
-        for index, pulley in enumerate(pulleys):
-            across = np.subtract(pulley.center, start)
-            along = np.clip(across @ direction, 0, path.span_lengths[span])
-            if index not in ends and np.linalg.norm(across - along * direction) < pulley.radius:
-                raise ValueError(
-                    f'the belt between "{pulleys[ends[0]].name}" and "{pulleys[ends[1]].name}" would run through '
-                    f'pulley "{pulley.name}". Move it, or list the pulleys in the order in which the belt meets them'
-                )
+def _collisions(pulleys: Sequence[Pulley], belt: Belt, path: Path) -> Iterator[_Fault]:
+    around = Surroundings(np.array([pulley.radius for pulley in pulleys]), belt.pitch_offset, belt.back_offset)
+    found = obstacle(path, around)
+    if found is None:
+        return
+    one, other = pulleys[found.number].name, pulleys[found.pulley].name
+    if found.piece == "arc":
+        yield _Fault(f'the belt on "{one}" would run through pulley "{other}"', "Move them apart, or make one smaller")
+    following = pulleys[(found.number + 1) % len(pulleys)].name
+    yield _Fault(
+        f'the belt between "{one}" and "{following}" would run through pulley "{other}"',
+        "Move it, or list the pulleys in the order in which the belt meets them",
+    )
+
+
+def _remedy(pulleys: Sequence[Pulley], belt: Belt) -> str:
+    """What makes a path without crossings, or that a belt may cross itself."""
+    tried = pulleys if len(pulleys) <= _MOST_TO_TRY else ()
+    wishes = [
+        wish
+        for changes in (_other_lists(tried), _fewer(tried))
+        if (wish := next((wish for wish, changed in changes if _fits(changed, belt)), None))
+    ]
+    if _fits(pulleys, belt.model_copy(update={"crossed": True})):
+        wishes.append("set belt.crossed = true if spans shall cross each other")
+    text = ", or ".join(wishes) or "check the order of the pulleys, and which side of the belt touches each"
+    return text[0].upper() + text[1:]
+
+
+def _other_lists(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]]:
+    """Lists that a user may have meant: in reversed order, with one other side, with one pulley in another place."""
+    given = list(pulleys)
+    turned = [*given[:1], *given[:0:-1]]
+    yield f"list the pulleys so: {_listed(turned)}", turned
+    for index, pulley in enumerate(given):
+        side = "outside" if pulley.side == "inside" else "inside"
+        changed = pulley.model_copy(update={"side": side})
+        yield f'set side = "{side}" for "{pulley.name}"', [*given[:index], changed, *given[index + 1 :]]
+    for index, place in permutations(range(1, len(given)), 2):
+        moved = given[:index] + given[index + 1 :]
+        moved.insert(place, given[index])
+        yield f"list the pulleys so: {_listed(moved)}", moved
+
+
+def _fewer(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]]:
+    """Lists without one pulley."""
+    for index, pulley in enumerate(pulleys):
+        surface = "inside" if pulley.side == "inside" else "back"
+        wish = f'move "{pulley.name}" against the {surface} of the belt, which does not touch it'
+        yield wish, [*pulleys[:index], *pulleys[index + 1 :]]
+
+
+def _fits(pulleys: Sequence[Pulley], belt: Belt) -> bool:
+    """Tell whether a belt can run around pulleys that do not overlap."""
+    try:
+        _check_tangents(pulleys, belt)
+    except ValueError:
+        return False
+    return len(pulleys) > 1 and next(_faults(pulleys, belt, trace(pulleys, belt)), None) is None
+
+
+def _span(pulleys: Sequence[Pulley], span: int) -> str:
+    return f'the span from "{pulleys[span].name}" to "{pulleys[(span + 1) % len(pulleys)].name}"'
+
+
+def _listed(pulleys: Iterable[Pulley]) -> str:
+    return ", ".join(f'"{pulley.name}"' for pulley in pulleys)

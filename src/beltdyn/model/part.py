@@ -2,10 +2,30 @@
 
 from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from beltdyn.errors import ModelError
 from beltdyn.model.messages import explain
+
+
+def computed(**constraints: Any) -> Any:
+    """Field that a user may leave open where something else is given: None until a drive computes it.
+
+    Parameters
+    ----------
+    **constraints
+        Arguments of pydantic's ``Field``.
+
+    Returns
+    -------
+    Any
+        The field, without a default in the JSON schema.
+    """
+    return Field(None, json_schema_extra=_without_default, **constraints)
+
+
+def _without_default(schema: dict[str, Any]) -> None:
+    schema.pop("default", None)
 
 
 class Part(BaseModel):

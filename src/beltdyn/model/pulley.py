@@ -26,7 +26,7 @@ class Pulley(Part):
 
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
-    radius: Length = Field(gt=0, description="the radius at which the belt's centerline runs, in m")
+    radius: Length = Field(gt=0, description="the radius of the pulley, on which the surface of the belt lies, in m")
     side: Side = Field("inside", description="the side of the belt that touches the pulley; the outside is its back")
     friction: Ratio | None = Field(
         None,
@@ -79,14 +79,14 @@ class Pulley(Part):
         return self
 
     @property
+    def turning(self) -> int:
+        """Sense in which the belt turns the pulley as it runs: 1 counter-clockwise (inside), -1 clockwise (outside)."""
+        return 1 if self.side == "inside" else -1
+
+    @property
     def prescribed(self) -> bool:
         """Whether the motion of the shaft is prescribed."""
         return self.speed is not None
-
-    @property
-    def turning(self) -> float:
-        """Sense in which an advancing belt turns the pulley: +1, counter-clockwise."""
-        return 1.0
 
     @property
     def profiles(self) -> tuple[Profile, ...]:

@@ -36,6 +36,7 @@ def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -
     ax = axes_or_new(ax)
     tension = instant["belt_tension"].values
     DrivePicture(run, ax, Normalize(tension.min(), tension.max())).show(instant)
-    for pulley, speed in zip(run.drive.pulleys, instant["pulley_speed"].values, strict=True):
-        draw_rotation(ax, pulley, float(speed))
+    centers = instant["pulley_center"].values if "pulley_center" in instant else run.drive.centers
+    for pulley, center, speed in zip(run.drive.pulleys, centers, instant["pulley_speed"].values, strict=True):
+        draw_rotation(ax, center, pulley.radius, float(speed))
     return ax

@@ -1,6 +1,7 @@
 """The picture of a drive at one instant, which can be moved to another instant."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -10,6 +11,7 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path as Outline
+from numpy.typing import ArrayLike
 
 from beltdyn.model import Pulley
 from beltdyn.plot.curve import centerline, element_lengths
@@ -39,8 +41,8 @@ class DrivePicture:
     def __init__(self, run: Run, ax: Axes, norm: Normalize) -> None:
         self._lengths = element_lengths(run.dataset, run.drive.belt.length)
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
-        self._centers = [pulley.center for pulley in run.drive.pulleys]
-        self._marks = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.drive.pulleys)]
+        self._centers = run.drive.centers
+        self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.drive.pulleys)]
         _write_names(ax, run.drive.pulleys)
         self._belt = LineCollection([], cmap=tension_colors(), norm=norm, linewidths=4.0, capstyle="round", zorder=3)
         self._belt.set_snap(False)
@@ -59,22 +61,26 @@ class DrivePicture:
         """
         self._belt.set_segments(list(centerline(instant["nodal_coordinates"].values, self._lengths)))
         self._belt.set_array(instant["belt_tension"].values)
+        centers = instant["pulley_center"].values if "pulley_center" in instant else self._centers
         angles = instant["pulley_angle"].values
-        for mark, center, radius, angle in zip(self._marks, self._centers, self._radii, angles, strict=True):
+        for body, center, radius, angle in zip(self._bodies, centers, self._radii, angles, strict=True):
             direction = np.array([np.cos(angle), np.sin(angle)])
-            mark.set_data(*(np.array(center)[:, None] + radius * np.outer(direction, _MARK)))
+            body.mark.set_data(*(center[:, None] + radius * np.outer(direction, _MARK)))
+            body.rim.center = body.hub.center = tuple(center)
         self._title.set_text(f"t = {float(instant['time']):.4g} s")
 
 
-def draw_rotation(ax: Axes, pulley: Pulley, speed: float) -> None:
+def draw_rotation(ax: Axes, center: ArrayLike, radius: float, speed: float) -> None:
     """Draw the direction of rotation as an arrow inside the pulley; nothing when it stands still.
 
     Parameters
     ----------
     ax : Axes
         Where to draw.
-    pulley : Pulley
-        The pulley.
+    center : array_like, shape (2,), m
+        Center of the pulley.
+    radius : float
+        Its radius, m.
     speed : float
         Its speed, rad/s, counter-clockwise positive.
     """
@@ -82,16 +88,25 @@ def draw_rotation(ax: Axes, pulley: Pulley, speed: float) -> None:
         return
     turn = np.copysign(_ARROW_ANGLE, speed)
     angles = np.linspace(np.pi / 2 - turn, np.pi / 2 + turn, 40)
-    points = np.array(pulley.center) + _ARROW_RADIUS * pulley.radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    points = np.asarray(center) + _ARROW_RADIUS * radius * np.column_stack([np.cos(angles), np.sin(angles)])
     style = "-|>,head_length=5,head_width=2.6"
     ax.add_patch(FancyArrowPatch(path=Outline(points), arrowstyle=style, color=INK, linewidth=1.3, zorder=2))
 
 
-def _draw_pulley(ax: Axes, pulley: Pulley, number: int) -> Line2D:
-    """Draw what stays where it is, and give the mark that turns."""
-    ax.add_patch(Circle(pulley.center, pulley.radius, facecolor=PALE, edgecolor=INK, linewidth=0.9, zorder=1))
-    ax.add_patch(Circle(pulley.center, 0.05 * pulley.radius, color=INK, zorder=2))
-    return ax.plot([], [], color=color(number), linewidth=3.0, zorder=2)[0]
+class _Body(NamedTuple):
+    """What is drawn of a pulley: rim and hub, which a tensioner may move, and the mark that turns."""
+
+    rim: Circle
+    hub: Circle
+    mark: Line2D
+
+
+def _draw_pulley(ax: Axes, pulley: Pulley, number: int) -> _Body:
+    rim = Circle(pulley.center, pulley.radius, facecolor=PALE, edgecolor=INK, linewidth=0.9, zorder=1)
+    hub = Circle(pulley.center, 0.05 * pulley.radius, color=INK, zorder=2)
+    ax.add_patch(rim)
+    ax.add_patch(hub)
+    return _Body(rim, hub, ax.plot([], [], color=color(number), linewidth=3.0, zorder=2)[0])
 
 
 def _write_names(ax: Axes, pulleys: Sequence[Pulley]) -> None:

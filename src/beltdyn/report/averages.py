@@ -88,7 +88,7 @@ def _on_pulley(run: Run, window: xr.Dataset, weights: FloatArray, pulley: int) -
     start = path.span_points[pulley - 1, 1] - wheel.center
     turned = np.arctan2(start[0] * arm[..., 1] - start[1] * arm[..., 0], arm @ start) % (2.0 * pi)
     place = turned / path.wrap_angles[pulley]
-    near = np.abs(np.linalg.norm(arm, axis=-1) / wheel.radius - 1.0) < _NEAR
+    near = np.abs(np.linalg.norm(arm, axis=-1) / run.drive.radii[pulley] - 1.0) < _NEAR
     chosen = near & (place < 1.0)
     touching = window["contact_pulley"].values == pulley
     normal, friction = (np.where(touching, window[f"{kind}_force"].values, 0.0) for kind in ("normal", "friction"))

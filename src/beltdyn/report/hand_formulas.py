@@ -59,18 +59,18 @@ def creeping_torsional_swing(drive: Drive) -> Swing:
     omega = _span_frequency(drive, length)
     for _ in range(_ROUNDS):
         longer = length
-        for pulley, angle in zip(drive.pulleys, drive.path.wrap_angles, strict=True):
-            sinking = 1.0 + stiffness / (pulley.radius**2 * drive.contact.stiffness)
+        for radius, angle in zip(drive.radii, drive.path.wrap_angles, strict=True):
+            sinking = 1.0 + stiffness / (radius**2 * drive.contact.stiffness)
             depth = np.sqrt(1j * omega * factor * sinking / stiffness)
-            longer += sinking / (depth * np.tanh(0.5 * depth * angle * pulley.radius))
+            longer += sinking / (depth * np.tanh(0.5 * depth * angle * radius))
         omega = 0.5 * (omega + _span_frequency(drive, longer))
     return Swing(float(omega.real) / (2.0 * pi), float(omega.imag))
 
 
 def _span_frequency(drive: Drive, length: complex) -> complex:
     """Circular frequency on two spans of a length, 1/s."""
-    driven = drive.pulleys[1]
-    return complex(np.sqrt(2.0 * drive.belt.axial_stiffness * driven.radius**2 / (driven.inertia * length)))
+    radius, inertia = float(drive.radii[1]), drive.pulleys[1].inertia
+    return complex(np.sqrt(2.0 * drive.belt.axial_stiffness * radius**2 / (inertia * length)))
 
 
 def creep_lag(drive: Drive, torque: float, speed: float) -> float:
@@ -92,7 +92,7 @@ def creep_lag(drive: Drive, torque: float, speed: float) -> float:
     speed : float
         omega of the pulleys, rad/s.
     """
-    factor, radius = drive.contact.creep_rate_factor, drive.pulleys[0].radius
+    factor, radius = drive.contact.creep_rate_factor, float(drive.radii[0])
     assert factor is not None
     stiffness = drive.belt.axial_stiffness
     arc = radius * float(drive.path.wrap_angles[0])
@@ -110,4 +110,4 @@ def gross_slip_torque(drive: Drive) -> float:
         Two pulleys.
     """
     grip = capstan_ratio(drive.contact.friction, float(drive.path.wrap_angles[1]))
-    return 2.0 * install(drive).tension * drive.pulleys[1].radius * (grip - 1.0) / (grip + 1.0)
+    return 2.0 * install(drive).tension * float(drive.radii[1]) * (grip - 1.0) / (grip + 1.0)

@@ -155,7 +155,7 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         start=float(time[first]),
         end=float(time[-1]),
         outputs=len(time),
-        pulleys=_pulleys(recorded, first, np.array([pulley.radius for pulley in run.drive.pulleys])),
+        pulleys=_pulleys(recorded, first, run.drive.path.radii),
         spans=_spans(recorded, first),
         resolution=run.resolution,
         energy_closure=float(recorded["energy_closure"][-1]),
@@ -170,7 +170,7 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
     )
 
 
-def _pulleys(recorded: Recorded, first: int, radii: np.ndarray) -> tuple[PulleySummary, ...]:
+def _pulleys(recorded: Recorded, first: int, radii: NDArray[np.float64]) -> tuple[PulleySummary, ...]:
     speed, belt_torque, shaft_torque, wrap_angle, hub_force = _means(
         recorded, first, "pulley_speed", "pulley_torque", "shaft_torque", "wrap_angle", "hub_force"
     )

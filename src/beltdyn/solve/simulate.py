@@ -94,10 +94,11 @@ def _at_rest(drive: Drive, system: System) -> State:
     On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
     then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
     """
-    path, radii = drive.path, system.pulleys.radius
-    depth = min(np.min(install(drive).penetrations), _DEEPEST_START * np.min(radii))
-    sunk = BeltPath(path.centers, np.copysign(radii - depth, path.radii))
-    return find_equilibrium(system, laid(system, sunk)).state
+    installation = install(drive)
+    path = installation.path
+    depth = min(np.min(installation.penetrations), _DEEPEST_START * np.min(drive.radii))
+    drawn_in = BeltPath(path.centers, path.radii - depth * np.sign(path.radii))
+    return find_equilibrium(system, laid(system, drawn_in, installation.tensioner_positions)).state
 
 
 def choose_integrator(drive: Drive) -> Integrator:

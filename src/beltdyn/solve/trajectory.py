@@ -207,7 +207,12 @@ def velocity_scale(drive: Drive) -> float:
         m/s; the second is strain times the speed of axial waves, the velocity of a belt end that is let go.
     """
     times = np.linspace(0.0, drive.simulation.duration, 1001)
-    rims = [p.radius * float(np.max(np.abs(p.speed.at(times)))) for p in drive.pulleys if p.speed is not None]
+    radii: list[float] = drive.radii.tolist()
+    rims = [
+        radius * float(np.max(np.abs(pulley.speed.at(times))))
+        for pulley, radius in zip(drive.pulleys, radii, strict=True)
+        if pulley.speed is not None
+    ]
     belt = drive.belt
     strain = drive.path.length / belt.length - 1.0
     return max(*rims, strain * float(np.sqrt(belt.axial_stiffness / belt.mass_per_length)), 0.0)

@@ -9,10 +9,11 @@ from beltdyn.ancf.section import Section
 from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
+from beltdyn.model.layout import radii as effective_radii
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
-from beltdyn.system.arrays import BODY, NODE, PULLEY, Quadrature, Supports, System
+from beltdyn.system.arrays import BODY, NODE, PULLEY, FloatArray, Quadrature, Supports, System
 from beltdyn.system.build_machines import (
     body_inertias,
     machine_arrays,
@@ -113,7 +114,7 @@ def belt_system(
     mesh = discretize(belt, section)
     elements = mesh.length.size
     nodes = elements if closure == "shared_node" else elements + 1
-    radii = [pulley.radius for pulley in pulleys]
+    radii = effective_radii(pulleys, belt)
     frictions = [friction_on(pulley, belt, contact) for pulley in pulleys] if contact else []
     machines = machine_arrays(pulleys, tensioners, path, gravity)
     supports = _supports(nodes, fixed, forces, moments)
@@ -207,7 +208,7 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
 
 
 def _pulley_arrays(
-    pulleys: Sequence[Pulley], radii: Sequence[float], frictions: Sequence[float], tensioners: Records
+    pulleys: Sequence[Pulley], radii: FloatArray, frictions: Sequence[float], tensioners: Records
 ) -> Records:
     """The pulleys, with their shafts and carriers."""
     carrier = np.full(len(pulleys), -1, dtype=np.int64)
@@ -215,7 +216,7 @@ def _pulley_arrays(
     return records(
         PULLEY,
         center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
-        radius=np.array(radii, dtype=float),
+        radius=radii,
         friction=np.array(frictions, dtype=float),
         shaft=shaft_bodies(pulleys),
         carrier=carrier,
@@ -224,7 +225,7 @@ def _pulley_arrays(
 
 def _bodies(
     pulleys: Sequence[Pulley],
-    radii: Sequence[float],
+    radii: FloatArray,
     carriers: Sequence[AnyTensioner],
     tensioners: Records,
 ) -> Records:

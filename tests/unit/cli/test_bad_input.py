@@ -38,7 +38,32 @@ CASES = (
         "stop = 0.6, value = 12.0",
         ("pulley[driver].speed.end is missing", "when the rise ends"),
     ),
-    Case("missing length", BELT, "", ("belt.length is missing", "the unstretched length")),
+    Case("missing length", BELT, "", ("belt: length is missing", "unstretched length", "installed_tension")),
+    Case("missing stiffness", "stiffness = 1e7\n", "", ("contact: stiffness is missing", "allowed_penetration")),
+    Case(
+        "stiffness twice",
+        "stiffness = 1e7",
+        'stiffness = 1e7\nallowed_penetration = "20 um"',
+        ("contact: stiffness and allowed_penetration exclude each other", "Remove one"),
+    ),
+    Case(
+        "length twice",
+        BELT,
+        f"{BELT}\ninstalled_tension = 30",
+        ("belt.length and belt.installed_tension are both given", "0 fixed tensioners", "Give one [[tensioner]]"),
+    ),
+    Case("side", DRIVEN, f'{DRIVEN}\nside = "back"', ("pulley[driven].side", '"back"', "inside, outside")),
+    Case(
+        "outside of two",
+        DRIVEN,
+        f'{DRIVEN}\nside = "outside"',
+        ("the belt would cross itself", 'Set side = "inside" for "driven"', "belt.crossed = true"),
+    ),
+    Case(
+        "crossed without crossing", BELT, f"{BELT}\ncrossed = true", ("no spans cross each other", 'side = "outside"')
+    ),
+    Case("negative offset", BELT, f"{BELT}\npitch_offset = -1e-3", ("belt.pitch_offset = -0.001", "at least 0")),
+    Case("tension in kg", BELT, 'installed_tension = "3 kg"', ("belt.installed_tension", "must be in units of N")),
     Case("missing radius", DRIVEN, "center = [0.191441, 0.0]", ("pulley[driven].radius is missing",)),
     Case("missing name", 'name = "driver"\n', "", ("pulley[1].name is missing", "the name of the pulley")),
     Case("missing duration", "duration = 1.0", "", ("simulation.duration is missing", "the simulated time")),

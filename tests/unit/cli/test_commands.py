@@ -3,6 +3,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from math import hypot
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -65,15 +66,48 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     for part in ("1.2763 m", "0.2807%", "28.19 N", "26.56 N", "5.8%", "180.0°", "0.38288 m", "driver to driven"):
         assert part in output
     assert "warning: an element covers 45°" in output
+    assert "warning: sinking into the pulleys takes 5.8%" in output
+    assert f"beltdyn check {drive_file} --figure layout.png" in output
 
 
-def test_new_writes_a_drive_that_needs_no_warning(run_main: RunMain, tmp_path: Path) -> None:
+def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
+    """An idler on the back under a spring: sense, speed ratio, hub loads, frequencies, and the picture."""
+    idler = (
+        '[[pulley]]\nname = "idler"\ncenter = [0.0, -0.09]\nradius = 0.03\nside = "outside"\ninertia = 0.01\n\n'
+        '[[pulley]]\nname = "driven"'
+    )
+    spring = (
+        '\n[[tensioner]]\nkind = "sliding"\npulley = "idler"\ndirection = [0, 1]\npreload = 20.0\n'
+        "mass = 0.5\nrate = 100.0\nstops = [-0.02, 0.02]\nstop_stiffness = 1e6\n"
+    )
+    text = (
+        drive_text.replace('[[pulley]]\nname = "driven"', idler).replace("length = 1.2727", "length = 1.274") + spring
+    )
+    drive_file.write_text(text, encoding="utf-8")
+    picture = drive_file.with_name("layout.png")
+    code, output, message = run_main(["check", str(drive_file), "--figure", str(picture)])
+    assert (code, message) == (0, "")
+    installation = install(load(drive_file))
+    for part in (
+        *("cw", "-2.7083", "driver to idler", "-0.02 m to 0.02 m"),
+        f"about {installation.tension:.4g} N, which tensioners set",
+        f"{installation.span_frequencies[0]:.4g} Hz",
+        f"{hypot(*installation.hub_loads[1]):.4g} N",
+        f"{installation.tensioner_positions[0]:.4g} m",
+        f"Layout: {picture}",
+    ):
+        assert part in output
+    assert picture.stat().st_size > 5_000
+
+
+def test_new_writes_a_drive_whose_only_warning_is_the_tension_lost(run_main: RunMain, tmp_path: Path) -> None:
     file = tmp_path / "folder" / "mine.toml"
     code, output, _ = run_main(["new", str(file)])
     assert code == 0
     assert str(file) in output
     drive = load(file)
-    assert advise(drive, install(drive)) == []
+    (warning,) = advise(drive, install(drive))
+    assert "sinking into the pulleys takes 5.8%" in warning
 
 
 def test_schema_is_json(run_main: RunMain) -> None:

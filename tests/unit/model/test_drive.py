@@ -1,4 +1,5 @@
 import pickle
+from collections.abc import Callable
 from math import ceil
 
 import numpy as np
@@ -6,6 +7,9 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, advise, install
+from beltdyn.published import loaded_two_pulley
+
+MakeDrive = Callable[..., Drive]
 
 
 def test_constructor_takes_parts_or_mappings(drive: Drive) -> None:
@@ -58,11 +62,31 @@ def test_installed_belt_balances(drive: Drive) -> None:
 
 
 def test_advice_on_the_mesh(drive: Drive) -> None:
-    (warning,) = advise(drive, install(drive))
-    assert "45° of" in warning
-    assert "belt.elements = 45 or more" in warning
+    tension, mesh = advise(drive, install(drive))
+    assert "45° of" in mesh
+    assert "belt.elements = 45 or more" in mesh
     fine = drive.replace(belt=drive.belt.replace(elements=45))
-    assert advise(fine, install(fine)) == []
+    assert advise(fine, install(fine)) == [tension]
+
+
+def test_advice_on_the_tension_lost(drive: Drive) -> None:
+    """With the stiffness that is advised, less than 2 % is lost, by the rounding up."""
+    warning = advise(drive, install(drive))[0]
+    assert warning == (
+        "sinking into the pulleys takes 5.8% of the belt's tension, more than 2%: raise contact.stiffness to "
+        "3.1e+07 N/m^2 or more, or count on 26.56 N."
+    )
+    stiff = drive.replace(contact=drive.contact.replace(stiffness=3.1e7))
+    installation = install(stiff)
+    assert not any("sinking" in warning for warning in advise(stiff, installation))
+    assert installation.tension / installation.laid_tension == pytest.approx(0.98, abs=1e-3)
+
+
+def test_advice_on_the_tension_lost_in_case_2() -> None:
+    """The loaded drive of the paper loses two fifths of its tension."""
+    case = loaded_two_pulley()
+    warning = advise(case, install(case))[0]
+    assert "takes 40.1% of the belt's tension, more than 2%" in warning
 
 
 def test_advice_on_soft_pulleys(drive: Drive) -> None:
@@ -70,7 +94,7 @@ def test_advice_on_soft_pulleys(drive: Drive) -> None:
     soft = drive.replace(belt=belt, contact=drive.contact.replace(stiffness=1e5))
     strain, tension, *penetration = advise(soft, install(soft))
     assert "installed strain is 16%, more than 10%" in strain
-    assert "of the belt's tension, more than 10%: raise contact.stiffness" in tension
+    assert "of the belt's tension, more than 2%: raise contact.stiffness" in tension
     assert [name in warning for name, warning in zip(("driver", "driven"), penetration, strict=True)] == [True, True]
 
 
@@ -91,15 +115,15 @@ def test_advice_on_links(drive: Drive, kind: str, links_each: int) -> None:
     radius, depth = drive.pulleys[0].radius, float(install(drive).penetrations[0])
     angle = (0.8 * depth / radius) ** 0.5
     needed = 3 * ceil(drive.belt.length / (radius * angle) / links_each / 3)
-    (warning,) = advise(chain, install(chain))
-    assert f"belt.elements = {needed} or more" in warning
+    tension, mesh = advise(chain, install(chain))
+    assert f"belt.elements = {needed} or more" in mesh
     advised = chain.replace(belt=chain.belt.replace(elements=needed))
-    assert advise(advised, install(advised)) == []
+    assert advise(advised, install(advised)) == [tension]
 
 
 def test_contact_at_nodes_does_not_miss_the_circle(drive: Drive) -> None:
     nodal = drive.replace(contact=drive.contact.replace(sampling="nodal"))
-    assert advise(nodal, install(nodal)) == []
+    assert advise(nodal, install(nodal)) == advise(drive, install(drive))[:1]
 
 
 def test_a_drive_travels_between_processes_with_its_text(drive: Drive) -> None:
@@ -118,3 +142,27 @@ def test_breakpoints_are_those_of_all_profiles(drive: Drive) -> None:
     changed = drive.pulleys[1].replace(load=[load], hub=[clutch | {"schedule": schedule | {"time": 0.1}}])
     assert drive.breakpoints == (0.05, 0.6)
     assert drive.replace(pulley=[drive.pulleys[0], changed]).breakpoints == (0.05, 0.1, 0.3, 0.6)
+
+
+def test_effective_radii(make_drive: MakeDrive) -> None:
+    drive = make_drive("flat", pitch_offset=0.002, back_offset="3 mm")
+    np.testing.assert_allclose(drive.radii, [0.102, 0.043, 0.202])
+    np.testing.assert_allclose(drive.path.radii, [0.102, -0.043, 0.202])
+    np.testing.assert_array_equal(drive.centers, [[0, 0], [0.25, -0.05], [0.8, 0]])
+    assert [pulley.turning for pulley in drive.pulleys] == [1, -1, 1]
+
+
+def test_tensioner_on_its_stop(make_drive: MakeDrive) -> None:
+    tensioner = {"kind": "sliding", "pulley": "idler", "direction": (0, 1), "mass": 0.5, "preload": 900.0}
+    held = tensioner | {"stops": (-0.01, 0.01), "stop_stiffness": 1e7}
+    drive = make_drive("flat", length=2.6, tensioner=[held])
+    assert any('"idler" rests on its upper stop' in warning for warning in advise(drive, install(drive)))
+    free = make_drive("flat", length=2.6, tensioner=[tensioner | {"mass": 0.5, "preload": 300.0, "rate": 2e3}])
+    assert not any("stop" in warning or "sinking" in warning for warning in advise(free, install(free)))
+
+
+@pytest.mark.parametrize("layout", ["open", "crossed", "flat", "serpentine"])
+def test_drives_of_any_layout_travel_between_processes(make_drive: MakeDrive, layout: str) -> None:
+    drive = make_drive(layout, contact={"allowed_penetration": 1e-5}, pitch_offset=0.001)
+    assert pickle.loads(pickle.dumps(drive)) == drive
+    assert drive.replace(simulation=drive.simulation.replace(rtol=1e-4)).belt == drive.belt

@@ -1,13 +1,22 @@
+import numpy as np
 import pytest
 
-from beltdyn.model import Pulley
-from beltdyn.model.layout import lay_path
+from beltdyn.model import Belt, Pulley
+from beltdyn.model.layout import lay_path as lay
+from beltdyn.model.path import Path
 
 Circle = tuple[str, float, float, float]
 
 
 def pulleys(*circles: Circle) -> list[Pulley]:
     return [Pulley(name=name, center=(x, y), radius=radius, inertia=1) for name, x, y, radius in circles]
+
+
+BELT = Belt(length=1, width=0.02, thickness=0.005, density=1000, youngs_modulus=1e8, poissons_ratio=0.3)
+
+
+def lay_path(listed: list[Pulley], **changes: float | bool) -> Path:
+    return lay(listed, BELT.replace(**changes))
 
 
 A: Circle = ("a", 0, 0, 0.1)
@@ -58,3 +67,92 @@ def test_overlapping_pulleys(distance: float) -> None:
 def test_one_pulley() -> None:
     with pytest.raises(ValueError, match="needs two or more"):
         lay_path(pulleys(A))
+
+
+def sided(*circles: tuple[str, float, float, float, str]) -> list[Pulley]:
+    return [Pulley(name=name, center=(x, y), radius=r, side=side, inertia=1) for name, x, y, r, side in circles]
+
+
+LEFT, RIGHT = ("left", 0.0, 0.0, 0.1, "inside"), ("right", 1.0, 0.0, 0.1, "inside")
+BACK = ("idler", 0.5, -0.1, 0.05, "outside")
+
+
+def test_idler_on_the_back() -> None:
+    path = lay_path(sided(LEFT, BACK, RIGHT))
+    assert path.total_turning == pytest.approx(2 * np.pi)
+    np.testing.assert_array_equal(path.radii, [0.1, -0.05, 0.1])
+
+
+def test_offsets_add_to_the_radii_of_their_side() -> None:
+    path = lay_path(sided(LEFT, BACK, RIGHT), pitch_offset=0.002, back_offset=0.003)
+    np.testing.assert_allclose(path.radii, [0.102, -0.053, 0.102], rtol=1e-15)
+
+
+def test_crossed() -> None:
+    path = lay_path(sided(LEFT, ("right", 1.0, 0.0, 0.1, "outside")), crossed=True)
+    assert path.total_turning == pytest.approx(0, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("circles", "belt", "words"),
+    [
+        pytest.param(
+            (LEFT, ("idler", 0.24, -0.1, 0.155, "outside"), RIGHT),
+            {"pitch_offset": 0.005, "back_offset": 0.005},
+            ('from "left" to "idler"', "more than 0.265 m", "0.26 m apart", "Move them apart"),
+            id="no tangent",
+        ),
+        pytest.param(
+            (LEFT, ("right", 1.0, 0.0, 0.1, "outside")),
+            {},
+            ("would cross itself", '"left" to "right"', 'Set side = "inside" for "right"', "belt.crossed = true"),
+            id="crossing",
+        ),
+        pytest.param(
+            (LEFT, RIGHT), {"crossed": True}, ("no spans cross", 'side = "outside"'), id="crossed without crossing"
+        ),
+        pytest.param(
+            (LEFT, ("idler", 0.5, -0.3, 0.05, "outside"), RIGHT),
+            {},
+            ("would cross itself", 'Set side = "inside" for "idler"', 'move "idler" against the back of the belt'),
+            id="idler out of reach",
+        ),
+        pytest.param(
+            (LEFT, RIGHT, BACK),
+            {},
+            ("would cross itself", 'List the pulleys so: "left", "idler", "right"'),
+            id="idler in the wrong span",
+        ),
+        pytest.param(
+            (("left", 0.0, 0.0, 0.1, "outside"), ("right", 1.0, 0.0, 0.1, "outside")),
+            {},
+            ("-1 times counter-clockwise", "not once", "which side of the belt touches each"),
+            id="all on the back",
+        ),
+        pytest.param(
+            (LEFT, ("idler", 0.5, -0.15, 0.05, "outside"), RIGHT),
+            {},
+            ('pulley "idler" is not touched', "Move it inwards"),
+            id="idler that a span only grazes",
+        ),
+        pytest.param(
+            (LEFT, BACK, RIGHT, ("guide", 0.5, 0.0, 0.045, "outside")),
+            {"pitch_offset": 0.005},
+            ('the belt on "idler" would run through pulley "guide"', "Move them apart"),
+            id="idlers too close for the belt between them",
+        ),
+    ],
+)
+def test_layouts_that_no_belt_can_take(
+    circles: tuple[tuple[str, float, float, float, str], ...], belt: dict[str, float | bool], words: tuple[str, ...]
+) -> None:
+    with pytest.raises(ValueError, match="belt") as caught:
+        lay_path(sided(*circles), **belt)
+    for part in words:
+        assert part in str(caught.value)
+
+
+def test_reversed_serpentine_is_told_its_order() -> None:
+    top = ("top", 0.5, 0.5, 0.1, "inside")
+    with pytest.raises(ValueError, match='List the pulleys so: "left", "idler", "right", "top"'):
+        lay_path(sided(LEFT, top, RIGHT, BACK))

@@ -104,3 +104,94 @@ def test_the_path_moves_with_its_pulleys(angle: float, x: float, y: float) -> No
 def test_no_tangent() -> None:
     with pytest.raises(ValueError, match="no common tangent"):
         path((0, 0, 0.5), (0.1, 0, 0.1))
+
+
+SERPENTINE = (
+    (0.0, 0.0, 0.082),
+    (0.22, -0.06, 0.062),
+    (0.26, 0.16, 0.032),
+    (0.11, 0.16, -0.038),
+    (0.08, 0.33, 0.062),
+    (-0.03, 0.17, -0.053),
+    (-0.17, 0.07, 0.037),
+)
+IDLER = ((0.0, 0.0, 0.1), (0.25, -0.05, -0.04), (0.8, 0.0, 0.2))
+CROSSED = ((0.0, 0.0, 0.12), (0.6, 0.0, -0.08))
+LAYOUTS = pytest.mark.parametrize("circles", [THREE, IDLER, CROSSED, SERPENTINE])
+
+
+def test_crossed_belt_by_hand() -> None:
+    """2 D cos b + (R + r)(pi + 2 b), sin b = (R + r) / D."""
+    laid = path(*CROSSED)
+    beta = math.asin(0.2 / 0.6)
+    assert laid.length == pytest.approx(2 * 0.6 * math.cos(beta) + 0.2 * (math.pi + 2 * beta), rel=1e-15)
+
+
+def test_idler_on_the_back_by_hand() -> None:
+    """Equal pulleys, the idler in the middle: its inner tangents climb by arcsin of radii over distance."""
+    radius, idler, half, depth = 0.1, 0.04, 0.4, 0.06
+    laid = path((-half, 0, radius), (0, -radius - idler + depth, -idler), (half, 0, radius))
+    center = math.atan2(-radius - idler + depth, half)
+    distance = math.hypot(half, radius + idler - depth)
+    climb = center + math.asin((radius + idler) / distance)
+    span = math.sqrt(distance**2 - (radius + idler) ** 2)
+    np.testing.assert_allclose(laid.wrap_angles, [math.pi + climb, 2 * climb, math.pi + climb], rtol=1e-14)
+    np.testing.assert_allclose(laid.span_lengths, [span, span, 2 * half], rtol=1e-14)
+    expected = 2 * span + 2 * half + 2 * radius * (math.pi + climb) + idler * 2 * climb
+    assert laid.length == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("circles", [THREE, IDLER, SERPENTINE])
+def test_a_round_without_crossing_turns_once(circles: tuple[tuple[float, float, float], ...]) -> None:
+    assert path(*circles).total_turning == pytest.approx(2 * math.pi, abs=1e-14)
+
+
+@LAYOUTS
+@given(angle=ANGLES, x=SHIFTS, y=SHIFTS, scale=st.floats(0.1, 10), first=st.integers(0, 6))
+def test_rotated_shifted_scaled_relabelled(
+    circles: tuple[tuple[float, float, float], ...], angle: float, x: float, y: float, scale: float, first: int
+) -> None:
+    laid = path(*circles)
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    centers = np.roll(laid.centers @ turn.T * scale + [x, y], first, axis=0)
+    moved = Path(centers, np.roll(laid.radii * scale, first))
+    np.testing.assert_allclose(moved.wrap_angles, np.roll(laid.wrap_angles, first), atol=1e-10)
+    np.testing.assert_allclose(moved.span_lengths, scale * np.roll(laid.span_lengths, first), atol=1e-12)
+    assert moved.length == pytest.approx(scale * laid.length, rel=1e-11)
+
+
+@LAYOUTS
+def test_mirrored_and_run_in_reverse(circles: tuple[tuple[float, float, float], ...]) -> None:
+    """The mirror turns left into right, the reversed order back: the sides stay."""
+    laid = path(*circles)
+    mirrored = Path((laid.centers * [-1, 1])[::-1], laid.radii[::-1])
+    np.testing.assert_allclose(mirrored.wrap_angles, laid.wrap_angles[::-1], atol=1e-14)
+    np.testing.assert_allclose(mirrored.span_lengths, np.roll(laid.span_lengths[::-1], -1), rtol=1e-14)
+    s = np.linspace(0.0, laid.length, 60)
+    backwards = laid.position(laid.length - s) * [-1, 1]
+    shift = _closest(mirrored, backwards[0])
+    np.testing.assert_allclose(mirrored.position(s + shift), backwards, atol=1e-6)
+
+
+def _closest(laid: Path, point: np.ndarray) -> float:
+    """Arc length of the point on a path that is closest to another."""
+    s = np.linspace(0.0, laid.length, 20001)
+    near = s[np.argmin(np.linalg.norm(laid.position(s) - point, axis=1))]
+    step = laid.position([near])[0] - point
+    return float(near - step @ laid.tangent([near])[0])
+
+
+@LAYOUTS
+def test_moving_a_pulley_lengthens_the_path_along_its_spans(circles: tuple[tuple[float, float, float], ...]) -> None:
+    """dL/dc = u_in - u_out, against central differences (their error is of the order of step^2 / R^2)."""
+    laid, step = path(*circles), 1e-5
+    for pulley in range(laid.count):
+        for axis in range(2):
+            lengths = []
+            for sign in (1, -1):
+                centers = laid.centers.copy()
+                centers[pulley, axis] += sign * step
+                lengths.append(Path(centers, laid.radii).length)
+            slope = (lengths[0] - lengths[1]) / (2 * step)
+            expected = laid.span_directions[pulley - 1] - laid.span_directions[pulley]
+            assert slope == pytest.approx(expected[axis], abs=1e-7)

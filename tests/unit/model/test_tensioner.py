@@ -49,7 +49,10 @@ def test_a_pulley_has_one_tensioner(drive: Drive) -> None:
 
 
 def test_drive_knows_what_is_carried(drive: Drive) -> None:
-    changed = drive.replace(tensioner=[ROTARY, SLIDING | {"pulley": "driver", "direction": (-3.0, 0.0)}])
+    stops = {"stops": (-0.01, 0.01), "stop_stiffness": 1e6}
+    changed = drive.replace(
+        tensioner=[ROTARY | stops, SLIDING | stops | {"pulley": "driver", "direction": (-3.0, 0.0)}]
+    )
     assert [changed.carried(item) for item in changed.tensioners] == [1, 0]
 
 
@@ -61,7 +64,9 @@ def test_a_drive_with_tensioners_survives_its_text(drive: Drive) -> None:
     one, other = changed.tensioners
     assert isinstance(one, FixedTensioner)
     assert isinstance(other, RotaryTensioner)
-    assert one.take_up == -1e-3
+    assert one.take_up == 0.0  # the pulley has moved
+    moved = np.subtract(changed.pulleys[0].center, drive.pulleys[0].center)
+    np.testing.assert_allclose(moved, -1e-3 * np.array(one.direction), atol=1e-15)
     assert np.hypot(*one.direction) == pytest.approx(1, rel=1e-15)
     assert other.stops == pytest.approx((-np.deg2rad(5), np.deg2rad(10)))
 

@@ -1,5 +1,6 @@
 import contextlib
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -73,6 +74,7 @@ KEYS = st.sampled_from(
         *("belt", "pulley", "contact", "simulation", "length", "width", "name", "center", "radius", "speed", "torque"),
         *("tensioner", "load", "hub", "harmonics", "mass"),
         *("profile", "ribs", "catalogue", "axial_stiffness", "wedge_angle", "gravity", "side"),
+        *("side", "installed_tension", "allowed_penetration", "pitch_offset", "crossed", "tensioner", "take_up"),
         *("inertia", "kind", "start", "end", "value", "file", "times", "values", "friction", "elements", "duration"),
     ]
 )
@@ -108,7 +110,7 @@ def test_arbitrary_toml(data: dict[str, Any]) -> None:
 def test_the_papers_drive_with_an_arbitrary_value(drive: Drive, data: st.DataObject) -> None:
     content = drive.model_dump(by_alias=True, exclude_none=True)
     group = data.draw(st.sampled_from(sorted(content)))
-    target = {"pulley": data.draw(st.sampled_from(content["pulley"]))}.get(group, content[group])
+    target = data.draw(st.sampled_from(content["pulley"])) if group == "pulley" else content[group]
     target = target if isinstance(target, dict) else content
     target[data.draw(st.sampled_from(sorted(target)) | KEYS)] = data.draw(VALUES)
     read(tomli_w.dumps(content))
@@ -123,6 +125,27 @@ def test_the_papers_drive_with_arbitrary_numbers(drive: Drive, data: st.DataObje
         group[key] *= data.draw(st.sampled_from([1.0, 1.0, 1e-13, 1e-3, 0.99, 1e3, 1e13]))
     content["pulley"][0]["center"] = data.draw(st.sampled_from([(-0.191441, 0.0), (1e14, 1e14), (-0.191, 1e-300)]))
     read(tomli_w.dumps(content))
+
+
+LENGTHS = {"crossed": 1.88, "flat": 2.58, "serpentine": 1.84}
+SPRING = {"kind": "rotary", "pulley": "tensioner", "pivot": [-0.17, 0.17], "inertia": 0.1, "preload": 30.0, "rate": 9.0}
+FIXED = {"kind": "fixed", "pulley": "idler", "direction": [0.6, 0.8], "take_up": 1e-3}
+
+
+@given(st.sampled_from(sorted(LENGTHS)), st.data())
+@settings(max_examples=200)
+def test_any_layout_with_arbitrary_numbers(make_drive: Callable[..., Drive], layout: str, data: st.DataObject) -> None:
+    drive = make_drive(layout, length=LENGTHS[layout]).model_dump(by_alias=True, exclude_none=True)
+    drive["tensioner"] = data.draw(st.lists(st.sampled_from([dict(SPRING), dict(FIXED)]), max_size=2))
+    drive["belt"]["installed_tension"] = 300.0
+    factors = st.sampled_from([1.0, 1.0, 1.0, 0.9, 1.1, 1e-3, 1e3, 1e13])
+    for group in (drive["belt"], drive["contact"], *drive["pulley"], *drive["tensioner"]):
+        key = data.draw(st.sampled_from([key for key, value in group.items() if isinstance(value, float)]))
+        group[key] *= data.draw(factors)
+    dropped = data.draw(st.sampled_from(["length", "installed_tension"]))
+    drive["belt"].pop(dropped)
+    order = data.draw(st.permutations(drive["pulley"])) if data.draw(st.booleans()) else drive["pulley"]
+    read(tomli_w.dumps(drive | {"pulley": list(order)}))
 
 
 @given(st.text())

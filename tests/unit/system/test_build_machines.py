@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import FixedTensioner, Pulley, RotaryTensioner, SlidingTensioner
+from beltdyn.model import Belt, FixedTensioner, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.system.build_machines import (
     body_inertias,
@@ -23,6 +23,8 @@ from beltdyn.system.machine_arrays import (
     POLYNOMIAL,
     TABLE,
 )
+
+BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
 
 ISOLATING = {"kind": "isolator", "stiffness": 30.0, "damping": 0.4, "inertia": 0.1}
 OVERRUNNING = {"kind": "one_way_clutch", "locking_damping": 5.0, "drag_torque": 0.2, "inertia": 0.2}
@@ -83,7 +85,7 @@ def test_loads_are_sorted_by_pulley() -> None:
 
 
 def test_moving_tensioners_keep_their_order_and_fixed_ones_leave_no_trace() -> None:
-    tensioners = machine_arrays(PULLEYS, (FIXED, ARM, SLIDE), lay_path(PULLEYS)).tensioners
+    tensioners = machine_arrays(PULLEYS, (FIXED, ARM, SLIDE), lay_path(PULLEYS, BELT)).tensioners
     np.testing.assert_array_equal(tensioners.pulley, [2, 1])
     np.testing.assert_array_equal(tensioners.rotary, [True, False])
     np.testing.assert_allclose(tensioners.origin, [[0.1, 0.1], [1.0, 0.0]])

@@ -6,12 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Path, Pulley, RotaryTensioner, SlidingTensioner
+from beltdyn.model import Belt, Path, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.system.build_machines import machine_arrays
 from beltdyn.system.machine_arrays import Records
 from beltdyn.system.tensioner import dry_friction, tensioner_force, tensioner_place
+
+BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
 
 PULLEYS = [
     Pulley(name="driver", center=(0, 0), radius=0.1, speed={"kind": "constant", "value": 1.0}),
@@ -40,7 +42,7 @@ FLOOR = 1e-9  # of central differences of numbers of order one
 
 
 def arrays(name: str) -> Records:
-    return machine_arrays(PULLEYS, [TENSIONERS[name]], lay_path(PULLEYS)).tensioners
+    return machine_arrays(PULLEYS, [TENSIONERS[name]], lay_path(PULLEYS, BELT)).tensioners
 
 
 @pytest.fixture(scope="module", params=TENSIONERS)
@@ -72,7 +74,7 @@ def test_the_coordinate_lengthens_the_path(tensioners: Records) -> None:
     def path(q: float) -> Path:
         pulley = int(tensioners.pulley[0])
         moved = PULLEYS[pulley].replace(center=tensioner_place(tensioners, 0, q)[:2])
-        return lay_path([*PULLEYS[:pulley], moved, *PULLEYS[pulley + 1 :]])
+        return lay_path([*PULLEYS[:pulley], moved, *PULLEYS[pulley + 1 :]], BELT)
 
     numeric = (path(STEP).length - path(-STEP).length) / (2 * STEP)
     here, pulley = path(0.0), int(tensioners.pulley[0])
@@ -121,7 +123,7 @@ def test_what_is_not_stored_is_lost(tensioners: Records, q: float, rate: float) 
 @pytest.mark.parametrize("rate", [-50.0, 0.0, 50.0])
 def test_stops_never_pull(q: float, rate: float) -> None:
     without = TENSIONERS["sliding"].replace(stops=None)
-    free = machine_arrays(PULLEYS, [without], lay_path(PULLEYS)).tensioners
+    free = machine_arrays(PULLEYS, [without], lay_path(PULLEYS, BELT)).tensioners
     assert (free.lower[0], free.upper[0]) == (-inf, inf)
     stop = tensioner_force(arrays("sliding"), 0, q, rate)[0] - tensioner_force(free, 0, q, rate)[0]
     assert stop * np.sign(q) <= 0.0

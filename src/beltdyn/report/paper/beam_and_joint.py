@@ -67,7 +67,7 @@ def _softer(runs: Runs) -> Statement:
         belt, beam = (runs[name(case, _FINEST)] for name in (_belt_name, _beam_name))
         numbers, parts = [], []
         for title, run in (("belt-like", belt), ("full beam", beam)):
-            bend = run.drive.belt.bending_stiffness / run.drive.pulleys[0].radius ** 2
+            bend = run.drive.belt.bending_stiffness / float(run.drive.radii[0]) ** 2
             parts.append(bend / _tension(run))
             numbers += [
                 Number(f"{title}: E I α₂ / R²", bend, "N"),

@@ -166,7 +166,7 @@ def _half_pulley() -> Statement:
     drives = {"20 elements of Table 1": two_pulley(), "30 elements of Figs. 10-13": loaded_two_pulley()}
     numbers, counted = [], {}
     for name, drive in drives.items():
-        arc = drive.path.wrap_angles[0] * drive.pulleys[0].radius
+        arc = drive.path.wrap_angles[0] * float(drive.radii[0])
         elements = arc / (drive.path.length / drive.belt.elements)
         counted[name] = 6 * (round(elements) + 1)
         numbers += [

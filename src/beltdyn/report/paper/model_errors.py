@@ -125,7 +125,7 @@ def unknowns(drive: Drive) -> int:
 
 def half_pulley(drive: Drive) -> int:
     """Nodal coordinates of the elements on half a pulley, the nodes at both ends included."""
-    belt, arc = drive.belt, float(drive.path.wrap_angles[0]) * drive.pulleys[0].radius
+    belt, arc = drive.belt, float(drive.path.wrap_angles[0]) * float(drive.radii[0])
     elements = round(arc / (drive.path.length / belt.elements))
     if not belt.links:
         return 6 * (elements + 1)

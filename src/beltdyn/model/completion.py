@@ -1,0 +1,191 @@
+"""What a drive file may leave open: the length of the belt, the take-up, the stiffness of contact."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.model.belt import Belt
+from beltdyn.model.contact import Contact
+from beltdyn.model.layout import lay_path
+from beltdyn.model.path import Path
+from beltdyn.model.pulley import Pulley
+from beltdyn.model.rest import Carrier, Rest, carriers_of, come_to_rest
+from beltdyn.model.tensioner import AnyTensioner, FixedTensioner, MovingTensioner, check_tensioners, path_gradient
+
+_LARGEST_STRAIN = 0.5
+_MOST_STEPS = 60
+
+
+class _Open(NamedTuple):
+    """Parts of a drive, as a user gives them."""
+
+    belt: Belt
+    pulleys: tuple[Pulley, ...]
+    contact: Contact
+    tensioners: tuple[AnyTensioner, ...]
+
+    def rest(self) -> Rest:
+        """The belt at rest, with spring-loaded tensioners in balance."""
+        path = lay_path(self.pulleys, self.belt)
+        return come_to_rest(path, self.belt, self.contact, self.carriers(path))[0]
+
+    def carriers(self, path: Path) -> list[Carrier]:
+        """Its spring-loaded tensioners."""
+        return carriers_of(self.tensioners, self.names, path)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the pulleys."""
+        return [pulley.name for pulley in self.pulleys]
+
+
+def complete(
+    belt: Belt, pulleys: tuple[Pulley, ...], contact: Contact, tensioners: tuple[AnyTensioner, ...]
+) -> dict[str, Any]:
+    """Make parts of a drive definite.
+
+    Fixed tensioners move their pulleys; a belt with an installed tension gets its length, or, if it has one, the
+    fixed tensioner its take-up; an allowed penetration becomes a stiffness of contact.
+
+    Parameters
+    ----------
+    belt, pulleys, contact, tensioners
+        As a user gives them.
+
+    Returns
+    -------
+    dict
+        The four parts by their names, definite.
+
+    Raises
+    ------
+    ValueError
+        If a belt cannot run around the pulleys, would be slack or overstretched, a tensioner does not fit the pulleys,
+        none can bring the belt to its tension, or they find no balance.
+    """
+    given = _taken_up(_Open(belt, pulleys, contact, tensioners))
+    path = lay_path(given.pulleys, belt)
+    check_tensioners(tensioners, given.pulleys, path)
+    if belt.length is not None and belt.installed_tension is not None:
+        given = _tightened(given, path)
+        path = lay_path(given.pulleys, belt)
+    carriers = given.carriers(path)
+    if not carriers and belt.installed_tension is None:
+        _check_length(belt.length, path.length)
+        if contact.stiffness is not None:
+            return given._asdict()
+    rest = come_to_rest(path, belt, contact, carriers)[0]
+    _check_rest(given, rest)
+    length = rest.length if belt.length is None else belt.length
+    definite = given._replace(
+        belt=belt.model_copy(update={"length": length, "installed_tension": None}),
+        contact=contact.model_copy(update={"stiffness": rest.stiffness, "allowed_penetration": None}),
+    )
+    return definite._asdict()
+
+
+def _taken_up(given: _Open) -> _Open:
+    """Pulleys moved by the take-up of their fixed tensioners."""
+    for tensioner in given.tensioners:
+        if isinstance(tensioner, FixedTensioner) and tensioner.take_up != 0:
+            given = _shifted(given, tensioner, tensioner.take_up)
+    return given
+
+
+def _shifted(given: _Open, tensioner: FixedTensioner, distance: float) -> _Open:
+    """The same with the pulley of a fixed tensioner moved, and its take-up done."""
+    step = (distance * tensioner.direction[0], distance * tensioner.direction[1])
+    pulleys = tuple(
+        pulley.model_copy(update={"center": (pulley.center[0] + step[0], pulley.center[1] + step[1])})
+        if pulley.name == tensioner.pulley
+        else pulley
+        for pulley in given.pulleys
+    )
+    done = tensioner.model_copy(update={"take_up": 0.0})
+    return given._replace(
+        pulleys=pulleys, tensioners=tuple(done if one is tensioner else one for one in given.tensioners)
+    )
+
+
+def _tightened(given: _Open, path: Path) -> _Open:
+    """The same with the pulley of the one fixed tensioner where the belt of given length has the given tension."""
+    from scipy.optimize import brentq
+
+    fixed = [tensioner for tensioner in given.tensioners if isinstance(tensioner, FixedTensioner)]
+    if len(fixed) != 1:
+        raise ValueError(
+            f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners: one of them "
+            'takes up what is missing. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
+        )
+
+    def excess(distance: float) -> float:
+        return _shifted(given, fixed[0], distance).rest().length - given.belt.length
+
+    leverage = float(path_gradient(path, given.names.index(fixed[0].pulley))[1] @ np.array(fixed[0].direction))
+    here, first = 0.0, excess(0.0)
+    step = -float(np.sign(leverage * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
+    for _ in range(_MOST_STEPS):
+        try:
+            if excess(here + step) * first <= 0:
+                found = float(brentq(excess, here, here + step, xtol=1e-15))
+                return _shifted(given, fixed[0], found)
+        except ValueError as error:
+            raise _no_take_up(given, fixed[0], str(error)) from error
+        here, step = here + step, 1.3 * step
+    raise _no_take_up(given, fixed[0], f"not within {abs(here):.3g} m")
+
+
+def _no_take_up(given: _Open, tensioner: FixedTensioner, reason: str) -> ValueError:
+    return ValueError(
+        f'no take-up of "{tensioner.pulley}" brings a belt of {given.belt.length:.5g} m to '
+        f"{given.belt.installed_tension:.5g} N: {reason}. Change belt.length, or the direction of the tensioner"
+    )
+
+
+def _check_rest(given: _Open, rest: Rest) -> None:
+    """Refuse a belt at rest that is slack, or stretched beyond what its law describes."""
+    wanted, length, path = given.belt.installed_tension, rest.length, rest.path.length
+    if wanted is not None and not 0 < path <= (1 + _LARGEST_STRAIN) * length:
+        raise ValueError(
+            f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
+            f"than {_LARGEST_STRAIN:.0%} of its length. Lower it, or make belt and contact stiffer"
+        )
+    moving = any(isinstance(tensioner, MovingTensioner) for tensioner in given.tensioners)
+    _check_length(length, path, relaxed=moving)
+    if moving:
+        _check_place(given, rest.path)
+    if not rest.tension > 0:
+        raise ValueError(
+            "the belt loses all tension by sinking into the pulleys: it is only "
+            f"{path - length:.3g} m shorter than its path. Shorten it, or let it sink in less"
+        )
+
+
+def _check_place(given: _Open, path: Path) -> None:
+    """Refuse a place to which springs press their pulleys, but at which the belt could not run."""
+    moved = [
+        pulley.model_copy(update={"center": tuple(center)})
+        for pulley, center in zip(given.pulleys, path.centers.tolist(), strict=True)
+    ]
+    try:
+        lay_path(moved, given.belt)
+    except ValueError as error:
+        raise ValueError(
+            f"the tensioners balance the belt only where no belt can run: {error}. Change the preload or the belt's "
+            "length, or give stops"
+        ) from error
+
+
+def _check_length(length: float, path: float, relaxed: bool = False) -> None:
+    if length >= path:
+        where = "the path around the pulleys" + " with its tensioners relaxed" * relaxed
+        raise ValueError(
+            f"belt.length = {length:.5g} m is longer than {where} ({path:.5g} m): "
+            "the belt would hang slack. Shorten it, or move the pulleys apart."
+        )
+    if path / length - 1 > _LARGEST_STRAIN:
+        raise ValueError(
+            f"belt.length = {length:.5g} m is too short for the path around the pulleys ({path:.5g} m): "
+            f"it would be stretched by {path / length - 1:.0%}, and {_LARGEST_STRAIN:.0%} is the limit. "
+            "Lengthen it, or move the pulleys together."
+        )

@@ -1,0 +1,237 @@
+"""The layout of a drive, before anything is simulated."""
+
+from itertools import chain
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, FancyArrowPatch, Wedge
+from matplotlib.path import Path as Outline
+from numpy.typing import ArrayLike, NDArray
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, Installation, Path, install
+from beltdyn.model.clearance import crossings
+from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner
+from beltdyn.plot.drive import draw_rotation
+from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
+from beltdyn.results.atomic import atomic_path
+
+FloatArray = NDArray[np.float64]
+_BELT, _TENSIONER = COLORS[0], COLORS[1]
+_ROOMY = 0.13
+_STEEP = 0.4
+_SIZE = 8.0
+_NARROW, _WIDE = 0.55, 1.1
+_ARROW = "-|>,head_length=5,head_width=2.4"
+
+
+@styled
+def layout(drive: Drive, installation: Installation | None = None, ax: Axes | None = None) -> Axes:
+    """Draw belt and pulleys at rest: spans and their lengths, wrap angles, directions of rotation, tensioners.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    installation : Installation, optional
+        Its belt at rest; computed by default.
+    ax : Axes, optional
+        Where to draw; a new figure by default, as high as the drive needs.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    installation = installation or install(drive)
+    path = installation.path
+    extent = _extent(drive, path)
+    width, height = np.ptp(extent, axis=0)
+    ax = axes_or_new(ax, _size(drive))
+    for number in range(path.count):
+        _draw_pulley(ax, drive, path, number)
+    _draw_belt(ax, path)
+    moving = iter(installation.tensioner_positions)
+    for tensioner in drive.tensioners:
+        position = float(next(moving)) if isinstance(tensioner, MovingTensioner) else 0.0
+        _draw_tensioner(ax, tensioner, path, drive.carried(tensioner), position)
+    for number, pulley in enumerate(drive.pulleys):
+        _write_pulley(ax, path, number, f"{number + 1} {pulley.name}", float(max(width, height)))
+    _write_spans(ax, path)
+    beside, above = np.array([0.17, 0.1]) * float(max(width, height))
+    ax.set(xlim=extent[:, 0] + [-beside, beside], ylim=extent[:, 1] + [-above, above])
+    ax.set(xlabel="x [m]", ylabel="y [m]")
+    ax.set_aspect("equal")
+    ax.set_title(
+        f"belt {drive.belt.length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
+    )
+    return ax
+
+
+@styled
+def save_layout(drive: Drive, path: FilePath | str, installation: Installation | None = None) -> FilePath:
+    """Draw the layout of a drive into a file.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    path : Path or str
+        The file: PNG, SVG, PDF or another format of matplotlib.
+    installation : Installation, optional
+        Its belt at rest; computed by default.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If the format is unknown, or the file cannot be written.
+    """
+    path = FilePath(path)
+    figure = new_figure(_size(drive))
+    formats = figure.canvas.get_supported_filetypes()
+    if path.suffix.lower().lstrip(".") not in formats:
+        raise ModelError(
+            f"{path} cannot be written: {path.suffix or 'no suffix'} is not a format for figures. "
+            f"Use one of {', '.join(formats)}."
+        )
+    layout(drive, installation, figure.add_subplot())
+    with atomic_path(path) as temporary:
+        figure.savefig(temporary)
+    return path
+
+
+def _size(drive: Drive) -> tuple[float, float]:
+    """Width and height of a figure, inches: as high as the drive needs."""
+    width, height = np.ptp(_extent(drive, drive.path), axis=0)
+    return _SIZE, _SIZE * float(np.clip(height / width, _NARROW, _WIDE))
+
+
+def _extent(drive: Drive, path: Path) -> FloatArray:
+    """Lower left and upper right corner of what is drawn, shape (2, 2), m."""
+    radii = np.maximum(np.abs(path.radii), [pulley.radius for pulley in drive.pulleys])[:, None]
+    points = [*(path.centers - radii), *(path.centers + radii)]
+    points += [np.array(one.pivot) for one in drive.tensioners if isinstance(one, RotaryTensioner)]
+    return np.array([np.min(points, axis=0), np.max(points, axis=0)])
+
+
+def _draw_pulley(ax: Axes, drive: Drive, path: Path, number: int) -> None:
+    """Draw a pulley with the sector that the belt wraps, and its direction of rotation."""
+    center, radius = path.centers[number], drive.pulleys[number].radius
+    ax.add_patch(Circle(tuple(center), radius, facecolor=PALE, edgecolor="none", zorder=1))
+    start, end = np.degrees(_arc(path, number)[[0, -1]])
+    tint: dict[str, Any] = {"facecolor": color(number), "alpha": 0.22, "edgecolor": "none", "zorder": 1.1}
+    ax.add_patch(Wedge(tuple(center), radius, min(start, end), max(start, end), **tint))
+    ax.add_patch(Circle(tuple(center), radius, facecolor="none", edgecolor=INK, linewidth=0.9, zorder=1.2))
+    ax.add_patch(Circle(tuple(center), 0.05 * radius, color=INK, zorder=2))
+    draw_rotation(ax, center, radius, drive.pulleys[number].turning)
+
+
+def _draw_belt(ax: Axes, path: Path) -> None:
+    """Draw arcs and spans with the direction of motion, each span over those before it."""
+    crossing = set(chain(*crossings(path)))
+    for number in range(path.count):
+        angle = _arc(path, number)
+        points = path.centers[number] + abs(path.radii[number]) * np.column_stack([np.cos(angle), np.sin(angle)])
+        ax.plot(*points.T, color=_BELT, linewidth=3.0, solid_capstyle="butt", zorder=3)
+        start, end = path.span_points[number]
+        style: dict[str, Any] = {"solid_capstyle": "butt", "zorder": 3.1 + 0.01 * number}
+        if number in crossing:
+            free = np.array([start + 0.15 * (end - start), start + 0.85 * (end - start)])
+            ax.plot(*free.T, color="white", linewidth=7.0, **style)
+        ax.plot(*path.span_points[number].T, color=_BELT, linewidth=3.0, **style)
+        ax.add_patch(_arrow([start + 0.7 * (end - start), start + 0.8 * (end - start)], _BELT, 14))
+
+
+def _arc(path: Path, number: int) -> FloatArray:
+    """Angles along the arc on a pulley, in the direction of motion, rad."""
+    enters = path.span_points[number - 1, 1] - path.centers[number]
+    start = np.arctan2(enters[1], enters[0])
+    turned = np.linspace(0.0, path.wrap_angles[number], 90)
+    return np.asarray(start + np.sign(path.radii[number]) * turned)
+
+
+def _draw_tensioner(ax: Axes, tensioner: AnyTensioner, path: Path, pulley: int, position: float) -> None:
+    """Draw the arm or the line of a tensioner, and an arrow the way in which it tensions the belt."""
+    center, radius = path.centers[pulley], abs(path.radii[pulley])
+    line: dict[str, Any] = {"color": _TENSIONER, "linewidth": 2.0, "zorder": 4}
+    if isinstance(tensioner, RotaryTensioner):
+        pivot = np.array(tensioner.pivot)
+        arm = center - pivot
+        ax.plot(*np.array([pivot, center]).T, **line)
+        ax.plot(*pivot, marker="o", markersize=7, markeredgecolor=_TENSIONER, markerfacecolor="white", zorder=4.1)
+        gradient = path.span_directions[pulley - 1] - path.span_directions[pulley]
+        sense = np.sign(arm[0] * gradient[1] - arm[1] * gradient[0])
+        turn = sense * np.linspace(0.0, 1.3 * radius / float(np.linalg.norm(arm)), 20)
+        cosine, sine = np.cos(turn), np.sin(turn)
+        way = pivot + np.column_stack([arm[0] * cosine - arm[1] * sine, arm[0] * sine + arm[1] * cosine])
+    else:
+        direction = np.array(tensioner.direction)
+        way = center + np.outer([0.0, 1.4 * radius], direction)
+        ax.plot(*(center + np.outer([-1.4 * radius, 0.0], direction)).T, linestyle=":", **line)
+    ax.add_patch(_arrow(way, _TENSIONER, 9))
+
+
+def _arrow(points: ArrayLike, paint: str, size: float) -> FancyArrowPatch:
+    return FancyArrowPatch(
+        path=Outline(np.asarray(points)),
+        arrowstyle=_ARROW,
+        color=paint,
+        linewidth=1.6,
+        mutation_scale=size / 8,
+        zorder=5,
+    )
+
+
+def _write_pulley(ax: Axes, path: Path, number: int, name: str, extent: float) -> None:
+    """Write name and wrap angle into a pulley; beside one too small, where there is no belt or beyond it."""
+    text = f"{name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
+    style: dict[str, Any] = {"color": INK, "fontsize": 9, "weight": "bold", "linespacing": 1.2, "zorder": 6}
+    radius = abs(path.radii[number])
+    if radius > _ROOMY * extent:
+        place = path.centers[number] - [0.0, 0.28 * radius]
+        style |= {"horizontalalignment": "center", "verticalalignment": "center"}
+        ax.text(place[0], place[1], text, **style)
+        return
+    away = path.radii[number] < 0 and path.wrap_angles[number] < np.pi
+    middle = float(np.mean(_arc(path, number)[[0, -1]])) + (np.pi if away else 0.0)
+    x, y = np.cos(middle), np.sin(middle)
+    ax.annotate(
+        text,
+        tuple(path.centers[number] + radius * np.array([x, y])),
+        xytext=(8.0 * x, 8.0 * y),
+        textcoords="offset points",
+        horizontalalignment="left" if x > _STEEP else "right" if x < -_STEEP else "center",
+        verticalalignment="bottom" if y > _STEEP else "top" if y < -_STEEP else "center",
+        **style,
+    )
+
+
+def _write_spans(ax: Axes, path: Path) -> None:
+    """Write the length of each span beside its middle, on the belt's back."""
+    crossing = set(chain(*crossings(path)))
+    for number, (start, end) in enumerate(path.span_points):
+        along, length = path.span_directions[number], path.span_lengths[number]
+        place = 0.22 if number in crossing else 0.42
+        angle = np.degrees(np.arctan2(along[1], along[0]))
+        x, y = along[1], -along[0]
+        ax.annotate(
+            f"{length:.4g} m",
+            tuple(start + place * (end - start)),
+            xytext=(9.0 * x, 9.0 * y),
+            textcoords="offset points",
+            rotation=(angle + 90.0) % 180.0 - 90.0,
+            rotation_mode="anchor",
+            horizontalalignment="center",
+            verticalalignment="center",
+            color=_BELT,
+            fontsize=8,
+            zorder=6,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.8},
+        )

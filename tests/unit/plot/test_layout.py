@@ -1,0 +1,109 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, FancyArrowPatch, Wedge
+
+from beltdyn import plot
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, install
+
+
+@pytest.fixture(autouse=True)
+def _no_window() -> Iterator[None]:
+    with mpl.rc_context({"backend": "agg"}):
+        yield
+    plt.close("all")
+
+
+@pytest.fixture
+def ax() -> Axes:
+    return Figure().add_subplot()
+
+
+@pytest.fixture
+def idler_drive(drive: Drive) -> Drive:
+    """The paper's drive with an idler on the back of its lower span, which a spring presses upwards."""
+    idler = {"name": "idler", "center": (0.0, -0.09), "radius": 0.03, "side": "outside", "inertia": 0.01}
+    spring = {"kind": "rotary", "pulley": "idler", "pivot": (-0.1, -0.15), "inertia": 0.01, "preload": 3.0, "rate": 1.0}
+    first, last = drive.pulleys
+    return drive.replace(
+        pulley=[first, idler, last], tensioner=[spring], belt=drive.belt.replace(length=1.29, pitch_offset=0.002)
+    )
+
+
+def belt_lines(ax: Axes) -> list[np.ndarray]:
+    return [np.array(line.get_xydata()) for line in ax.lines if line.get_linewidth() == 3.0]
+
+
+def test_the_belt_is_drawn_along_its_path(idler_drive: Drive, ax: Axes) -> None:
+    installation = install(idler_drive)
+    assert plot.layout(idler_drive, ax=ax) is ax
+    lines, path = belt_lines(ax), installation.path
+    assert len(lines) == 6
+    for number, (arc, span) in enumerate(zip(lines[::2], lines[1::2], strict=True)):
+        np.testing.assert_allclose(span, path.span_points[number], atol=1e-12)
+        np.testing.assert_allclose(arc[[0, -1]], [path.span_points[number - 1, 1], span[0]], atol=1e-12)
+        distance = np.linalg.norm(arc - path.centers[number], axis=1)
+        np.testing.assert_allclose(distance, abs(path.radii[number]), rtol=1e-12)
+
+
+def test_pulleys_show_wrap_name_and_sense(idler_drive: Drive, ax: Axes) -> None:
+    plot.layout(idler_drive, ax=ax)
+    wraps = np.degrees(install(idler_drive).path.wrap_angles)
+    wedges = [patch for patch in ax.patches if isinstance(patch, Wedge)]
+    np.testing.assert_allclose([wedge.theta2 - wedge.theta1 for wedge in wedges], wraps)
+    rims = [p for p in ax.patches if isinstance(p, Circle) and p.get_linewidth() == 0.9 and p.radius > 0.02]
+    assert [rim.radius for rim in rims] == [0.08125, 0.03, 0.08125]
+    words = [text.get_text() for text in ax.texts]
+    assert words[:3] == [
+        f"{n} {name}\n{wrap:.0f}°"
+        for n, name, wrap in zip((1, 2, 3), ("driver", "idler", "driven"), wraps, strict=True)
+    ]
+    assert words[3:] == [f"{length:.4g} m" for length in install(idler_drive).path.span_lengths]
+    arrows = [p.get_path().vertices for p in ax.patches if isinstance(p, FancyArrowPatch) and p.get_zorder() == 2]
+    centers = install(idler_drive).path.centers
+    turns = []
+    for way, center in zip(arrows, centers, strict=True):
+        (x, y), (along, up) = np.asarray(way)[0] - center, np.asarray(way)[10] - center
+        turns.append(np.sign(x * up - y * along))
+    assert turns == [1, -1, 1]
+
+
+def test_arm_and_pivot_of_a_tensioner(idler_drive: Drive, ax: Axes) -> None:
+    plot.layout(idler_drive, ax=ax)
+    arm = next(line for line in ax.lines if line.get_linewidth() == 2.0)
+    np.testing.assert_allclose(np.array(arm.get_xydata()), [(-0.1, -0.15), install(idler_drive).path.centers[1]])
+
+
+def test_crossing_spans_have_a_gap(drive: Drive, ax: Axes) -> None:
+    first, last = drive.pulleys
+    belt = drive.belt.replace(crossed=True, length=1.3)
+    plot.layout(drive.replace(pulley=[first, last.replace(side="outside")], belt=belt), ax=ax)
+    gaps = [line for line in ax.lines if line.get_color() == "white"]
+    assert len(gaps) == 2
+    plain = Figure().add_subplot()
+    plot.layout(drive, ax=plain)
+    assert not [line for line in plain.lines if line.get_color() == "white"]
+
+
+@pytest.mark.parametrize("kind", ["png", "svg"])
+def test_file(drive: Drive, tmp_path: Path, kind: str) -> None:
+    file = plot.save_layout(drive, tmp_path / f"layout.{kind}")
+    assert file.stat().st_size > 5_000
+
+
+@pytest.mark.parametrize(("name", "words"), [("layout.bmpx", "not a format for figures"), ("layout", "no suffix")])
+def test_unknown_format(drive: Drive, tmp_path: Path, name: str, words: str) -> None:
+    with pytest.raises(ModelError, match=words):
+        plot.save_layout(drive, tmp_path / name)
+
+
+def test_unwritable_file(drive: Drive, tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="cannot be written"):
+        plot.save_layout(drive, tmp_path / "nowhere" / "layout.png")
