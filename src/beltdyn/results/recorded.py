@@ -13,9 +13,6 @@ class Recorded(Protocol):
     def attrs(self) -> Mapping[Any, Any]:
         """Global attributes."""
 
-    def __contains__(self, name: object, /) -> bool:
-        """Whether a variable was recorded."""
-
     def __getitem__(self, name: str, /) -> Any:
         """A variable, which is read where it is indexed."""
 
@@ -28,7 +25,7 @@ def names(recorded: Recorded, dimension: str) -> list[str]:
     recorded : Recorded
         What was recorded.
     dimension : str
-        "pulley", "span" or "tensioner".
+        "pulley" or "span".
 
     Returns
     -------
