@@ -17,6 +17,7 @@ from beltdyn.cli.plot import plot
 from beltdyn.cli.run import INTERRUPTED, run
 from beltdyn.cli.schema import schema
 from beltdyn.cli.static import static
+from beltdyn.cli.sweep import sweep
 from beltdyn.errors import BeltdynError
 
 _BAD_INPUT = 2
@@ -29,7 +30,18 @@ app = App(
     "`beltdyn run drive.toml`.",
     suppress_keyboard_interrupt=False,
 )
-_COMMANDS: tuple[Callable[..., object], ...] = (new, check, run, static, plot, demo, paper, catalogue, schema)
+_COMMANDS: tuple[Callable[..., object], ...] = (
+    new,
+    check,
+    run,
+    sweep,
+    static,
+    plot,
+    demo,
+    paper,
+    catalogue,
+    schema,
+)
 for position, command in enumerate(_COMMANDS):
     app.command(command, sort_key=position)
 

@@ -1,7 +1,7 @@
 """`beltdyn plot`."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -16,6 +16,9 @@ def plot(
     /,
     *,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    figures: str | None = None,
+    pulley: str | None = None,
+    variable: str = "span_tension",
     animate: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Draw the figures of a result file.
@@ -26,19 +29,32 @@ def plot(
         The result file, NetCDF, written by `beltdyn run`.
     output
         The folder of the figures; by default beside the result file, named after it with -figures.
+    figures
+        Names of figures with commas between, such as slip,hub_loads; by default the essential ones. The others are
+        mid_spans, tension_spectrum, wear_by_arc, wear_by_belt, waterfall and orders.
+    pulley
+        The pulley of hub loads and contact, by default all; and the one whose speed counts in waterfall and orders, by
+        default the first.
+    variable
+        What waterfall and orders show, such as span_tension, pulley_speed or pulley_torque.
     animate
         Draw an animation too, which takes longer.
     """
     from beltdyn.results import open_run
 
-    draw(open_run(file), output or file.with_name(f"{file.stem}-figures"), animate)
+    folder = output or file.with_name(f"{file.stem}-figures")
+    draw(open_run(file), folder, animate, figures=_names(figures), pulley=pulley, variable=variable)
 
 
-def draw(run: "Run", folder: Path, animate: bool) -> None:
-    """Draw all figures of a run into a folder, and say where they are."""
-    from beltdyn import plot as figures
+def draw(run: "Run", folder: Path, animate: bool, **choice: Any) -> None:
+    """Draw figures of a run into a folder, the essential ones or a choice, and say where they are."""
+    from beltdyn import plot
 
-    paths = figures.save_all(run, folder)
+    paths = plot.save_all(run, folder, **choice)
     if animate:
-        paths = [*paths, figures.animate(run, folder / "animation.gif")]
+        paths = [*paths, plot.animate(run, folder / "animation.gif")]
     show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
+
+
+def _names(figures: str | None) -> list[str] | None:
+    return None if figures is None else [name.strip() for name in figures.split(",")]

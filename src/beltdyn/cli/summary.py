@@ -1,4 +1,4 @@
-"""The summary of a run on the screen."""
+"""The summary of a run on the screen: 100 columns, and as few lines as a drive of seven pulleys needs to fit."""
 
 import math
 from typing import TYPE_CHECKING
@@ -6,7 +6,11 @@ from typing import TYPE_CHECKING
 from beltdyn.cli.console import show, show_facts, show_table, show_warnings
 
 if TYPE_CHECKING:
-    from beltdyn.results import Resolution, Run, Summary
+    from beltdyn.results import PulleySummary, Resolution, Run, SpanSummary, Summary
+
+_LARGEST_MARGIN = 100.0
+_FOUR_DIGITS = 9999.5
+_RPM = 30.0 / math.pi
 
 
 def show_summary(run: "Run") -> None:
@@ -20,36 +24,72 @@ def show_summary(run: "Run") -> None:
     over = f" (means from {summary.start:.4g} to {summary.end:.4g} s)" if summary.end > summary.start else ""
     show_table(
         f"\nPulleys{over}",
-        ("", "speed", "torque from belt", "slip", "wrap angle", "hub load"),
-        [
-            (
-                pulley.name,
-                f"{pulley.speed:.4f} rad/s",
-                f"{pulley.belt_torque:.4g} N m",
-                "" if math.isnan(pulley.slip) else f"{pulley.slip:.3%}",
-                f"{math.degrees(pulley.wrap_angle):.1f}°",
-                f"{pulley.hub_load:.4g} N",
-            )
-            for pulley in summary.pulleys
-        ],
+        ("", "rad/s", "rpm", "torque\nN m", "power\nW", "slip", "wrap", "sliding", "margin", "hub load\nN"),
+        [_pulley(pulley) for pulley in summary.pulleys],
     )
     show_table(
         f"\nSpans{over}",
-        ("", "tension", "belt speed"),
-        [(span.name, f"{span.tension:.4g} N", f"{span.belt_speed:.4g} m/s") for span in summary.spans],
+        ("", "tension N", "least N", "largest N", "belt speed m/s"),
+        [_span(span) for span in summary.spans],
     )
     show()
-    show_facts(_facts(summary))
+    show_facts([*_power(summary), *_solver(summary)])
     show_warnings(summary.warnings)
 
 
-def _facts(summary: "Summary") -> list[tuple[str, str]]:
+def _pulley(pulley: "PulleySummary") -> tuple[str, ...]:
+    return (
+        pulley.name,
+        f"{pulley.speed:.2f}",
+        f"{_RPM * pulley.speed:.5g}",
+        _number(pulley.shaft_torque),
+        _number(pulley.power),
+        "" if math.isnan(pulley.slip) else f"{pulley.slip:.3%}",
+        f"{math.degrees(pulley.wrap_angle):.1f}°",
+        f"{math.degrees(pulley.sliding_arc):.1f}°",
+        _margin(pulley.margin),
+        _number(pulley.hub_load),
+    )
+
+
+def _margin(margin: float) -> str:
+    """The capstan margin; without load it has no meaning, and is large."""
+    if math.isnan(margin):
+        return ""
+    return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
+
+
+def _span(span: "SpanSummary") -> tuple[str, ...]:
+    return (span.name, *map(_number, (span.tension, span.lowest, span.highest, span.belt_speed)))
+
+
+def _number(value: float) -> str:
+    """Four digits, or those before the point where they are more."""
+    return f"{value:.4g}" if abs(value) < _FOUR_DIGITS else f"{value:.0f}"
+
+
+def _power(summary: "Summary") -> list[tuple[str, str]]:
+    """Efficiency and losses by cause, where power goes in."""
+    balance = summary.balance
+    if not balance.power_in > 0.0:
+        return []
+    losses = ", ".join(f"{cause} {power:.3g} W" for cause, power in balance.losses.items() if power != 0.0)
+    efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
+    flows = f"{_number(balance.power_in)} W in, {_number(balance.power_out)} W out"
+    return [
+        ("power", f"{flows}, {balance.stored:.3g} W being stored"),
+        ("efficiency", efficiency),
+        ("losses", f"{balance.lost:.3g} W: {losses}" if losses else "none"),
+    ]
+
+
+def _solver(summary: "Summary") -> list[tuple[str, str]]:
     """What the solver did; of a static equilibrium, which takes no steps, nothing but the time."""
+    steps = f"{summary.steps}, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"
     facts = [
         ("mesh", _mesh(summary.resolution)),
         ("energy closure", f"within {abs(summary.energy_closure):.1e} of the energy put in"),
-        ("outputs", f"{summary.outputs}"),
-        ("steps", f"{summary.steps}, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"),
+        ("steps", f"{steps}; {summary.outputs} outputs"),
         ("real-time factor", f"{summary.real_time_factor:.3g} s of computing for each simulated second"),
     ]
     took = f"{summary.wall_time:.3g} s, and {summary.compile_time:.3g} s to prepare kernels"

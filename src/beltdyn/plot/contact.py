@@ -1,4 +1,4 @@
-"""Contact forces over the belt laid along the horizontal axis, as in Figs. 10-13 of the paper."""
+"""Contact on a pulley: forces over the belt laid straight, as in Figs. 10-13 of the paper; pressure over the arc."""
 
 from typing import Literal
 
@@ -6,14 +6,17 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from numpy.typing import NDArray
 
-from beltdyn.errors import ModelError
 from beltdyn.plot.instant import at
 from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, styled, unit
 from beltdyn.plot.wrap import Wrap, unwrap
-from beltdyn.results import Run
+from beltdyn.results import Run, derived
 
+FloatArray = NDArray[np.float64]
 Kind = Literal["normal", "friction"]
+_KILO = 1e3
+_SLIDING = "#f6d9c9"
 
 
 @styled
@@ -48,17 +51,17 @@ def contact_forces(
     ModelError
         If there is no such pulley, or the run holds no output.
     """
-    number = _number(run, pulley)
+    number = derived.pulley_number(run, pulley)
     instant = at(run, time)
     ax = axes_or_new(ax)
     wrap = unwrap(
         instant["belt_coordinate"].values,
         instant["contact_pulley"].values == number,
         run.drive.belt.length,
-        float(instant["pulley_speed"][number]),
+        run.drive.pulleys[number].turning * float(instant["pulley_speed"][number]),
     )
     if kind == "friction":
-        _draw_limits(ax, instant, wrap, run.drive.contact.friction)
+        _draw_limits(ax, instant, wrap, float(run.drive.frictions[number]))
     force = instant[f"{kind}_force"]
     values = force.values[wrap.points]
     ax.plot(wrap.distance, values, color=color(number), marker="o", markersize=3.0)
@@ -71,13 +74,53 @@ def contact_forces(
     return ax
 
 
-def _number(run: Run, pulley: str | int) -> int:
-    names = [known.name for known in run.drive.pulleys]
-    if pulley in names:
-        return names.index(str(pulley))
-    if isinstance(pulley, int) and 0 <= pulley < len(names):
-        return pulley
-    raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")
+@styled
+def contact_pressure(run: Run, pulley: str | int, time: float | None = None, ax: Axes | None = None) -> Axes:
+    """Draw pressure and shear over the angle on a pulley from where the belt enters.
+
+    The shaded part of the arc slides: there friction is fully used. What the mesh does not resolve is marked.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    pulley : str or int
+        Name or number of the pulley.
+    time : float, optional
+        The instant, s; the output nearest to it is drawn. The last one by default.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes. Shear is positive in the direction in which the rim moves.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley, or the run holds no output.
+    """
+    number = derived.pulley_number(run, pulley)
+    arc = derived.contact_arc(run, number, time)
+    ax = axes_or_new(ax)
+    angle = np.degrees(arc["angle"].values)
+    for part, tint, style in (("pressure", color(number), "-"), ("shear", INK, dash(1))):
+        ax.plot(angle, arc[part] / _KILO, color=tint, linestyle=style, label=str(arc[part].attrs["long_name"]))
+    _shade_sliding(ax, angle, arc["sliding"].values)
+    ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    ax.set(xlabel="Angle from the inlet [°]", ylabel="On the belt [kPa]")
+    ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(arc['time']):.4g} s")
+    if not run.resolution.resolves(number):
+        reserve(ax, f"not resolved by {run.drive.belt.elements} elements")
+    return ax
+
+
+def _shade_sliding(ax: Axes, angle: FloatArray, sliding: FloatArray) -> None:
+    """Shade what slides, half of the way to the neighbours of each point."""
+    if angle.size:
+        edges = np.concatenate([angle[:1], 0.5 * (angle[1:] + angle[:-1]), angle[-1:]])
+        ax.stairs(sliding, edges, transform=ax.get_xaxis_transform(), fill=True, color=_SLIDING, zorder=0)
 
 
 def _draw_limits(ax: Axes, instant: xr.Dataset, wrap: Wrap, friction: float) -> None:

@@ -3,8 +3,9 @@
 import xarray as xr
 from matplotlib.axes import Axes
 
-from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, reserve, styled, unit
+from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, styled, unit
 from beltdyn.results import Run
+from beltdyn.results.balance import LOSSES
 
 _ENERGIES = (
     "driver_work",
@@ -12,8 +13,9 @@ _ENERGIES = (
     "kinetic_energy",
     "strain_energy",
     "penalty_energy",
-    "friction_loss",
-    "damping_loss",
+    "spring_energy",
+    "potential_energy",
+    *LOSSES,
 )
 
 
@@ -33,7 +35,7 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
     """
-    return _lines(run.dataset["pulley_speed"], axes_or_new(ax))
+    return lines(run.dataset["pulley_speed"], axes_or_new(ax))
 
 
 @styled
@@ -52,7 +54,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
     """
-    return _lines(run.dataset["pulley_torque"], axes_or_new(ax))
+    return lines(run.dataset["pulley_torque"], axes_or_new(ax))
 
 
 @styled
@@ -71,7 +73,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
     """
-    ax = _lines(run.dataset["span_tension"], axes_or_new(ax))
+    ax = lines(run.dataset["span_tension"], axes_or_new(ax))
     if not run.resolution.resolves_tension:
         reserve(ax, f"up to {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
     return ax
@@ -79,7 +81,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
 
 @styled
 def energy(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the energy account over time: work put in, energy stored, energy lost.
+    """Draw the energy account over time: work put in, energy stored, energy lost; without what is always zero.
 
     Parameters
     ----------
@@ -100,7 +102,8 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     """
     run.require_output()
     ax = axes_or_new(ax)
-    for number, name in enumerate(_ENERGIES):
+    drawn = [name for name in _ENERGIES if bool((run.dataset[name] != 0.0).any())]
+    for number, name in enumerate(drawn):
         variable = run.dataset[name]
         style = "-" if name.endswith("energy") else dash(1 if name.endswith("work") else 2)
         _line(ax, variable, str(variable.attrs["long_name"]), number, style)
@@ -111,12 +114,12 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def _lines(variable: xr.DataArray, ax: Axes) -> Axes:
+def lines(variable: xr.DataArray, ax: Axes) -> Axes:
     """Draw one line for each name along the second dimension."""
     for number, name in enumerate(variable[variable.dims[1]].values):
         _line(ax, variable[:, number], str(name), number, dash(number))
     ax.set(xlabel=label(variable["time"]), ylabel=label(variable))
-    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=4, borderaxespad=0.2)
+    name_lines(ax)
     return ax
 
 

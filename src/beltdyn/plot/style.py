@@ -32,6 +32,10 @@ DASHES: tuple[Dash, ...] = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (6, 1.4, 1.
 SIZE = (7.0, 3.8)
 """Width and height of a figure, inches."""
 
+_IN_A_ROW = 4
+_ROW = 60
+"""Letters of a legend that fit beside each other."""
+
 _RULES: dict[Any, Any] = {
     "figure.dpi": 110,
     "savefig.dpi": 160,
@@ -117,6 +121,13 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
     return plt.subplots(figsize=size, layout="constrained")[1] if ax is None else ax
 
 
+def polar_or_new(ax: Axes | None, size: tuple[float, float] = (6.2, 4.6)) -> Axes:
+    """Give the axes to draw on; new ones are polar. See `axes_or_new`."""
+    if ax is not None:
+        return ax
+    return plt.subplots(figsize=size, layout="constrained", subplot_kw={"projection": "polar"})[1]
+
+
 def unit(variable: xr.DataArray) -> str:
     """Give the unit of a variable as it is printed.
 
@@ -162,6 +173,15 @@ def reserve(ax: Axes, text: str) -> None:
         color=COLORS[1],
         fontsize=9,
     )
+
+
+def name_lines(ax: Axes) -> None:
+    """Write the legend above the axes, or beside them where the names are many."""
+    names = ax.get_legend_handles_labels()[1]
+    if len(names) <= _IN_A_ROW and sum(map(len, names)) < _ROW:
+        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=_IN_A_ROW, borderaxespad=0.2)
+    else:
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
 def dash(number: int) -> Dash:

@@ -1,12 +1,14 @@
 """The results of a run: one labelled dataset, its file, and what is derived from it."""
 
+from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.layout import Layout
+from beltdyn.results.means import PulleySummary, SpanSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run, open_run
 from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARIABLES, Variable
-from beltdyn.results.summary import PulleySummary, SpanSummary, Summary, summarize
+from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tables import write_csv
 
 __all__ = [
@@ -14,6 +16,7 @@ __all__ = [
     "COORDINATE_NAMES",
     "RECORDED",
     "VARIABLES",
+    "Balance",
     "FileRecorder",
     "Layout",
     "MemoryRecorder",
@@ -26,6 +29,7 @@ __all__ = [
     "Summary",
     "Variable",
     "open_run",
+    "power_balance",
     "provenance",
     "summarize",
     "write_csv",

@@ -6,11 +6,19 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.model import Drive
+from beltdyn.results.means import first_of_window, pulley_means
+from beltdyn.results.mechanics import capstan_margin, rim_speeds
 from beltdyn.results.recorded import Recorded, names
 from beltdyn.results.resolution import FORCE_LIMIT, Resolution
 
 CLOSURE_LIMIT = 0.01
 """Largest closure error of the energy account that passes without a warning."""
+
+MARGIN_LIMIT = 1.5
+"""Smallest capstan margin that passes without a warning."""
+
+SLIDING_LIMIT = 1e-3
+"""Largest velocity of sliding of a whole arc, over the speed of the belt, that passes without a warning."""
 
 
 def find_warnings(dataset: Recorded, drive: Drive, resolution: Resolution | None) -> list[str]:
@@ -36,6 +44,10 @@ def find_warnings(dataset: Recorded, drive: Drive, resolution: Resolution | None
         *_unfinished(dataset, drive),
         *_open_energy_account(dataset, drive),
         *_slack_spans(dataset),
+        *_lost_contact(dataset, drive),
+        *_gross_slip(dataset, drive),
+        *_near_gross_slip_before(dataset, drive),
+        *_stopped_tensioners(dataset, drive),
         *_unresolved(resolution, drive),
     ]
 
@@ -67,6 +79,61 @@ def _slack_spans(dataset: Recorded) -> Iterator[str]:
                 f"the span {name} is slack: its tension falls to {lowest:.4g} N at t = {time:.4g} s. "
                 "Shorten the belt, or reduce the load."
             )
+
+
+def _lost_contact(dataset: Recorded, drive: Drive) -> Iterator[str]:
+    """Pulleys that the belt leaves, of those it is laid on."""
+    free = np.asarray(dataset["wrap_angle"]) <= 0.0
+    for pulley, laid, left in zip(drive.pulleys, drive.path.wrap_angles, free.T, strict=True):
+        if laid > 0.0 and left.any():
+            time = float(dataset["time"][int(left.argmax())])
+            yield f"the belt leaves the pulley {pulley.name} at t = {time:.4g} s. Raise the tension."
+
+
+def _gross_slip(dataset: Recorded, drive: Drive) -> Iterator[str]:
+    """Pulleys that slide through at the end of the run, or are near to it."""
+    remedy = "Raise the tension or the wrap angle, or reduce the load."
+    pulleys = pulley_means(dataset, drive)
+    rims = np.abs(rim_speeds(np.array([pulley.speed for pulley in pulleys]), drive))
+    for pulley, rim in zip(pulleys, rims, strict=True):
+        sliding = abs(pulley.sliding_speed)
+        if sliding > SLIDING_LIMIT * rims[0]:
+            share = f", {sliding / rim:.0%} of the rim's speed" if rim > 0.0 else ""
+            yield f"{pulley.name} slides through: the whole arc slides, at {sliding:.3g} m/s{share}. {remedy}"
+        elif 0.0 < pulley.margin < MARGIN_LIMIT and rims[0] > 0.0:
+            slips = f" slips {pulley.slip:.1%}," if pulley.slip != 0.0 else ":"
+            yield f"{pulley.name}{slips} gross slip at {pulley.margin:.1f} times this load. {remedy}"
+
+
+def _near_gross_slip_before(dataset: Recorded, drive: Drive) -> Iterator[str]:
+    """Pulleys that reached gross slip earlier than at the end of the run."""
+    tension, speed, wrap = (np.asarray(dataset[name]) for name in ("span_tension", "belt_speed", "wrap_angle"))
+    first = first_of_window(np.asarray(dataset["time"]))
+    margins = capstan_margin(tension, speed, wrap, drive)[:first]
+    reached = (margins < 1.0) & (drive.frictions > 0.0)
+    for pulley, when in zip(drive.pulleys, reached.T, strict=True):
+        if when.any():
+            times = np.asarray(dataset["time"])[:first][when]
+            yield (
+                f"{pulley.name} reached gross slip between t = {times[0]:.4g} s and {times[-1]:.4g} s: its load was "
+                "more than friction transmits. Raise the tension or the wrap angle, or load it more gently."
+            )
+
+
+def _stopped_tensioners(dataset: Recorded, drive: Drive) -> Iterator[str]:
+    """Tensioners that lie on a stop at the end of the run, and since when."""
+    moving = [tensioner for tensioner in drive.tensioners if tensioner.kind != "fixed"]
+    for number, tensioner in enumerate(moving):
+        if tensioner.stops is None:
+            continue
+        position, (lower, upper) = np.asarray(dataset["tensioner_position"])[:, number], tensioner.stops
+        for name, on in (("lower", position <= lower), ("upper", position >= upper)):
+            if on[-1]:
+                since = float(dataset["time"][len(on) - int(np.argmin(on[::-1])) if not on.all() else 0])
+                yield (
+                    f"the tensioner of {tensioner.pulley} is on its {name} stop since t = {since:.4g} s. "
+                    "It no longer keeps the tension: change the length of the belt, or the stops."
+                )
 
 
 def _unresolved(resolution: Resolution, drive: Drive) -> Iterator[str]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES
+from beltdyn.results.schema import COORDINATES, OPTIONAL, VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,7 +23,7 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
     layout : Layout
         Names and reference coordinates.
     arrays : mapping
-        An array for every name in `RECORDED`, each with one row for each instant.
+        An array for every name in `Layout.recorded`, each with one row for each instant.
     attributes : mapping
         Global attributes.
 
@@ -35,9 +35,10 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
     import xarray as xr
 
     coordinates = layout.coordinates | {"time": arrays["time"]}
+    variables = {name: variable for name, variable in layout.recorded.items() if name in VARIABLES}
     return xr.Dataset(
-        {name: (variable.dims, arrays[name], variable.attributes) for name, variable in VARIABLES.items()},
-        {name: (variable.dims, coordinates[name], variable.attributes) for name, variable in COORDINATES.items()},
+        {name: (variable.dims, arrays[name], variable.attributes) for name, variable in variables.items()},
+        {name: (COORDINATES[name].dims, coordinates[name], COORDINATES[name].attributes) for name in coordinates},
         dict(attributes),
     )
 
@@ -66,7 +67,9 @@ def open_dataset(path: Path) -> "xr.Dataset":
         dataset = xr.open_dataset(path, engine="h5netcdf", decode_times=False)
     except (OSError, ValueError, KeyError) as error:
         raise ModelError(f"{path} cannot be read as a result file: {error}.") from error
-    missing = [name for name in (*COORDINATES, *VARIABLES) if name not in dataset.variables]
+    known = {**COORDINATES, **VARIABLES}
+    needed = [name for name in known if OPTIONAL.isdisjoint(known[name].dims) or not OPTIONAL.isdisjoint(dataset.dims)]
+    missing = [name for name in needed if name not in dataset.variables]
     missing += [name for name in ("drive", "status") if name not in dataset.attrs]
     if missing:
         dataset.close()
@@ -87,7 +90,7 @@ def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str
     layout : Layout
         Sizes of the dimensions.
     chunk : mapping
-        An array for every name in `RECORDED`, each with one row for each new output.
+        An array for every name in `Layout.recorded`, each with one row for each new output.
 
     Returns
     -------
@@ -99,13 +102,14 @@ def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str
     ValueError
         If a name is missing or unknown, or a shape is wrong.
     """
-    if chunk.keys() != RECORDED.keys():
-        names = sorted(chunk.keys() ^ RECORDED.keys())
+    recorded = layout.recorded
+    if chunk.keys() != recorded.keys():
+        names = sorted(chunk.keys() ^ recorded.keys())
         raise ValueError(f"missing or unknown variables in a chunk of outputs: {', '.join(names)}")
     outputs = len(chunk["time"])
-    arrays = {name: np.asarray(chunk[name], dtype=variable.dtype) for name, variable in RECORDED.items()}
+    arrays = {name: np.asarray(chunk[name], dtype=variable.dtype) for name, variable in recorded.items()}
     for name, array in arrays.items():
-        expected = layout.shape(RECORDED[name], outputs)
+        expected = layout.shape(recorded[name], outputs)
         if array.shape != expected:
             raise ValueError(f"{name} has shape {array.shape}, expected {expected}")
     return arrays

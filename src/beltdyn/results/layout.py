@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, COORDINATES, Variable
+from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, COORDINATES, RECORDED, Variable
 
 FloatArray = NDArray[np.float64]
 
@@ -30,6 +30,8 @@ class Layout:
         Belt coordinate of the contact points in the unstretched belt, m.
     coordinate_names : tuple of str
         Names of the coordinates of a node.
+    tensioners : tuple of str
+        Names of the pulleys that tensioners carry, in the order of their coordinates.
     """
 
     pulleys: tuple[str, ...]
@@ -38,6 +40,7 @@ class Layout:
     element_coordinate: FloatArray
     belt_coordinate: FloatArray
     coordinate_names: tuple[str, ...] = COORDINATE_NAMES
+    tensioners: tuple[str, ...] = ()
 
     @property
     def nodes(self) -> int:
@@ -56,30 +59,39 @@ class Layout:
 
     @property
     def coordinates(self) -> dict[str, NDArray[Any]]:
-        """Every coordinate of the dataset but time, by name."""
+        """Every coordinate of the dataset but time, by name; those along a dimension of size zero are left out."""
         values: Mapping[str, Any] = {
             "pulley": self.pulleys,
             "span": self.spans,
+            "tensioner": self.tensioners,
             "axis": AXIS_NAMES,
             "coordinate": self.coordinate_names,
             "node_coordinate": self.node_coordinate,
             "element_coordinate": self.element_coordinate,
             "belt_coordinate": self.belt_coordinate,
         }
-        return {name: np.asarray(value, dtype=COORDINATES[name].dtype) for name, value in values.items()}
+        return {name: np.asarray(value, COORDINATES[name].dtype) for name, value in values.items() if len(value)}
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Size of every dimension but time."""
-        return {
+        """Size of every dimension but time; those of size zero are left out."""
+        sizes = {
             "pulley": len(self.pulleys),
             "span": len(self.spans),
+            "tensioner": len(self.tensioners),
             "axis": len(AXIS_NAMES),
             "coordinate": len(self.coordinate_names),
             "node": self.nodes,
             "element": self.elements,
             "contact_point": self.contact_points,
         }
+        return {name: size for name, size in sizes.items() if size}
+
+    @property
+    def recorded(self) -> dict[str, Variable]:
+        """The variables of `RECORDED` without those that have a dimension of size zero."""
+        sizes = self.sizes
+        return {name: variable for name, variable in RECORDED.items() if all(dim in sizes for dim in variable.dims[1:])}
 
     def shape(self, variable: Variable, outputs: int) -> tuple[int, ...]:
         """Shape of a variable.

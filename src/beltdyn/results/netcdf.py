@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, VARIABLES, Variable
+from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, Variable
 
 _FORMAT = "earliest"
 _CHUNK_BYTES = 32768
@@ -40,7 +40,7 @@ def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
         file.dimensions = {"time": None, **layout.sizes}
         for name, values in layout.coordinates.items():
             _create_coordinate(file, name, values)
-        for name, variable in RECORDED.items():
+        for name, variable in layout.recorded.items():
             _create_recorded(file, name, variable, layout)
         file.attrs.update(attributes)
 
@@ -55,13 +55,14 @@ def append(path: Path, start: int, arrays: Mapping[str, NDArray[Any]]) -> None:
     start : int
         Number of outputs in the file.
     arrays : mapping
-        An array for every name in `RECORDED`, each with one row for each new output.
+        An array for every variable that the file holds, each with one row for each new output; ``time`` comes last.
     """
     with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
-        for name in VARIABLES:
-            _extend(file, name, start, arrays[name])
+        *variables, time = arrays.items()
+        for name, values in variables:
+            _extend(file, name, start, values)
         file.flush()
-        _extend(file, "time", start, arrays["time"])
+        _extend(file, time[0], start, time[1])
 
 
 def finish(path: Path, outputs: int, attributes: Mapping[str, Any]) -> None:
@@ -77,8 +78,9 @@ def finish(path: Path, outputs: int, attributes: Mapping[str, Any]) -> None:
         Global attributes to set or to replace.
     """
     with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
-        for name in RECORDED:
-            file[name].resize(outputs, axis=0)
+        for dataset in file.values():
+            if dataset.maxshape[0] is None:
+                dataset.resize(outputs, axis=0)
     with h5netcdf.File(path, "r+", libver=_FORMAT, locking=False) as file:
         file.attrs.update(attributes)
 

@@ -13,6 +13,9 @@ class Recorded(Protocol):
     def attrs(self) -> Mapping[Any, Any]:
         """Global attributes."""
 
+    def __contains__(self, name: object, /) -> bool:
+        """Whether a variable was recorded."""
+
     def __getitem__(self, name: str, /) -> Any:
         """A variable, which is read where it is indexed."""
 
@@ -25,7 +28,7 @@ def names(recorded: Recorded, dimension: str) -> list[str]:
     recorded : Recorded
         What was recorded.
     dimension : str
-        "pulley" or "span".
+        "pulley", "span" or "tensioner".
 
     Returns
     -------

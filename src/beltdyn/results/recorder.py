@@ -12,7 +12,6 @@ from beltdyn.results import netcdf
 from beltdyn.results.atomic import atomic_path, unwritable
 from beltdyn.results.dataset import build_dataset, checked_chunk, open_dataset
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import RECORDED
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +29,7 @@ class Recorder(Protocol):
         Parameters
         ----------
         chunk : mapping
-            An array for every name in `RECORDED`, each with one row for each new output.
+            An array for every name in `Layout.recorded`, each with one row for each new output.
 
         Raises
         ------
@@ -86,7 +85,7 @@ class MemoryRecorder:
 
     def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far; see `Recorder.dataset`."""
-        arrays = {name: np.concatenate([chunk[name] for chunk in self._chunks]) for name in RECORDED}
+        arrays = {name: np.concatenate([chunk[name] for chunk in self._chunks]) for name in self._layout.recorded}
         return build_dataset(self._layout, arrays, self._attributes)
 
 
@@ -151,4 +150,4 @@ class FileRecorder:
 
 
 def _no_outputs(layout: Layout) -> dict[str, NDArray[Any]]:
-    return {name: np.empty(layout.shape(variable, 0)) for name, variable in RECORDED.items()}
+    return {name: np.empty(layout.shape(variable, 0)) for name, variable in layout.recorded.items()}

@@ -43,12 +43,14 @@ _PULLEY = ("time", "pulley")
 _NODE = ("time", "node", "coordinate")
 _SPAN = ("time", "span")
 _POINT = ("time", "contact_point")
+_TENSIONER = ("time", "tensioner")
 
 COORDINATES = MappingProxyType(
     {
         "time": Variable(("time",), "s", "Time"),
         "pulley": Variable(("pulley",), "1", "Pulley", "str"),
         "span": Variable(("span",), "1", "Span, from pulley to pulley", "str"),
+        "tensioner": Variable(("tensioner",), "1", "Tensioner, by the pulley it carries", "str"),
         "axis": Variable(("axis",), "1", "Direction in the plane", "str"),
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
         "node_coordinate": Variable(("node",), "m", "Belt coordinate of the node, unstretched"),
@@ -56,16 +58,23 @@ COORDINATES = MappingProxyType(
         "belt_coordinate": Variable(("contact_point",), "m", "Belt coordinate of the contact point, unstretched"),
     }
 )
-"""Coordinates of the dataset by name."""
+"""Coordinates of the dataset by name; those along a dimension of size zero are left out."""
 
 VARIABLES = MappingProxyType(
     {
         "pulley_speed": Variable(_PULLEY, "rad/s", "Pulley speed"),
         "pulley_angle": Variable(_PULLEY, "rad", "Pulley angle"),
+        "shaft_speed": Variable(_PULLEY, "rad/s", "Shaft speed"),
+        "shaft_angle": Variable(_PULLEY, "rad", "Shaft angle"),
         "pulley_torque": Variable(_PULLEY, "N m", "Torque of the belt on the pulley"),
         "shaft_torque": Variable(_PULLEY, "N m", "Torque on the pulley's shaft"),
         "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
         "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
+        "pulley_center": Variable((*_PULLEY, "axis"), "m", "Center of the pulley"),
+        "friction_power": Variable(_PULLEY, "W", "Power lost in friction"),
+        "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
+        "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position"),
+        "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed"),
         "node_position": Variable(("time", "node", "axis"), "m", "Node position"),
         "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
         "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities"),
@@ -81,18 +90,26 @@ VARIABLES = MappingProxyType(
         "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
         "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
         "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy"),
+        "spring_energy": Variable(_OVER_TIME, "J", "Energy of tensioners and couplings"),
+        "potential_energy": Variable(_OVER_TIME, "J", "Potential energy of weight"),
         "driver_work": Variable(_OVER_TIME, "J", "Work of the drivers"),
         "torque_work": Variable(_OVER_TIME, "J", "Work of the applied torques"),
         "friction_loss": Variable(_OVER_TIME, "J", "Loss in friction"),
         "damping_loss": Variable(_OVER_TIME, "J", "Loss in contact damping"),
+        "material_loss": Variable(_OVER_TIME, "J", "Loss in material damping"),
+        "tensioner_loss": Variable(_OVER_TIME, "J", "Loss in tensioners"),
+        "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
         "energy_closure": Variable(_OVER_TIME, "1", "Closure error of the energy account"),
         "step_size": Variable(_OVER_TIME, "s", "Time step"),
     }
 )
-"""Data variables of the dataset by name."""
+"""Data variables of the dataset by name; those with a dimension of size zero are left out."""
 
 RECORDED = MappingProxyType({**VARIABLES, "time": COORDINATES["time"]})
-"""What a recorder is given for every output; ``time`` comes last."""
+"""What a recorder is given for every output but for what `Layout.recorded` leaves out; ``time`` comes last."""
+
+OPTIONAL = frozenset({"tensioner"})
+"""Dimensions that may be of size zero, and are left out then with all that lies along them."""
 
 AUXILIARY_COORDINATES = MappingProxyType(
     {variable.dims[0]: name for name, variable in COORDINATES.items() if name != variable.dims[0]}

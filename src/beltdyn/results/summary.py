@@ -3,65 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.balance import Balance, power_balance
+from beltdyn.results.means import PulleySummary, SpanSummary, first_of_window, pulley_means, span_means
+from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
-
-WINDOW = 0.1
-"""Part of the run, at its end, over which values are averaged."""
-
-
-@dataclass(frozen=True, slots=True)
-class PulleySummary:
-    """Means of one pulley over the end of a run.
-
-    Attributes
-    ----------
-    name : str
-        Name of the pulley.
-    speed : float
-        Speed, rad/s, counter-clockwise positive.
-    belt_torque : float
-        Torque of the belt on the pulley, N m.
-    shaft_torque : float
-        Torque on the shaft from outside, N m.
-    slip : float
-        Relative speed loss of the rim against the first pulley's,
-        ``1 - (omega_i R_i) / (omega_0 R_0)`` of the mean speeds; NaN when the first pulley stands still.
-    wrap_angle : float
-        Wrap angle, rad.
-    hub_load : float
-        Magnitude of the mean force of the belt on the pulley, N.
-    """
-
-    name: str
-    speed: float
-    belt_torque: float
-    shaft_torque: float
-    slip: float
-    wrap_angle: float
-    hub_load: float
-
-
-@dataclass(frozen=True, slots=True)
-class SpanSummary:
-    """Means of one span over the end of a run.
-
-    Attributes
-    ----------
-    name : str
-        Name of the span.
-    tension : float
-        Tension, N.
-    belt_speed : float
-        Speed of the belt, m/s.
-    """
-
-    name: str
-    tension: float
-    belt_speed: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +30,8 @@ class Summary:
         One for each pulley.
     spans : tuple of SpanSummary
         One for each span.
+    balance : Balance
+        Mean powers of shafts and losses by cause, and with them the efficiency.
     resolution : Resolution
         How well the mesh resolves tension and contact.
     energy_closure : float
@@ -107,6 +56,7 @@ class Summary:
     outputs: int
     pulleys: tuple[PulleySummary, ...]
     spans: tuple[SpanSummary, ...]
+    balance: Balance
     resolution: Resolution
     energy_closure: float
     integrator: str
@@ -144,7 +94,7 @@ def summarize(run: Run) -> Summary:
 
 def _summarize(run: Run, recorded: Recorded) -> Summary:
     time = np.asarray(recorded["time"])
-    first = int(np.searchsorted(time, time[-1] - WINDOW * (time[-1] - time[0])))
+    first = first_of_window(time)
     attributes = recorded.attrs
 
     def number(name: str, unknown: float) -> float:
@@ -155,8 +105,9 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         start=float(time[first]),
         end=float(time[-1]),
         outputs=len(time),
-        pulleys=_pulleys(recorded, first, run.drive.path.radii),
-        spans=_spans(recorded, first),
+        pulleys=pulley_means(recorded, run.drive),
+        spans=span_means(recorded),
+        balance=power_balance(recorded, first),
         resolution=run.resolution,
         energy_closure=float(recorded["energy_closure"][-1]),
         integrator=str(attributes.get("integrator", "")),
@@ -168,29 +119,3 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         real_time_factor=number("real_time_factor", np.nan),
         warnings=tuple(run.warnings),
     )
-
-
-def _pulleys(recorded: Recorded, first: int, radii: NDArray[np.float64]) -> tuple[PulleySummary, ...]:
-    speed, belt_torque, shaft_torque, wrap_angle, hub_force = _means(
-        recorded, first, "pulley_speed", "pulley_torque", "shaft_torque", "wrap_angle", "hub_force"
-    )
-    rim_speed = speed * radii
-    slip = 1.0 - rim_speed / rim_speed[0] if rim_speed[0] != 0.0 else np.full(len(radii), np.nan)
-    hub_load = np.hypot(hub_force[:, 0], hub_force[:, 1])
-    columns = (speed, belt_torque, shaft_torque, slip, wrap_angle, hub_load)
-    return tuple(
-        PulleySummary(name, *map(float, row)) for name, *row in zip(names(recorded, "pulley"), *columns, strict=True)
-    )
-
-
-def _spans(recorded: Recorded, first: int) -> tuple[SpanSummary, ...]:
-    tension, belt_speed = _means(recorded, first, "span_tension", "belt_speed")
-    return tuple(
-        SpanSummary(name, *map(float, row))
-        for name, *row in zip(names(recorded, "span"), tension, belt_speed, strict=True)
-    )
-
-
-def _means(recorded: Recorded, first: int, *variables: str) -> list[NDArray[np.float64]]:
-    """Means of variables over the outputs from the first one on."""
-    return [np.asarray(recorded[name][first:]).mean(axis=0) for name in variables]

@@ -1,7 +1,8 @@
 """Plain tables of a run, for spreadsheets and other programs."""
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,34 +10,67 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.results.atomic import atomic_path, make_folder
+from beltdyn.results.balance import LOSSES
 from beltdyn.results.run import Run
+from beltdyn.results.schema import VARIABLES
+from beltdyn.results.summary import Summary, summarize
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_PULLEYS = ("pulley_speed", "pulley_angle", "pulley_torque", "shaft_torque", "hub_force", "wrap_angle")
-_SPANS = ("span_tension", "belt_speed")
-_ENERGY = (
-    "kinetic_energy",
-    "strain_energy",
-    "penalty_energy",
-    "driver_work",
-    "torque_work",
-    "friction_loss",
-    "damping_loss",
-    "energy_closure",
-    "step_size",
+_PULLEYS = (
+    "pulley_speed",
+    "pulley_angle",
+    "shaft_speed",
+    "pulley_torque",
+    "shaft_torque",
+    "hub_force",
+    "wrap_angle",
+    "pulley_center",
+    "slip",
+    "creep",
+    "sliding",
+    "sliding_arc",
+    "capstan_margin",
+    "tension_ratio",
+    "hub_load",
+    "hub_direction",
+    "power_in",
+    "power_out",
+    "friction_power",
+    "contact_damping_power",
 )
+_SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
+_ENERGY = (*(name for name, variable in VARIABLES.items() if variable.dims == ("time",)),)
+_TENSIONERS = ("tensioner_position", "tensioner_speed")
 _CONTACT = ("contact_position", "contact_pulley", "normal_force", "friction_force", "slip_velocity")
 
+_PULLEY_SUMMARY = (
+    "pulley",
+    "speed [rad/s]",
+    "torque of the belt [N m]",
+    "shaft torque [N m]",
+    "power [W]",
+    "slip [1]",
+    "sliding [1]",
+    "sliding speed [m/s]",
+    "sliding arc [rad]",
+    "capstan margin [1]",
+    "wrap angle [rad]",
+    "hub load [N]",
+)
+_SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N]", "belt speed [m/s]")
+_LOSS_SUMMARY = ("cause", "power [W]", "share of the power put in [1]", "energy since the start [J]")
+
 Column = tuple[str, NDArray[Any]]
+Table = tuple[Sequence[str], Iterable[Sequence[Any]]]
 
 
 def write_csv(run: Run, folder: Path | str) -> list[Path]:
-    """Write tables: pulleys, spans and energy over time, and contact at the last output.
+    """Write tables: pulleys, spans, energy and tensioners over time, contact at the last output, and the summary.
 
     Every file has one line of headings, such as ``pulley_speed driver [rad/s]``, and numbers with
-    ten significant digits.
+    ten significant digits. What is derived stands beside what was recorded.
 
     Parameters
     ----------
@@ -48,7 +82,8 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
     Returns
     -------
     list of Path
-        ``pulleys.csv``, ``spans.csv``, ``energy.csv`` and ``contact.csv``.
+        ``pulleys.csv``, ``spans.csv``, ``energy.csv``, ``tensioners.csv`` if there are any, ``contact.csv``, and the
+        means over the end of the run: ``pulley_summary.csv``, ``span_summary.csv`` and ``losses.csv``.
 
     Raises
     ------
@@ -57,14 +92,44 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
     """
     run.require_output()
     folder = make_folder(Path(folder))
-    last = run.dataset.isel(time=-1)
+    dataset = _with_derived(run)
+    over_time = {"pulleys": _PULLEYS, "spans": _SPANS, "energy": _ENERGY, "tensioners": _TENSIONERS}
     tables = {
-        "pulleys.csv": _columns(run.dataset, ("time", *_PULLEYS)),
-        "spans.csv": _columns(run.dataset, ("time", *_SPANS)),
-        "energy.csv": _columns(run.dataset, ("time", *_ENERGY)),
-        "contact.csv": _columns(last, ("belt_coordinate", *_CONTACT)),
+        f"{name}.csv": _table(_columns(dataset, ("time", *variables)))
+        for name, variables in over_time.items()
+        if variables[0] in dataset
     }
-    return [_write(folder / name, list(columns)) for name, columns in tables.items()]
+    tables["contact.csv"] = _table(_columns(dataset.isel(time=-1), ("belt_coordinate", *_CONTACT)))
+    tables |= _summaries(summarize(run), run)
+    return [_write(folder / name, *table) for name, table in tables.items()]
+
+
+def _summaries(summary: Summary, run: Run) -> dict[str, Table]:
+    """Tables of the means over the end of the run."""
+    balance = summary.balance
+    losses = [
+        (cause, power, power / balance.power_in if balance.power_in > 0.0 else np.nan, float(run.dataset[name][-1]))
+        for (name, cause), power in zip(LOSSES.items(), balance.losses.values(), strict=True)
+    ]
+    return {
+        "pulley_summary.csv": (_PULLEY_SUMMARY, map(astuple, summary.pulleys)),
+        "span_summary.csv": (_SPAN_SUMMARY, map(astuple, summary.spans)),
+        "losses.csv": (_LOSS_SUMMARY, losses),
+    }
+
+
+def _with_derived(run: Run) -> "xr.Dataset":
+    """Give the dataset with what is derived from it over time for pulleys and spans."""
+    from beltdyn.results import derived
+
+    hub = derived.hub_loads(run)[["hub_load", "hub_direction"]]
+    parts = (derived.slips(run), derived.sliding_arcs(run), derived.pulley_powers(run), hub)
+    named = {
+        "capstan_margin": derived.capstan_margins(run),
+        "tension_ratio": derived.tension_ratios(run),
+        "mid_span_displacement": derived.mid_span_displacements(run),
+    }
+    return run.dataset.assign({name: part[name] for part in parts for name in part.data_vars} | named)
 
 
 def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:
@@ -77,10 +142,14 @@ def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:
             yield f"{' '.join(words)} [{variable.attrs['units']}]", variable.values[(slice(None), *index)]
 
 
-def _write(path: Path, columns: list[Column]) -> Path:
+def _table(columns: Iterable[Column]) -> Table:
+    headings, values = zip(*columns, strict=True)
+    return headings, zip(*values, strict=True)
+
+
+def _write(path: Path, headings: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
     with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([heading for heading, _ in columns])
-        rows = zip(*(values for _, values in columns), strict=True)
-        writer.writerows([f"{value:.10g}" for value in row] for row in rows)
+        writer.writerow(headings)
+        writer.writerows([value if isinstance(value, str) else f"{value:.10g}" for value in row] for row in rows)
     return path

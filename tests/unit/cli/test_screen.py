@@ -1,6 +1,7 @@
 """What a run shows on the screen."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.cli.summary import show_summary
-from beltdyn.results import Run
+from beltdyn.results import Run, summarize
 from beltdyn.solve.progress import BatchProgress, Progress
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
@@ -16,15 +17,17 @@ RunMain = Callable[[list[str]], tuple[int, str, str]]
 
 def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     show_summary(run)
-    output = capsys.readouterr().out
+    output = " ".join(capsys.readouterr().out.split())
     for part in (
-        "12.0000 rad/s",
+        "driver 12.00 114.59 2.438 29.25 0.000% 180.0° 0.0° 2.86 90",
         "0.500%",
         "180.0°",
-        "driver-driven",
-        "60 N",
+        "29.25 W in, 29.1 W out",
+        "99.50%",
+        "1.2 W: friction 1.08 W, contact damping 0.12 W",
+        "driven-driver 60 60 60 0.975",
         "1.0e-04 of the energy",
-        "1200, 14 rejected",
+        "1200, 14 rejected, 4900 Newton iterations; 101 outputs",
     ):
         assert part in output
     assert "2 s of computing for each simulated second" in output
@@ -36,6 +39,32 @@ def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: p
     output = capsys.readouterr().out
     assert "means" not in output
     assert "nan" not in output
+    assert "efficiency" not in output
+
+
+def test_no_load_no_efficiency(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
+    show_summary(make_run(shaft_torque=np.tile([1.0, 0.0], (101, 1))))
+    assert "none, nothing is taken out" in capsys.readouterr().out
+
+
+def test_seven_pulleys_fit_one_screen(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, run: Run
+) -> None:
+    """100 columns and 45 lines, the warnings of each among them."""
+    summary = summarize(run)
+    pulley = replace(
+        summary.pulleys[1], name="power steering pump", speed=-1234.567, shaft_torque=-123.4, power=-12345.6, margin=0.5
+    )
+    span = replace(summary.spans[0], name="power steering pump-air conditioning", tension=1234.5)
+    full = replace(summary, pulleys=(pulley,) * 7, spans=(span,) * 7, warnings=("a warning.",) * 7)
+    monkeypatch.setattr("beltdyn.results.summarize", lambda _: full)
+    monkeypatch.setenv("COLUMNS", "100")
+    show_summary(run)
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) <= 45
+    assert max(map(len, lines)) <= 100
+    assert not any("…" in line for line in lines)
+    assert sum("power steering pump " in line for line in lines) == 7
 
 
 def test_warnings_are_shown(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
@@ -72,4 +101,9 @@ def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypa
     assert code == 0
     assert f"Results: {drive_file.with_suffix('.nc')}" in output
     tables = drive_file.with_name("drive-tables")
-    assert {path.name for path in tables.iterdir()} == {"pulleys.csv", "spans.csv", "energy.csv", "contact.csv"}
+    over_time = {"pulleys.csv", "spans.csv", "energy.csv", "contact.csv"}
+    assert {path.name for path in tables.iterdir()} == over_time | {
+        "pulley_summary.csv",
+        "span_summary.csv",
+        "losses.csv",
+    }

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -8,24 +8,12 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from beltdyn import plot
 from beltdyn.errors import ModelError
+from beltdyn.plot.gallery import _panels, _rows
 from beltdyn.results import Run
-
-
-@pytest.fixture(autouse=True)
-def _no_window() -> Iterator[None]:
-    with mpl.rc_context({"backend": "agg"}):
-        yield
-    plt.close("all")
-
-
-@pytest.fixture
-def ax() -> Axes:
-    return Figure().add_subplot()
 
 
 @pytest.mark.parametrize(
@@ -120,7 +108,8 @@ def test_nothing_to_draw_is_a_model_error(run: Run, draw: Callable[..., Any]) ->
 
 def test_save_all(tmp_path: Path, run: Run) -> None:
     paths = plot.save_all(run, tmp_path / "figures")
-    names = ["configuration", "contact_forces", "speeds", "torques", "span_tensions", "energy"]
+    names = ["configuration", "contact_forces", "contact_pressure", "speeds", "torques", "span_tensions", "energy"]
+    names += ["slip", "capstan_margins", "powers", "losses", "hub_loads"]
     assert [path.name for path in paths] == [f"{name}.png" for name in names]
     assert sorted((tmp_path / "figures").iterdir()) == sorted(paths)
     assert not plt.get_fignums()
@@ -128,7 +117,42 @@ def test_save_all(tmp_path: Path, run: Run) -> None:
 
 def test_save_all_of_one_output(tmp_path: Path, make_run: Callable[..., Run]) -> None:
     paths = plot.save_all(make_run(outputs=1), tmp_path)
-    assert [path.stem for path in paths] == ["configuration", "contact_forces"]
+    assert [path.stem for path in paths] == ["configuration", "contact_forces", "contact_pressure"]
+
+
+def test_chosen_figures(tmp_path: Path, run: Run) -> None:
+    chosen = ["mid_spans", "wear_by_arc", "wear_by_belt", "tension_spectrum", "contact_pressure"]
+    paths = plot.save_all(run, tmp_path, chosen, pulley="driven")
+    assert [path.stem for path in paths] == chosen
+
+
+def test_unknown_figure_is_a_model_error(tmp_path: Path, run: Run) -> None:
+    with pytest.raises(ModelError, match=r"figure 'speed' is not known\. Choose out of configuration, speeds, "):
+        plot.save_all(run, tmp_path / "figures", ["slip", "speed"])
+    assert not (tmp_path / "figures").exists()
+
+
+def test_all_figures_of_a_drive_with_a_tensioner(tmp_path: Path, run: Run) -> None:
+    """Those of a sweep need more turns than this run has, and are tried elsewhere."""
+    place = run.dataset["shaft_angle"][:, :1].rename(pulley="tensioner")
+    tensioned = Run(
+        run.dataset.assign(tensioner_position=place.assign_attrs(units="rad", long_name="Place")), run.drive
+    )
+    chosen = [name for name in plot.FIGURES if name not in ("waterfall", "orders")]
+    assert [path.stem for path in plot.save_all(tensioned, tmp_path, chosen)] == chosen
+    assert "tensioners" in [path.stem for path in plot.save_all(tensioned, tmp_path)]
+
+
+@pytest.mark.parametrize(
+    ("pulleys", "columns", "rows"), [(1, 1, 2), (2, 2, 2), (4, 4, 2), (5, 3, 4), (7, 4, 4), (9, 3, 6)]
+)
+def test_panels_of_many_pulleys_are_in_rows(pulleys: int, columns: int, rows: int) -> None:
+    """Two kinds of force for each block of pulleys, no more than four beside each other."""
+    blocks = _rows(list(range(pulleys)))
+    assert [number for block in blocks for number in block] == list(range(pulleys))
+    figure = _panels([[lambda ax: ax for _ in block] for block in blocks for _ in range(2)])
+    assert len(figure.axes) == 2 * pulleys
+    assert figure.get_size_inches().tolist() == pytest.approx([4.2 * columns, 2.9 * rows])
 
 
 def test_figures_that_cannot_be_written_are_a_model_error(tmp_path: Path, run: Run) -> None:

@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -10,9 +11,10 @@ import pytest
 import xarray as xr
 
 from beltdyn.errors import BeltdynError, ModelError
-from beltdyn.results import COORDINATES, RECORDED, VARIABLES, FileRecorder, Layout, MemoryRecorder, open_run
+from beltdyn.results import COORDINATES, VARIABLES, FileRecorder, Layout, MemoryRecorder, open_run
 
 TIME = np.linspace(0.0, 1.0, 121)
+KNOWN = {**VARIABLES, **COORDINATES}
 
 
 @pytest.fixture
@@ -41,11 +43,38 @@ def test_file_and_memory_hold_the_same(
 
 def test_dataset_keeps_to_the_schema(result: FileRecorder) -> None:
     with result.dataset() as dataset:
-        assert set(dataset.data_vars) == set(VARIABLES)
-        assert set(dataset.coords) == set(COORDINATES)
-        for name, variable in {**VARIABLES, **COORDINATES}.items():
+        kept = {name: variable for name, variable in KNOWN.items() if "tensioner" not in variable.dims}
+        assert set(dataset.variables) == set(kept)
+        for name, variable in kept.items():
             assert dataset[name].dims == variable.dims
             assert dataset[name].attrs == variable.attributes
+
+
+def test_tensioners_are_recorded_where_there_are_any(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    """In memory and in a file; without them nothing of theirs is there, and none is asked for."""
+    tensioned = replace(layout, tensioners=("driven",))
+    chunk = make_chunk(TIME) | {"tensioner_position": TIME[:, None], "tensioner_speed": 1.0 + 0.0 * TIME[:, None]}
+    file, memory = FileRecorder(tmp_path / "tensioned.nc", tensioned, attributes), MemoryRecorder(tensioned, attributes)
+    for recorder in (file, memory):
+        recorder.append(chunk)
+    with file.dataset() as dataset:
+        xr.testing.assert_identical(dataset, memory.dataset())
+        assert set(dataset.variables) == set(KNOWN)
+        assert dataset["tensioner"].values.tolist() == ["driven"]
+    with pytest.raises(ValueError, match=r"missing or unknown variables.*tensioner_position, tensioner_speed"):
+        MemoryRecorder(layout, attributes).append(chunk)
+
+
+def test_result_that_lacks_the_place_of_its_tensioner_is_refused(
+    tmp_path: Path, layout: Layout, attributes: Any
+) -> None:
+    recorder = FileRecorder(tmp_path / "tensioned.nc", replace(layout, tensioners=("driven",)), attributes)
+    with recorder.dataset() as dataset:
+        dataset.drop_vars("tensioner_position").to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
+    with pytest.raises(ModelError, match="holds no `tensioner_position`"):
+        open_run(tmp_path / "other.nc")
 
 
 def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
@@ -57,11 +86,11 @@ def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
         assert "belt_coordinate" in dataset["normal_force"].coords
 
 
-def test_file_is_netcdf4_with_an_unlimited_time(result: FileRecorder) -> None:
+def test_file_is_netcdf4_with_an_unlimited_time(result: FileRecorder, layout: Layout) -> None:
     with h5netcdf.File(result.path, "r") as file:
         assert file.dimensions["time"].isunlimited()
         assert file.variables["nodal_coordinates"].dimensions == ("time", "node", "coordinate")
-        assert all(file.variables[name].shape[0] == len(TIME) for name in RECORDED)
+        assert all(file.variables[name].shape[0] == len(TIME) for name in layout.recorded)
 
 
 def test_file_has_no_consistency_flags(result: FileRecorder) -> None:

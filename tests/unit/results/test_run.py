@@ -1,5 +1,6 @@
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import xarray as xr
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
+from beltdyn.results.checks import _stopped_tensioners
 
 MakeRun = Callable[..., Run]
 
@@ -107,3 +109,54 @@ def test_interrupted_run_is_said(make_run: MakeRun) -> None:
 def test_run_without_outputs_is_said(run: Run) -> None:
     empty = Run(run.dataset.isel(time=slice(0)), run.drive)
     assert empty.warnings == ["nothing was recorded: the run ended before its first output."]
+
+
+def test_belt_that_leaves_a_pulley_is_said(make_run: MakeRun) -> None:
+    wrap = np.full((11, 2), np.pi)
+    wrap[3:5, 1] = 0.0
+    assert "the belt leaves the pulley driven at t = 0.3 s. Raise the tension." in (
+        make_run(outputs=11, wrap_angle=wrap).warnings
+    )
+
+
+def test_pulley_near_gross_slip_is_said(make_run: MakeRun) -> None:
+    """Of tensions of 10 and 70 N (80 - 0.2) tanh(0.6 pi) / 60 = 1.27 times the load would slip."""
+    found = make_run(span_tension=np.tile([10.0, 70.0], (101, 1))).warnings
+    remedy = "Raise the tension or the wrap angle, or reduce the load."
+    assert f"driven slips 0.5%, gross slip at 1.3 times this load. {remedy}" in found
+    assert f"driver: gross slip at 1.3 times this load. {remedy}" in found
+
+
+def test_pulley_that_slides_through_is_said(make_run: MakeRun, run: Run) -> None:
+    touched = run.dataset["contact_pulley"].values
+    found = make_run(slip_velocity=np.where(touched == 1, 0.4, 0.0)).warnings
+    assert any(warning.startswith("driven slides through: the whole arc slides, at 0.39") for warning in found)
+    assert not any(warning.startswith("driver") for warning in found)
+
+
+def test_gross_slip_that_has_passed_is_said(make_run: MakeRun) -> None:
+    """Of 1 and 99 N less than the present load can be transmitted, from 0.2 to 0.3 s."""
+    tension = np.tile([30.0, 60.0], (11, 1))
+    tension[2:4] = [1.0, 99.0]
+    found = make_run(outputs=11, span_tension=tension).warnings
+    assert any(text.startswith("driver reached gross slip between t = 0.2 s and 0.3 s: its load") for text in found)
+
+
+@pytest.mark.parametrize(
+    ("position", "said"),
+    [
+        (np.linspace(-1.0, 1.0, 11), "upper stop since t = 0.8 s"),
+        (np.full(11, -0.7), "lower stop since t = 0 s"),
+        (np.linspace(1.0, 0.0, 11), None),
+    ],
+)
+def test_tensioner_on_its_stop_is_said(run: Run, position: np.ndarray, said: str | None) -> None:
+    """One that is fixed has no place; the drive is as much of one as the check asks for."""
+    tensioners = [
+        SimpleNamespace(kind="fixed", pulley="driver"),
+        SimpleNamespace(kind="rotary", pulley="driven", stops=(-0.5, 0.5)),
+        SimpleNamespace(kind="sliding", pulley="idler", stops=None),
+    ]
+    dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": np.stack([position, 9.0 + position], axis=1)}
+    found = list(_stopped_tensioners(dataset, SimpleNamespace(tensioners=tensioners)))  # type: ignore[arg-type]
+    assert [text.split(" is on its ")[1].split(". ")[0] for text in found] == ([said] if said else [])

@@ -28,6 +28,34 @@ def test_pulleys(run: Run) -> None:
     assert driven.shaft_torque == pytest.approx(-30.0 * 0.08125)
     assert driven.hub_load == pytest.approx(90.0)
     assert driven.wrap_angle == pytest.approx(math.pi)
+    assert driven.power == pytest.approx(-0.995 * 12.0 * 30.0 * 0.08125)
+    assert driven.margin == pytest.approx(89.80 * math.tanh(0.6 * math.pi) / 30.0, rel=1e-3)
+    assert (driven.sliding, driven.sliding_speed, driven.sliding_arc) == (0.0, 0.0, 0.0)
+
+
+def test_pulley_that_slides_through(make_run: Callable[..., Run], run: Run) -> None:
+    """The belt is faster than the whole driven rim by 0.4 m/s, creep included, and slower than none of the driver's."""
+    touched, normal = (run.dataset[name].values for name in ("contact_pulley", "normal_force"))
+    slipping = make_run(slip_velocity=np.where(touched == 1, 0.4, 0.0))
+    driver, driven = summarize(slipping).pulleys
+    creep = 1.2 * normal[90:].max() / 1e5  # where the tension is highest
+    assert driven.sliding_speed == pytest.approx(0.4 - creep, rel=1e-3)
+    assert driven.sliding == pytest.approx(driven.sliding_speed / (12.0 * 0.08125))
+    assert driven.sliding_arc == pytest.approx(math.pi)
+    assert (driver.sliding, driver.sliding_speed, driver.sliding_arc) == (0.0, 0.0, 0.0)
+
+
+def test_spans_swing(make_run: Callable[..., Run]) -> None:
+    tension = np.tile([30.0, 60.0], (101, 1))
+    tension[95] = [20.0, 75.0]
+    spans = summarize(make_run(span_tension=tension)).spans
+    assert [(span.lowest, span.highest) for span in spans] == [(20.0, 30.0), (60.0, 75.0)]
+
+
+def test_efficiency_is_that_of_the_end(run: Run) -> None:
+    balance = summarize(run).balance
+    assert balance.efficiency == pytest.approx(0.995)
+    assert balance.losses["friction"] == pytest.approx(0.09 * 12.0)
 
 
 def test_spans_and_solver(run: Run) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from beltdyn.results import RECORDED, FileRecorder, Layout
+from beltdyn.results import FileRecorder, Layout
 
 PERIOD = 100
 PAUSE = 0.05
@@ -24,7 +24,7 @@ def write(path: Path, outputs: int) -> None:
     while True:
         numbers = np.arange(start, start + outputs) % PERIOD
         chunk = {}
-        for name, variable in RECORDED.items():
+        for name, variable in layout.recorded.items():
             shape = layout.shape(variable, outputs)
             chunk[name] = np.broadcast_to(numbers.reshape(-1, *(1,) * (len(shape) - 1)), shape)
         recorder.append(chunk)

@@ -1,0 +1,213 @@
+"""Figures of the pulleys: hub loads, slip, capstan margin, powers and losses."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator
+
+from beltdyn.errors import ModelError
+from beltdyn.plot.history import lines
+from beltdyn.plot.style import axes_or_new, color, label, name_lines, polar_or_new, styled
+from beltdyn.results import Run, derived
+from beltdyn.results.means import first_of_window
+
+_LARGEST_MARGIN = 10.0
+_RINGS = 4
+
+
+@styled
+def slip(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the slip of the pulleys against the first over time, and thin the part of it that is creep.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    parts = derived.slips(run)
+    ax = lines(parts["slip"], axes_or_new(ax))
+    if bool((np.abs(parts["sliding"]) > 0.0).any()):
+        for number in range(parts.sizes["pulley"]):
+            creep = parts["creep"][:, number]
+            ax.plot(creep["time"], creep, color=color(number), linewidth=0.8, linestyle=":")
+        ax.set_title("dotted: creep; the rest is sliding of the whole arc", loc="right", fontsize=9)
+    _limit(ax, parts["slip"].values)
+    return ax
+
+
+@styled
+def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw how many times its load each pulley could transmit, over time; below 1 its whole arc slides.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes; margins above ten are cut off.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    margins = derived.capstan_margins(run)
+    ax = lines(margins.where(np.isfinite(margins)), axes_or_new(ax))
+    ax.axhspan(0.0, 1.0, color="#f6d9c9", linewidth=0.0, zorder=0)
+    ax.annotate("gross slip", (0.995, 0.5), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=9)
+    ax.set_ylim(0.0, _LARGEST_MARGIN)
+    return ax
+
+
+@styled
+def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the forces of the belt on pulleys over their direction, as they wander in the plane.
+
+    A dot marks the last output. What happened before the last half of the run is drawn pale.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    pulley : str or int, optional
+        Name or number of the pulley; all of them by default.
+    ax : Axes, optional
+        Where to draw: polar axes; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        Polar axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley, the axes are not polar, or the run holds no output.
+    """
+    ax = polar_or_new(ax)
+    if not isinstance(ax, PolarAxes):
+        raise ModelError('hub loads are drawn over their direction: give polar axes (projection="polar").')
+    loads = derived.hub_loads(run)
+    numbers = range(len(run.drive.pulleys)) if pulley is None else [derived.pulley_number(run, pulley)]
+    half = loads.sizes["time"] // 2
+    for number in numbers:
+        of_pulley = loads.isel(pulley=number)
+        angle, load = of_pulley["hub_direction"].values, of_pulley["hub_load"].values
+        ax.plot(angle[: half + 1], load[: half + 1], color=color(number), linewidth=0.6, alpha=0.35)
+        ax.plot(angle[half:], load[half:], color=color(number), linewidth=1.2)
+        name = run.drive.pulleys[number].name
+        ax.plot(angle[-1:], load[-1:], color=color(number), marker="o", markersize=5.0, label=name, linestyle="")
+    ax.set_rmin(0.0)
+    ax.yaxis.set_major_locator(MaxNLocator(_RINGS))
+    ax.tick_params(axis="y", labelsize=8)
+    ax.set_title(label(loads["hub_load"]), loc="left")
+    ax.legend(loc="center left", bbox_to_anchor=(1.12, 0.5))
+    return ax
+
+
+@styled
+def powers(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the power that comes in at each shaft over time; negative where a load takes it out.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    return lines(derived.pulley_powers(run)["power_in"], axes_or_new(ax))
+
+
+@styled
+def losses(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw where the power goes that is lost, by cause: means over the end of the run, as in the summary.
+
+    Friction and contact damping are laid out by pulley.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    run.require_output()
+    ax = axes_or_new(ax)
+    time = run.dataset["time"].values
+    start = float(time[first_of_window(time)])
+    balance = derived.balance(run, start)
+    by_pulley = derived.pulley_powers(run, start).mean("time")
+    parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}
+    causes = list(balance.losses)
+    for row, (cause, power) in enumerate(balance.losses.items()):
+        left = _stack(ax, row, parts[cause]) if cause in parts else power
+        if cause not in parts:
+            ax.barh(row, power, color="0.55", height=0.6)
+        share = f" ({power / balance.power_in:.2%})" if balance.power_in > 0.0 else ""
+        place = (max(left, power, 0.0), row)
+        ax.annotate(f"{power:.3g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center")
+    ax.set_yticks(range(len(causes)), causes)
+    ax.invert_yaxis()
+    ax.grid(axis="y", visible=False)
+    ax.margins(x=0.3)
+    ax.set_xlim(left=0.0)
+    ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {start:.4g} to {time[-1]:.4g} s")
+    name_lines(ax)
+    return ax
+
+
+def _stack(ax: Axes, row: int, powers: xr.DataArray) -> float:
+    """Draw bars of the pulleys on end, and give where they end."""
+    left = 0.0
+    for number, (name, power) in enumerate(zip(powers["pulley"].values, powers.values, strict=True)):
+        ax.barh(row, power, left=left, color=color(number), height=0.6, label=str(name) if row == 0 else None)
+        left += float(power)
+    return left
+
+
+def _limit(ax: Axes, values: np.ndarray) -> None:
+    """Keep a few wild values, as at the start of a run, from making all others flat."""
+    known = values[np.isfinite(values)]
+    if known.size:
+        low, high = np.percentile(known, (1.0, 99.0))
+        margin = 0.1 * max(high - low, 1e-3)
+        ax.set_ylim(min(low - margin, -margin), high + margin)

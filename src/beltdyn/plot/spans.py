@@ -1,0 +1,101 @@
+"""Figures of the spans and tensioners."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from beltdyn.errors import ModelError
+from beltdyn.plot.history import lines
+from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, styled
+from beltdyn.results import Run, derived
+
+_FLOOR = 1e-6
+"""Part of the largest amplitude below which a spectrum is cut off."""
+
+
+@styled
+def mid_spans(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the transverse displacements of the spans at their middle over time.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    displacement = derived.mid_span_displacements(run)
+    return lines((1e3 * displacement).assign_attrs(displacement.attrs | {"units": "mm"}), axes_or_new(ax))
+
+
+@styled
+def tension_spectrum(run: Run, start: float | None = None, end: float | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the amplitude spectra of the span tensions.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s; by default the second half of the run, when it is more likely to be steady.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds too few outputs.
+    """
+    run.require_output()
+    time = run.dataset["time"].values
+    start = 0.5 * (time[0] + time[-1]) if start is None else start
+    spectrum = derived.amplitude_spectrum(run.dataset["span_tension"].sel(time=slice(start, end)))
+    ax = axes_or_new(ax)
+    for number, name in enumerate(spectrum["span"].values):
+        amplitude = spectrum[1:, number]
+        ax.plot(amplitude["frequency"], amplitude, color=color(number), linestyle=dash(number), label=str(name), lw=1.2)
+    highest = float(spectrum.max())
+    ax.set(xlabel=label(spectrum["frequency"]), ylabel=label(spectrum), yscale="log")
+    ax.set_ylim(bottom=max(_FLOOR * highest, float(np.percentile(spectrum[1:], 1.0))))
+    name_lines(ax)
+    return ax
+
+
+@styled
+def tensioners(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the positions of the tensioners over time: m along a line, rad of an arm.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the drive has no tensioner that moves.
+    """
+    if "tensioner_position" not in run.dataset:
+        raise ModelError("this drive has no tensioner that moves: there is no position to draw. Choose another figure.")
+    return lines(run.dataset["tensioner_position"], axes_or_new(ax))

@@ -1,0 +1,94 @@
+"""Where the power of a drive goes, over a part of its run."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from beltdyn.results.recorded import Recorded
+
+LOSSES: Mapping[str, str] = {
+    "friction_loss": "friction",
+    "damping_loss": "contact damping",
+    "material_loss": "belt material",
+    "tensioner_loss": "tensioners",
+    "coupling_loss": "couplings",
+}
+"""Recorded works of the losses, and their causes in words."""
+
+STORED = ("kinetic_energy", "strain_energy", "penalty_energy", "spring_energy", "potential_energy")
+"""Recorded energies that the drive holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Balance:
+    """Mean powers over a part of a run, W.
+
+    Attributes
+    ----------
+    pulleys : tuple of float
+        Power into the drive at each shaft, positive where the shaft drives.
+    losses : dict of str to float
+        Power lost, by cause, such as "friction".
+    stored : float
+        Rate at which the energy held by the drive grows: kinetic, strain, penalty, spring and potential energy.
+    """
+
+    pulleys: tuple[float, ...]
+    losses: Mapping[str, float]
+    stored: float
+
+    @property
+    def power_in(self) -> float:
+        """Sum of what the driving shafts put in."""
+        return sum(power for power in self.pulleys if power > 0.0)
+
+    @property
+    def power_out(self) -> float:
+        """Sum of what the loads take out."""
+        return -sum(power for power in self.pulleys if power < 0.0)
+
+    @property
+    def efficiency(self) -> float:
+        """Power out over power in; NaN when none goes in."""
+        return self.power_out / self.power_in if self.power_in > 0.0 else math.nan
+
+    @property
+    def lost(self) -> float:
+        """Sum of the losses."""
+        return sum(self.losses.values())
+
+
+def power_balance(recorded: Recorded, first: int = 0, last: int = -1) -> Balance:
+    """Give the mean powers between two outputs.
+
+    The powers of the shafts are means over the outputs between them; losses and stored energy are differences of
+    what was integrated and recorded. A single output gives no rates: they are zero.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    first, last : int
+        Numbers of the outputs.
+
+    Returns
+    -------
+    Balance
+        The mean powers.
+    """
+    time = np.asarray(recorded["time"])
+    rows = slice(first, range(len(time))[last] + 1)
+    elapsed = time[rows][-1] - time[rows][0]
+
+    def rate(name: str) -> float:
+        values = recorded[name][rows]
+        return float(values[-1] - values[0]) / elapsed if elapsed > 0.0 else 0.0
+
+    shafts = np.asarray(recorded["shaft_torque"][rows]) * np.asarray(recorded["shaft_speed"][rows])
+    return Balance(
+        pulleys=tuple(map(float, shafts.mean(axis=0))),
+        losses={cause: rate(name) for name, cause in LOSSES.items()},
+        stored=sum(rate(name) for name in STORED),
+    )

@@ -1,0 +1,29 @@
+"""What is derived from a run for its user: functions of a `Run` that give labelled arrays with units."""
+
+from beltdyn.results.derived.arc import contact_arc
+from beltdyn.results.derived.labels import pulley_number
+from beltdyn.results.derived.power import balance, pulley_powers
+from beltdyn.results.derived.pulley import capstan_margins, hub_loads, tension_ratios
+from beltdyn.results.derived.slip import sliding_arcs, slips
+from beltdyn.results.derived.span import mid_span_displacements, span_tensions
+from beltdyn.results.derived.spectrum import amplitude_spectrum, orders, waterfall
+from beltdyn.results.derived.wear import wear_by_arc, wear_by_belt
+
+__all__ = [
+    "amplitude_spectrum",
+    "balance",
+    "capstan_margins",
+    "contact_arc",
+    "hub_loads",
+    "mid_span_displacements",
+    "orders",
+    "pulley_number",
+    "pulley_powers",
+    "sliding_arcs",
+    "slips",
+    "span_tensions",
+    "tension_ratios",
+    "waterfall",
+    "wear_by_arc",
+    "wear_by_belt",
+]

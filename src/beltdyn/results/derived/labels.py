@@ -1,0 +1,78 @@
+"""Names and units of what is derived from a dataset."""
+
+from typing import Any
+
+import xarray as xr
+from numpy.typing import NDArray
+
+from beltdyn.errors import ModelError
+from beltdyn.results.run import Run
+
+
+def labelled(values: NDArray[Any], like: xr.DataArray, units: str, long_name: str) -> xr.DataArray:
+    """Give an array the dimensions and coordinates of another one, and its own unit and name.
+
+    Parameters
+    ----------
+    values : ndarray
+        The values, of the shape of `like`.
+    like : DataArray
+        Whose dimensions and coordinates they have.
+    units, long_name : str
+        Unit and meaning, fit for the label of an axis.
+    """
+    return like.copy(data=values).assign_attrs(units=units, long_name=long_name)
+
+
+def window(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Take the outputs from one instant to another, both included.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        s; the first and the last output by default.
+
+    Returns
+    -------
+    xarray.Dataset
+        With at least one output.
+
+    Raises
+    ------
+    ModelError
+        If there is no output between the two.
+    """
+    run.require_output()
+    dataset = run.dataset.sel(time=slice(start, end))
+    if dataset.sizes["time"] == 0:
+        times = run.dataset["time"].values
+        raise ModelError(
+            f"there is no output from {start} to {end} s: the run was recorded from {times[0]:g} to {times[-1]:g} s. "
+            "Choose instants between these."
+        )
+    return dataset
+
+
+def pulley_number(run: Run, pulley: str | int) -> int:
+    """Give the number of a pulley.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    pulley : str or int
+        Its name or number.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley.
+    """
+    names = [known.name for known in run.drive.pulleys]
+    if pulley in names:
+        return names.index(str(pulley))
+    if isinstance(pulley, int) and 0 <= pulley < len(names):
+        return pulley
+    raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")

@@ -1,0 +1,57 @@
+"""Powers of the pulleys over time."""
+
+import xarray as xr
+
+from beltdyn.results.balance import Balance, power_balance
+from beltdyn.results.derived.labels import labelled, window
+from beltdyn.results.run import Run
+
+
+def pulley_powers(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Power in, out and lost at every pulley.
+
+    What comes in at the shaft either goes to the belt or is lost in contact, but for what the rim, the bodies of its
+    hub and the contact store at the moment: in the mean of steady running ``power_in`` = ``power_out`` +
+    ``power_lost``. At a driven pulley power in and out are negative: the belt gives more than the load takes.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    xarray.Dataset
+        W, time and pulley: ``power_in`` = shaft torque * shaft speed, from the shaft; ``power_out`` = - torque of the
+        belt * pulley speed - losses in contact, to the belt; ``power_lost`` = ``friction_power`` +
+        ``contact_damping_power``; and these two.
+    """
+    dataset = window(run, start, end)
+    lost = dataset["friction_power"] + dataset["contact_damping_power"]
+    powers = {
+        "power_in": (dataset["shaft_torque"] * dataset["shaft_speed"], "Power from the shaft"),
+        "power_out": (-dataset["pulley_torque"] * dataset["pulley_speed"] - lost, "Power to the belt"),
+        "power_lost": (lost, "Power lost in contact"),
+    }
+    made = {name: labelled(value.values, lost, "W", long_name) for name, (value, long_name) in powers.items()}
+    return xr.Dataset({**made, **{name: dataset[name] for name in ("friction_power", "contact_damping_power")}})
+
+
+def balance(run: Run, start: float | None = None, end: float | None = None) -> Balance:
+    """Give mean powers of shafts and losses by cause over a part of a run, and with them the efficiency.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    Balance
+        The efficiency says what it should only where as much energy is stored at the end as at the start.
+    """
+    return power_balance(window(run, start, end))

@@ -1,0 +1,81 @@
+"""Loads of the pulleys over time: hub load, and how far each is from gross slip."""
+
+import numpy as np
+import xarray as xr
+
+from beltdyn.results.derived.labels import labelled, window
+from beltdyn.results.mechanics import across
+from beltdyn.results.mechanics import capstan_margin as margin_of
+from beltdyn.results.run import Run
+
+
+def hub_loads(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Force of the belt on every pulley as vector, magnitude and direction.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``hub_force`` (time, pulley, axis) and ``hub_load``, its magnitude, in N; ``hub_direction``, its direction
+        from the x axis, counter-clockwise from -pi to pi, rad.
+    """
+    force = window(run, start, end)["hub_force"]
+    x, y = force.sel(axis="x", drop=True), force.sel(axis="y", drop=True)
+    return xr.Dataset(
+        {
+            "hub_force": force,
+            "hub_load": labelled(np.hypot(x.values, y.values), x, "N", "Hub load"),
+            "hub_direction": labelled(np.arctan2(y.values, x.values), x, "rad", "Direction of the hub load"),
+        }
+    )
+
+
+def capstan_margins(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
+    """How many times its present load each pulley could transmit before its whole arc slides.
+
+    See `beltdyn.results.mechanics.capstan_margin`: 1 at the edge of gross slip, infinite without load.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    DataArray
+        Time and pulley; NaN where a span is missing because the belt has left a pulley.
+    """
+    dataset = window(run, start, end)
+    wrap = dataset["wrap_angle"]
+    margin = margin_of(dataset["span_tension"].values, dataset["belt_speed"].values, wrap.values, run.drive)
+    return labelled(margin, wrap, "1", "Capstan margin")
+
+
+def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
+    """Larger over smaller tension of the two spans at every pulley.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    DataArray
+        Time and pulley, at least 1; NaN where a span is slack.
+    """
+    dataset = window(run, start, end)
+    before, after = across(dataset["span_tension"].values)
+    tight, slack = np.maximum(before, after), np.minimum(before, after)
+    ratio = np.divide(tight, slack, out=np.full_like(slack, np.nan), where=slack > 0.0)
+    return labelled(ratio, dataset["wrap_angle"], "1", "Tension ratio")

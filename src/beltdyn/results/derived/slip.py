@@ -1,0 +1,102 @@
+"""Slip of the pulleys, and what it is made of: creep, and sliding of the whole arc."""
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from beltdyn.results.derived.labels import labelled, window
+from beltdyn.results.mechanics import (
+    cells,
+    gross_sliding,
+    pressing,
+    relative_loss,
+    rim_speeds,
+    sliding_shares,
+    sliding_velocity,
+    slip,
+)
+from beltdyn.results.run import Run
+
+FloatArray = NDArray[np.float64]
+
+_STANDING = 0.01
+"""Part of its largest speed below which the first pulley counts as standing still."""
+_BLOCK = 256
+
+
+def slips(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Slip over time, split into creep and sliding.
+
+    The slip of pulley i is its rim's speed loss against the first pulley's, s_i = 1 - v_i / v_0 with v = |omega| R,
+    positive in the direction in which the belt runs, as in the summary. With the velocity g (belt faster than the rim)
+    at which the belt slides on the *whole* arc of a pulley beyond what the friction law calls creep,
+
+        sliding_i = (g_i - g_0) / v_0,    creep_i = s_i - sliding_i.
+
+    So creep is what a belt that still sticks or creeps somewhere on both arcs loses: its stretch changes between
+    the two (Reynolds 1874; (T1 - T2) / E A without mass), and the law of friction lets it creep. What slides is a
+    loss without bound, as on a pulley that is overloaded.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``slip``, ``creep`` and ``sliding`` in %, with the dimensions time and pulley; NaN while the first pulley
+        stands still.
+    """
+    dataset = window(run, start, end)
+    speed = dataset["pulley_speed"]
+    rim = rim_speeds(speed.values, run.drive)
+    largest = np.max(np.abs(rim[:, :1]))
+    rim = np.where(np.abs(rim[:, :1]) > _STANDING * largest, rim, 0.0)
+    gross = _contact(run, dataset)[0]
+    total, slid = slip(rim), relative_loss(gross - gross[:, :1], rim)
+    parts = {"slip": (total, "Slip"), "creep": (total - slid, "Creep"), "sliding": (slid, "Sliding")}
+    return xr.Dataset(
+        {name: labelled(100.0 * values, speed, "%", long_name) for name, (values, long_name) in parts.items()}
+    )
+
+
+def sliding_arcs(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
+    """Arc of each pulley on which the belt slides: where |f_t| has reached mu f_n.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    start, end : float, optional
+        From when to when, s.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``sliding_share`` of the arc of contact, and ``sliding_arc`` = share * wrap angle, rad; time and pulley.
+    """
+    dataset = window(run, start, end)
+    wrap, share = dataset["wrap_angle"], _contact(run, dataset)[1]
+    return xr.Dataset(
+        {
+            "sliding_share": labelled(share, wrap, "1", "Share of the arc that slides"),
+            "sliding_arc": labelled(share * wrap.values, wrap, "rad", "Sliding arc"),
+        }
+    )
+
+
+def _contact(run: Run, dataset: xr.Dataset) -> tuple[FloatArray, FloatArray]:
+    """Sliding velocities along the belt of whole arcs, m/s, and shares of the arcs that slide, shape (time, pulley)."""
+    cell = cells(dataset["belt_coordinate"].values, run.drive.belt.length)
+    gross, share = list[FloatArray](), list[FloatArray]()
+    for first in range(0, dataset.sizes["time"], _BLOCK):
+        part = dataset.isel(time=slice(first, first + _BLOCK))
+        touched, normal = part["contact_pulley"].values, part["normal_force"].values
+        sliding = sliding_velocity(part["slip_velocity"].values, normal, touched, run.drive)
+        pressed = pressing(normal, touched, len(run.drive.pulleys))
+        gross.append(gross_sliding(sliding, pressed, run.drive))
+        share.append(sliding_shares(sliding, pressed, cell))
+    return np.concatenate(gross), np.concatenate(share)

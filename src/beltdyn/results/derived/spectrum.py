@@ -1,0 +1,218 @@
+"""Spectra of whatever is recorded over time: amplitudes over frequency, and over speed in a run-up."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from beltdyn.errors import ModelError
+
+if TYPE_CHECKING:
+    from scipy.signal import ShortTimeFFT
+
+FloatArray = NDArray[np.float64]
+
+_FEWEST = 16
+_OVERLAP = 4
+_SAME = 0.01
+"""Part of a speed by which it changes at least in a run-up."""
+
+_STANDING = 0.1
+"""Part of the largest speed below which orders are not looked for."""
+
+
+def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArray:
+    """Give the amplitudes of the sinusoids that a variable is made of.
+
+    The mean is taken away, and a window applied whose sum the amplitudes are divided by: a sinusoid of amplitude A at
+    a frequency of the spectrum gives A, one between two of them down to 0.85 A with "hann" and 0.999 A with "flattop",
+    whose lines are wider.
+
+    Parameters
+    ----------
+    values : DataArray
+        A variable whose first dimension is time; instants between which it is interpolated if they are uneven.
+    window : str
+        Name of a window of `scipy.signal.get_window`.
+
+    Returns
+    -------
+    DataArray
+        In the unit of the variable, with ``frequency`` (Hz) in the place of time; twice the amplitude of the
+        Fourier transform at positive frequencies.
+
+    Raises
+    ------
+    ModelError
+        If there are too few outputs.
+    """
+    from scipy.signal import periodogram
+
+    time, even = _even(values["time"].values, values.values)
+    rate = (len(time) - 1) / (time[-1] - time[0])
+    frequency, power = periodogram(even, rate, window, detrend="constant", scaling="spectrum", axis=0)
+    amplitude = np.sqrt(2.0 * power)
+    dims = ("frequency", *values.dims[1:])
+    coordinates: dict[Any, Any] = {name: values[name] for name in values.dims[1:] if name in values.coords}
+    coordinates["frequency"] = ("frequency", frequency, {"units": "Hz", "long_name": "Frequency"})
+    return xr.DataArray(amplitude, coordinates, dims, attrs=_amplitude_of(values))
+
+
+def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr.DataArray:
+    """Give short-time spectra over the speed of a pulley.
+
+    Parameters
+    ----------
+    values : DataArray
+        A variable over time.
+    speed : DataArray
+        Speed of the pulley over the same time, rad/s.
+    pieces : int
+        About how many spectra; each is of four times the time that lies between two, and has its trend taken away.
+
+    Returns
+    -------
+    DataArray
+        Amplitudes in the unit of the variable over ``speed`` (rad/s, its magnitude at the middle of each spectrum) and
+        ``frequency`` (Hz).
+
+    Raises
+    ------
+    ModelError
+        If there are too few outputs, or the speed stays the same.
+    """
+    time, even = _even(values["time"].values, values.values)
+    transform = _transform(max(_FEWEST, _OVERLAP * (len(time) // pieces)), (len(time) - 1) / (time[-1] - time[0]))
+    middle, amplitude = _short_time(transform, even)
+    turning = np.interp(time[0] + middle, speed["time"].values, np.abs(speed.values))
+    return _over_speed(values, amplitude, turning, "frequency", transform.f, "Hz", "Frequency")
+
+
+def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, revolutions: int = 8) -> xr.DataArray:
+    """Give the amplitudes of the orders of a pulley's rotation over its speed.
+
+    The variable is laid out by cubic splines over the pulley's angle, in even steps no larger than the smallest that
+    was recorded (computed order tracking, Fyfe and Munck 1997), and spectra are taken over a number of revolutions: a
+    variable that repeats k times in a revolution has the order k at any speed. The longest part of the run is taken
+    in which the speed stays above a tenth of the largest.
+
+    Parameters
+    ----------
+    values : DataArray
+        A variable over time.
+    angle : DataArray
+        Angle of the pulley over the same time, rad.
+    largest : float
+        Largest order.
+    revolutions : int
+        Revolutions in each spectrum; orders are told apart by about two over this number.
+
+    Returns
+    -------
+    DataArray
+        Amplitudes in the unit of the variable over ``speed`` (rad/s, magnitude, mean of the revolution
+        in the middle of each spectrum) and ``order``.
+
+    Raises
+    ------
+    ModelError
+        If the pulley turns too little, its speed stays the same, or there are too few outputs.
+    """
+    from scipy.interpolate import CubicSpline
+
+    time, even = _even(values["time"].values, np.column_stack([values.values, np.abs(_turned(angle))]))
+    turning = _longest_turning(np.gradient(even[:, 1], time))
+    time, signal, turned = time[turning], even[turning, 0], even[turning, 1]
+    turns = (turned[-1] - turned[0]) / (2.0 * np.pi)
+    if turns < 2 * revolutions:
+        raise ModelError(
+            f"the pulley makes {turns:.3g} turns above a tenth of its largest speed: orders need "
+            f"{2 * revolutions} or more. Simulate longer, or take fewer revolutions."
+        )
+    each = int(np.ceil(max(2.0 * np.pi / np.diff(turned).min(), 2.0 * largest)))
+    steps = np.arange(turned[0], turned[-1], 2.0 * np.pi / each)
+    transform = _transform(revolutions * each, float(each))
+    middle, amplitude = _short_time(transform, CubicSpline(turned, signal)(steps))
+    center = turned[0] + 2.0 * np.pi * middle
+    passed = [np.interp(center + side, turned, time) for side in (-np.pi, np.pi)]
+    speed = 2.0 * np.pi / (passed[1] - passed[0])
+    kept = transform.f <= largest
+    return _over_speed(values, amplitude[:, kept], speed, "order", transform.f[kept], "1", "Order")
+
+
+def _longest_turning(speed: FloatArray) -> slice:
+    """Find the longest stretch of instants at which the speed is above a tenth of the largest."""
+    slow = np.concatenate([[True], speed < _STANDING * speed.max(), [True]])
+    (ends,) = np.nonzero(slow)
+    longest = int(np.argmax(np.diff(ends)))
+    return slice(int(ends[longest]), int(ends[longest + 1]) - 1)
+
+
+def _turned(angle: xr.DataArray) -> FloatArray:
+    return np.asarray(angle.values - angle.values[0])
+
+
+def _even(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Lay a variable out in even steps of time; instants at which it is unknown are filled."""
+    known = np.isfinite(values.reshape(len(values), -1)).all(axis=1) if len(values) else np.zeros(0, dtype=bool)
+    if np.count_nonzero(known) < _FEWEST:
+        raise ModelError(
+            f"{np.count_nonzero(known)} outputs are too few for a spectrum: {_FEWEST} or more are needed. "
+            "Simulate longer, or reduce simulation.output_interval."
+        )
+    time, values = time[known], values[known]
+    even = np.linspace(time[0], time[-1], len(time))
+    flat = values.reshape(len(values), -1)
+    laid = np.column_stack([np.interp(even, time, column) for column in flat.T])
+    return even, laid.reshape(values.shape)
+
+
+def _transform(length: int, rate: float) -> "ShortTimeFFT":
+    """Short-time transform over overlapping pieces, whose values at positive frequencies are amplitudes."""
+    from scipy.signal import ShortTimeFFT
+    from scipy.signal.windows import hann
+
+    shape = hann(length, sym=False)
+    return ShortTimeFFT(shape, max(1, length // _OVERLAP), rate, fft_mode="onesided2X", scale_to="magnitude")
+
+
+def _short_time(transform: "ShortTimeFFT", values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Middles of the pieces that lie inside, and amplitudes, shape (pieces, frequencies)."""
+    first, last = transform.lower_border_end[1], transform.upper_border_begin(len(values))[1]
+    spectra = transform.stft_detrend(values, "linear", p0=first, p1=max(last, first + 1))
+    middle: FloatArray = transform.delta_t * np.arange(first, max(last, first + 1), dtype=float)
+    return middle, np.asarray(np.abs(spectra).T, dtype=float)
+
+
+def _over_speed(
+    values: xr.DataArray,
+    amplitude: FloatArray,
+    speed: FloatArray,
+    name: str,
+    along: FloatArray,
+    units: str,
+    long_name: str,
+) -> xr.DataArray:
+    kept = _records(speed)
+    coordinates = {
+        "speed": ("speed", speed[kept], {"units": "rad/s", "long_name": "Speed"}),
+        name: (name, along, {"units": units, "long_name": long_name}),
+    }
+    return xr.DataArray(amplitude[kept], coordinates, ("speed", name), attrs=_amplitude_of(values))
+
+
+def _records(speed: FloatArray) -> NDArray[np.intp]:
+    """Find the pieces whose speed is higher than all before, or lower in a run-down, in ascending order of speed."""
+    sign = 1.0 if speed[-1] >= speed[0] else -1.0
+    highest = np.maximum.accumulate(sign * speed)
+    (kept,) = np.nonzero(np.append(True, np.diff(highest) > 0.0))
+    if np.ptp(speed) < _SAME * speed.max() or len(kept) < 2:
+        raise ModelError(
+            f"the speed stays at {speed.mean():.4g} rad/s: there is no run-up to look at. Use beltdyn sweep."
+        )
+    return kept if sign > 0.0 else kept[::-1]
+
+
+def _amplitude_of(values: xr.DataArray) -> dict[str, str]:
+    return {"units": str(values.attrs["units"]), "long_name": f"Amplitude of {values.attrs['long_name'].lower()}"}

@@ -1,0 +1,182 @@
+"""Formulas of belt drives on plain arrays, for the summary and for whatever is derived from a dataset.
+
+Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i and reaches pulley i + 1.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.model import Contact, Drive
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.integer]
+
+
+def rim_speeds(speed: FloatArray, drive: Drive) -> FloatArray:
+    """Speeds of the rims in the direction of ascending belt coordinate, m/s.
+
+    Parameters
+    ----------
+    speed : ndarray, shape (..., pulleys)
+        Pulley speeds, rad/s, counter-clockwise positive.
+    drive : Drive
+        A pulley at the belt's back turns clockwise where the others turn counter-clockwise.
+    """
+    turning = np.array([pulley.turning for pulley in drive.pulleys])
+    return np.asarray(speed * drive.radii * turning)
+
+
+def relative_loss(lost: FloatArray, rim: FloatArray) -> FloatArray:
+    """Speeds lost, m/s, over the speed of the first rim; NaN where that stands still."""
+    first = rim[..., :1]
+    unknown = np.full(np.broadcast(lost, first).shape, np.nan)
+    return np.asarray(np.divide(lost, first, out=unknown, where=first != 0.0))
+
+
+def slip(rim: FloatArray) -> FloatArray:
+    """Speed loss of every rim against the first, 1 - v_i / v_0.
+
+    Parameters
+    ----------
+    rim : ndarray, shape (..., pulleys)
+        Speeds of the rims, m/s; see `rim_speeds`.
+    """
+    return relative_loss(rim[..., :1] - rim, rim)
+
+
+def across(spans: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values of the spans before and after every pulley.
+
+    Parameters
+    ----------
+    spans : ndarray, shape (..., spans)
+        A value of every span.
+
+    Returns
+    -------
+    before, after : ndarray, shape (..., pulleys)
+        Of the spans that reach and leave each pulley, in the direction of ascending belt coordinate.
+    """
+    return np.roll(spans, 1, axis=-1), spans
+
+
+def capstan_margin(tension: FloatArray, belt_speed: FloatArray, wrap: FloatArray, drive: Drive) -> FloatArray:
+    """How many times its present load a pulley could transmit before the belt slides on the whole arc.
+
+    With the tensions T1 and T2 at the ends of the arc, the coefficient of friction mu, the wrap angle theta and
+    the belt's mass per length m,
+
+        (T1 + T2 - 2 m v^2) (e^(mu theta) - 1) / (e^(mu theta) + 1) / |T1 - T2| :
+
+    Euler and Eytelwein's largest difference of tensions at the same sum. Infinite without a load.
+
+    Parameters
+    ----------
+    tension, belt_speed : ndarray, shape (..., spans)
+        N and m/s.
+    wrap : ndarray, shape (..., pulleys)
+        Wrap angles, rad.
+    drive : Drive
+        Friction and mass per length.
+    """
+    before, after = across(tension)
+    lifted = 0.5 * drive.belt.mass_per_length * sum(speed**2 for speed in across(belt_speed))
+    largest = np.maximum(before + after - 2.0 * lifted, 0.0) * np.tanh(0.5 * drive.frictions * wrap)
+    load = np.abs(before - after)
+    return np.asarray(np.divide(largest, load, out=np.full_like(load, np.inf), where=load != 0.0))
+
+
+def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:
+    """Length of belt that each contact point stands for: half of the way to its neighbours, m.
+
+    Parameters
+    ----------
+    belt_coordinate : ndarray, shape (points,)
+        Ascending, m.
+    length : float
+        Unstretched length of the closed belt, m.
+    """
+    gaps = np.diff(belt_coordinate, append=belt_coordinate[0] + length)
+    return np.asarray(0.5 * (gaps + np.roll(gaps, 1)))
+
+
+def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, drive: Drive) -> FloatArray:
+    """Slip velocity beyond creep: what is left of it when the friction law's creep v_c is taken away.
+
+    v_c is the slip velocity at which |f_t| reaches mu f_n: mu f_n / nu_s, or the creep velocity of the drive file.
+    The result is sign(v_t) max(|v_t| - v_c, 0) where the belt presses on a pulley, and zero elsewhere.
+
+    Parameters
+    ----------
+    slip_velocity, normal : ndarray, shape (..., points)
+        v_t (m/s) and f_n (N/m).
+    touched : ndarray of int, shape (..., points)
+        Number of the pulley that a point touches, -1 where it is free.
+    drive : Drive
+        Friction.
+    """
+    creep = _creep_velocity(normal, drive.frictions[touched], drive.contact)
+    beyond = np.sign(slip_velocity) * np.maximum(np.abs(slip_velocity) - creep, 0.0)
+    return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
+
+
+def _creep_velocity(normal: FloatArray, friction: FloatArray, contact: Contact) -> FloatArray | float:
+    """Slip velocity at which friction is fully used, m/s."""
+    if contact.creep_velocity is not None:
+        return contact.creep_velocity
+    return friction * normal / (contact.creep_rate_factor or np.inf)
+
+
+def sliding_shares(sliding: FloatArray, pressed: NDArray[np.bool_], cell: FloatArray) -> FloatArray:
+    """Part of every arc of contact on which the belt slides.
+
+    Parameters
+    ----------
+    sliding : ndarray, shape (k, points)
+        Result of `sliding_velocity`.
+    pressed : ndarray of bool, shape (k, points, pulleys)
+        Where the belt presses on each pulley; see `pressing`.
+    cell : ndarray, shape (points,)
+        Result of `cells`.
+
+    Returns
+    -------
+    ndarray, shape (k, pulleys)
+        Zero without contact.
+    """
+    lengths = np.einsum("kpn,p->kn", pressed, cell)
+    slid = np.einsum("kpn,kp->kn", pressed, cell * (sliding != 0.0))
+    return np.asarray(np.divide(slid, lengths, out=np.zeros_like(lengths), where=lengths > 0.0))
+
+
+def pressing(normal: FloatArray, touched: IntArray, pulleys: int) -> NDArray[np.bool_]:
+    """Where the belt presses on each pulley, shape (k, points, pulleys)."""
+    return np.asarray((touched[..., None] == np.arange(pulleys)) & (normal > 0.0)[..., None])
+
+
+def gross_sliding(sliding: FloatArray, pressed: NDArray[np.bool_], drive: Drive) -> FloatArray:
+    """Velocity at which the belt slides on the whole arc of each pulley, m/s along the belt.
+
+    The sliding velocity nearest to zero of all points that press; zero as soon as one of them only creeps, or slides
+    the other way.
+
+    Parameters
+    ----------
+    sliding : ndarray, shape (k, points)
+        Result of `sliding_velocity`.
+    pressed : ndarray of bool, shape (k, points, pulleys)
+        Result of `pressing`.
+    drive : Drive
+        Sides of the pulleys.
+
+    Returns
+    -------
+    ndarray, shape (k, pulleys)
+        Belt faster than the rim in the direction of ascending belt coordinate.
+    """
+    values = np.broadcast_to(sliding[..., None], pressed.shape)
+    lowest = np.min(values, axis=-2, where=pressed, initial=np.inf)
+    highest = np.max(values, axis=-2, where=pressed, initial=-np.inf)
+    turning = np.array([pulley.turning for pulley in drive.pulleys])
+    nearest = np.where(lowest > 0.0, lowest, np.minimum(highest, 0.0))
+    return np.asarray(turning * np.where(np.any(pressed, axis=-2), nearest, 0.0))

@@ -1,0 +1,94 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from beltdyn import plot
+from beltdyn.errors import ModelError
+from beltdyn.results import Run
+from beltdyn.results.derived import capstan_margins, contact_arc, hub_loads, slips
+
+MakeRun = Callable[..., Run]
+
+
+def texts(ax: Axes) -> list[str]:
+    return [text.get_text() for text in ax.texts]
+
+
+def test_slip(run: Run, ax: Axes) -> None:
+    plot.slip(run, ax)
+    assert ax.get_ylabel() == "Slip [%]"
+    driver, driven = ax.lines
+    np.testing.assert_array_equal(driven.get_ydata(), slips(run)["slip"][:, 1])
+    assert driver.get_label() == "driver"
+
+
+def test_slip_that_slides_shows_its_creep(make_run: MakeRun, run: Run, ax: Axes) -> None:
+    touched = run.dataset["contact_pulley"].values
+    slipping = make_run(slip_velocity=np.where(touched == 1, 0.4, 0.0))
+    plot.slip(slipping, ax)
+    np.testing.assert_array_equal(ax.lines[3].get_ydata(), slips(slipping)["creep"][:, 1])
+    assert "dotted: creep" in ax.get_title(loc="right")
+
+
+def test_margins_are_cut_off_and_gross_slip_is_marked(run: Run, ax: Axes) -> None:
+    plot.capstan_margins(run, ax)
+    assert ax.get_ylim() == (0.0, 10.0)
+    assert texts(ax) == ["gross slip"]
+    margins = capstan_margins(run)[:, 1]
+    np.testing.assert_array_equal(ax.lines[1].get_ydata(), margins.where(np.isfinite(margins)))
+
+
+def test_hub_loads_wander_in_the_plane(run: Run) -> None:
+    ax = Figure().add_subplot(projection="polar")
+    plot.hub_loads(run, "driven", ax)
+    loads = hub_loads(run)
+    early, late, last = ax.lines
+    np.testing.assert_array_equal(
+        np.append(np.asarray(early.get_ydata())[:-1], late.get_ydata()), loads["hub_load"][:, 1]
+    )
+    np.testing.assert_array_equal(last.get_xdata(), loads["hub_direction"][-1:, 1])
+    assert ax.get_title(loc="left") == "Hub load [N]"
+    assert len(plot.hub_loads(run).lines) == 6
+
+
+def test_hub_loads_need_polar_axes(run: Run, ax: Axes) -> None:
+    with pytest.raises(ModelError, match="give polar axes"):
+        plot.hub_loads(run, ax=ax)
+
+
+def test_powers(run: Run, ax: Axes) -> None:
+    plot.powers(run, ax)
+    assert ax.get_ylabel() == "Power from the shaft [W]"
+    assert np.asarray(ax.lines[0].get_ydata())[-1] == pytest.approx(12.0 * 30.0 * 0.08125)
+
+
+def test_losses_by_cause_and_pulley(run: Run, ax: Axes) -> None:
+    """Friction takes 1.08 W, half of it on each pulley, of 29.25 W."""
+    plot.losses(run, ax)
+    assert [label.get_text() for label in ax.get_yticklabels()][:2] == ["friction", "contact damping"]
+    widths = [patch.get_width() for patch in ax.patches[:2]]  # type: ignore[attr-defined]
+    assert widths == pytest.approx([0.54, 0.54])
+    assert texts(ax)[0] == f"1.08 W ({1.08 / 29.25:.2%})"
+
+
+def test_pressure_and_shear_with_what_slides(make_run: MakeRun, run: Run, ax: Axes) -> None:
+    touched = run.dataset["contact_pulley"].values
+    slipping = make_run(slip_velocity=np.where(touched == 1, 0.4, 0.0))
+    plot.contact_pressure(slipping, "driven", ax=ax)
+    arc = contact_arc(slipping, "driven")
+    pressure, shear, _ = ax.lines
+    np.testing.assert_allclose(np.asarray(pressure.get_xdata()), np.degrees(arc["angle"]))
+    np.testing.assert_allclose(np.asarray(pressure.get_ydata()), arc["pressure"] / 1e3)
+    np.testing.assert_allclose(np.asarray(shear.get_ydata()), arc["shear"] / 1e3)
+    (shade,) = ax.patches
+    assert shade.get_data().values.all()  # type: ignore[attr-defined]
+    assert ax.get_ylabel() == "On the belt [kPa]"
+
+
+def test_pressure_where_nothing_touches(make_run: MakeRun, run: Run, ax: Axes) -> None:
+    free = np.full_like(run.dataset["contact_pulley"].values, -1)
+    plot.contact_pressure(make_run(contact_pulley=free), 0, ax=ax)
+    assert np.asarray(ax.lines[0].get_xdata()).size == 0

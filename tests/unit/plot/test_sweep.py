@@ -1,0 +1,68 @@
+"""Figures of a run-up made by formulas: order 3 of the driver in the tension of its first span."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+from beltdyn import plot
+from beltdyn.errors import ModelError
+from beltdyn.results import Run
+
+
+@pytest.fixture(scope="module")
+def run_up(run: Run) -> Run:
+    time = np.arange(0.0, 2.0, 1e-3)
+    angle = 20.0 * time + 50.0 * time**2
+    dataset = run.dataset[["pulley_speed", "pulley_angle", "span_tension"]].isel(time=np.zeros(len(time), dtype=int))
+    turning = np.stack([angle, 0.5 * angle], axis=1)
+    tension = 100.0 + np.stack([4.0 * np.cos(3.0 * angle), 0.0 * angle], axis=1)
+    values = {
+        "pulley_speed": np.gradient(turning, time, axis=0),
+        "pulley_angle": turning,
+        "span_tension": tension + 0.01 * np.cos(7.0 * angle)[:, None],
+    }
+    made = dataset.assign_coords(time=("time", time, dataset["time"].attrs))
+    return Run(made.assign({name: made[name].copy(data=array) for name, array in values.items()}), run.drive)
+
+
+def test_orders(run_up: Run, ax: Axes) -> None:
+    plot.orders(run_up, pulley="driver", ax=ax)
+    lines = {str(line.get_label()): np.asarray(line.get_ydata()) for line in ax.lines}
+    np.testing.assert_allclose(lines["order 3"], 4.0, rtol=0.03)
+    assert ax.get_xlabel() == "Speed of driver [rpm]"
+    assert ax.get_title() + ax.get_title(loc="left") == "Span tension, driver-driven"
+
+
+def test_orders_of_another_pulley_are_others(run_up: Run, ax: Axes) -> None:
+    """The driven one turns half as fast."""
+    plot.orders(run_up, pulley=1, ax=ax)
+    assert "order 6" in [line.get_label() for line in ax.lines]
+
+
+def test_waterfall(run_up: Run, ax: Axes) -> None:
+    plot.waterfall(run_up, of="driver-driven", ax=ax)
+    (mesh,) = ax.collections
+    amplitude = np.asarray(mesh.get_array(), dtype=float)
+    assert float(amplitude.max()) == pytest.approx(4.0, rel=0.3)  # a rising frequency smears
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Frequency [Hz]", "Speed of driver [rpm]")
+
+
+def test_files_hold_a_panel_for_each_span(run_up: Run, tmp_path: Path) -> None:
+    assert [path.stem for path in plot.save_all(run_up, tmp_path, ["waterfall", "orders"])] == ["waterfall", "orders"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"variable": "energy"}, "Those are: pulley_speed, pulley_angle, span_tension"),
+        ({"of": "driver"}, "Choose one of driver-driven, driven-driver"),
+        ({"of": 2}, "Choose one of driver-driven, driven-driver"),
+        ({"pulley": "idler"}, "Its pulleys are: driver, driven"),
+    ],
+)
+def test_what_is_not_there_is_a_model_error(run_up: Run, ax: Axes, wrong: dict[str, str], message: str) -> None:
+    for draw in (plot.orders, plot.waterfall):
+        with pytest.raises(ModelError, match=message):
+            draw(run_up, ax=ax, **wrong)

@@ -1,0 +1,42 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.results import Run, summarize
+from beltdyn.results.derived import capstan_margins, hub_loads, pulley_number, tension_ratios
+
+MakeRun = Callable[..., Run]
+
+
+def test_hub_loads_as_vectors(make_run: MakeRun) -> None:
+    force = np.tile([[3.0, 4.0], [0.0, -2.0]], (101, 1, 1))
+    loads = hub_loads(make_run(hub_force=force))
+    np.testing.assert_allclose(loads["hub_load"], np.tile([5.0, 2.0], (101, 1)))
+    np.testing.assert_allclose(loads["hub_direction"][0], [np.arctan2(4.0, 3.0), -0.5 * np.pi])
+    assert loads["hub_load"].dims == ("time", "pulley")
+
+
+def test_margins_over_time_end_where_the_summary_does(run: Run) -> None:
+    """Tensions of 30 and 60 N: (90 - 2 m v^2) tanh(0.6 pi) / 30."""
+    speed, mass = 12.0 * 0.08125, run.drive.belt.mass_per_length
+    expected = (90.0 - 2.0 * mass * speed**2) * np.tanh(0.6 * np.pi) / 30.0
+    margins = capstan_margins(run, start=0.7)
+    np.testing.assert_allclose(margins, expected, rtol=1e-9)
+    assert [pulley.margin for pulley in summarize(run).pulleys] == pytest.approx([expected] * 2)
+    assert np.isinf(capstan_margins(run, end=0.04)).all()
+
+
+def test_tension_ratio_of_slack_spans_is_unknown(make_run: MakeRun) -> None:
+    tension = np.tile([20.0, 60.0], (101, 1))
+    tension[50:, 0] = 0.0
+    ratios = tension_ratios(make_run(span_tension=tension))
+    np.testing.assert_allclose(ratios[:50], 3.0)
+    assert np.isnan(ratios[50:]).all()
+
+
+@pytest.mark.parametrize("pulley", ["idler", 2, -1])
+def test_unknown_pulley(run: Run, pulley: str | int) -> None:
+    with pytest.raises(ModelError, match="Its pulleys are: driver, driven"):
+        pulley_number(run, pulley)

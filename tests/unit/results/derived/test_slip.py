@@ -1,0 +1,65 @@
+"""Slip and sliding arcs on results made by formulas, in which the belt creeps by 0.5 %."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.results import Run
+from beltdyn.results.derived import sliding_arcs, slips
+
+MakeRun = Callable[..., Run]
+RIM = 12.0 * 0.08125
+WRAP = np.pi
+
+
+def sliding_on(run: Run, pulley: int, beyond: float) -> np.ndarray:
+    """Slip velocities with which the whole arc of a pulley slides by this much beyond creep."""
+    dataset, contact = run.dataset, run.drive.contact
+    assert contact.creep_rate_factor is not None
+    creep = contact.friction * dataset["normal_force"].values / contact.creep_rate_factor
+    on = dataset["contact_pulley"].values == pulley
+    return np.where(on, np.sign(beyond) * creep + beyond, dataset["slip_velocity"].values)
+
+
+def test_a_belt_that_creeps_does_not_slide(run: Run) -> None:
+    parts, arcs = slips(run, start=0.7), sliding_arcs(run, start=0.7)
+    np.testing.assert_allclose(parts["slip"], np.tile([0.0, 0.5], (31, 1)), atol=1e-9)
+    np.testing.assert_array_equal(parts["creep"], parts["slip"])
+    assert not parts["sliding"].any()
+    assert not arcs["sliding_arc"].any()
+    assert parts["slip"].attrs == {"units": "%", "long_name": "Slip"}
+
+
+@pytest.mark.parametrize(("pulley", "sign"), [(0, -1.0), (1, 1.0)])
+def test_what_slides_on_either_pulley_counts_for_the_driven_one(
+    make_run: MakeRun, run: Run, pulley: int, sign: float
+) -> None:
+    """A belt that is slower than the driver, or faster than the driven rim, by 2 % of the rim's speed."""
+    slid = make_run(slip_velocity=sliding_on(run, pulley, sign * 0.02 * RIM))
+    parts, arcs = slips(slid, start=0.7), sliding_arcs(slid, start=0.7)
+    np.testing.assert_allclose(parts["sliding"], np.tile([0.0, 2.0], (31, 1)), rtol=1e-9)
+    np.testing.assert_allclose(parts["creep"] + parts["sliding"], parts["slip"], rtol=1e-9)
+    np.testing.assert_allclose(arcs["sliding_arc"][:, pulley], WRAP)
+    assert not arcs["sliding_arc"][:, 1 - pulley].any()
+
+
+def test_half_of_an_arc(make_run: MakeRun, run: Run) -> None:
+    """What slides only where the belt is on the right of the driven pulley's center creeps as a whole."""
+    places, center = run.dataset["contact_position"].values, run.drive.pulleys[1].center
+    upper = places[..., 1] > center[1]
+    velocity = np.where(upper, sliding_on(run, 1, 0.5), run.dataset["slip_velocity"].values)
+    slid = make_run(slip_velocity=velocity)
+    share = sliding_arcs(slid, start=0.7)["sliding_share"][:, 1]
+    np.testing.assert_allclose(share, 0.5, atol=0.03)  # the arc holds 20 points
+    assert not slips(slid, start=0.7)["sliding"].any()
+
+
+def test_slip_of_a_drive_at_rest_is_unknown(run: Run) -> None:
+    assert np.isnan(slips(run, end=0.04)["slip"]).all()
+
+
+def test_no_output_between_two_instants(run: Run) -> None:
+    with pytest.raises(ModelError, match=r"no output from 2 to None s: the run was recorded from 0 to 1 s"):
+        slips(run, start=2)

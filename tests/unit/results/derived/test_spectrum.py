@@ -1,0 +1,117 @@
+"""Spectra of sinusoids, which give back amplitude, frequency and order."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from beltdyn.errors import ModelError
+from beltdyn.results.derived import amplitude_spectrum, orders, waterfall
+
+TENSION = {"units": "N", "long_name": "Span tension"}
+WINDOW_LOSS = {"hann": 0.16, "flattop": 0.002}
+"""Largest part of an amplitude that is lost half-way between two frequencies (Heinzel, Rüdiger and Schilling 2002)."""
+
+
+def series(time: np.ndarray, values: np.ndarray) -> xr.DataArray:
+    return xr.DataArray(values, {"time": time}, ("time", *["span"] * (values.ndim - 1)), attrs=TENSION)
+
+
+def test_a_sinusoid_gives_its_amplitude_at_its_frequency() -> None:
+    """40 turns in 2 s, on a mean that does not count; exact, since both are those of the transform."""
+    time = np.arange(2000) / 1000.0
+    values = np.stack(
+        [500.0 + 3.0 * np.cos(2.0 * np.pi * 20.0 * time), 7.0 * np.sin(2.0 * np.pi * 100.0 * time)], axis=1
+    )
+    spectrum = amplitude_spectrum(series(time, values))
+    assert spectrum.dims == ("frequency", "span")
+    assert float(spectrum.sel(frequency=20.0)[0]) == pytest.approx(3.0)
+    assert float(spectrum.sel(frequency=100.0)[1]) == pytest.approx(7.0)
+    assert spectrum.argmax("frequency").values.tolist() == [40, 200]
+    assert (spectrum.attrs["units"], spectrum["frequency"].attrs["units"]) == ("N", "Hz")
+
+
+@pytest.mark.parametrize("window", ["hann", "flattop"])
+def test_between_two_frequencies_a_window_loses_what_is_known(window: str) -> None:
+    time = np.arange(2000) / 1000.0
+    spectrum = amplitude_spectrum(series(time, 3.0 * np.cos(2.0 * np.pi * 20.25 * time)), window)
+    assert 3.0 * (1.0 - WINDOW_LOSS[window]) < float(spectrum.max()) < 3.01
+
+
+def test_uneven_and_missing_outputs_are_filled() -> None:
+    time = np.delete(np.arange(2000) / 1000.0, [500, 901])
+    values = 3.0 * np.cos(2.0 * np.pi * 20.0 * time)
+    values[100] = np.nan
+    spectrum = amplitude_spectrum(series(time, values))
+    assert float(spectrum.max()) == pytest.approx(3.0, rel=0.01)
+
+
+def test_too_few_outputs_have_no_spectrum() -> None:
+    with pytest.raises(ModelError, match="10 outputs are too few for a spectrum: 16 or more"):
+        amplitude_spectrum(series(np.arange(10.0), np.ones(10)))
+
+
+@pytest.fixture
+def run_up() -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+    """Order 2.5 with an amplitude that grows with the speed, and a hum of 90 Hz, from 20 to 220 rad/s in 8 s."""
+    time = np.arange(0.0, 8.0, 5e-4)
+    speed, angle = 20.0 + 25.0 * time, 20.0 * time + 12.5 * time**2
+    values = 100.0 + 0.05 * speed * np.cos(2.5 * angle) + 2.0 * np.cos(2.0 * np.pi * 90.0 * time)
+    label = {"units": "rad/s", "long_name": "Pulley speed"}
+    return series(time, values), xr.DataArray(speed, {"time": time}, ("time",), attrs=label), series(time, angle)
+
+
+def test_waterfall_shows_the_line_of_an_order_and_that_of_a_hum(
+    run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray],
+) -> None:
+    """Lines of an order that sweeps spread over the change of frequency within a piece; the hum does not."""
+    values, speed, _ = run_up
+    found = waterfall(values, speed)
+    width = float(found["frequency"][1])
+    assert float(found["speed"][0]) > 20.0
+    assert np.all(np.diff(found["speed"]) > 0.0)
+    hum = found.sel(frequency=90.0, method="nearest")
+    np.testing.assert_allclose(hum[found["speed"] < 150.0], 2.0, rtol=0.25)
+    low = found.where(found["frequency"] < 80.0, drop=True)
+    ridge = low["frequency"][low.argmax("frequency").values]
+    slow = (found["speed"].values > 80.0) & (found["speed"].values < 180.0)
+    np.testing.assert_allclose(ridge.values[slow], 2.5 * found["speed"].values[slow] / (2.0 * np.pi), atol=width)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_orders_follow_the_rotation_either_way(
+    run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray], way: float
+) -> None:
+    """The amplitude within 3 %: it changes by that within eight revolutions at the lowest speed that is shown."""
+    values, _, angle = run_up
+    found = orders(values, way * angle)
+    at = found.sel(order=2.5)
+    away = np.abs(2.0 * np.pi * 90.0 / found["speed"] - 2.5) > 0.5
+    np.testing.assert_allclose(at[away], 0.05 * found["speed"][away], rtol=0.03)
+    assert float(found["speed"].min()) >= 20.0
+    assert float(found["order"].max()) <= 20.0
+    quiet = found.sel(order=slice(3.5, 4.0))[found["speed"] < 120.0]
+    assert float(quiet.max()) < 0.1
+
+
+def test_a_run_down_has_the_same_orders(run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray]) -> None:
+    values, _, angle = run_up
+    back = orders(
+        values.copy(data=values.values[::-1]), angle.copy(data=float(angle[-1]) - angle.values[::-1]), largest=10.0
+    )
+    assert np.all(np.diff(back["speed"]) > 0.0)
+    assert float(back["order"][1:].values[int(np.argmax(back.mean("speed").values[1:]))]) == pytest.approx(2.5)
+
+
+def test_orders_need_turns() -> None:
+    time = np.arange(0.0, 1.0, 1e-3)
+    with pytest.raises(ModelError, match=r"makes 3.18 turns .* orders need 16 or more"):
+        orders(series(time, time), series(time, 20.0 * time))
+
+
+def test_a_constant_speed_is_no_run_up() -> None:
+    time = np.arange(0.0, 1.0, 1e-3)
+    speed = xr.DataArray(
+        np.full(1000, 300.0), {"time": time}, ("time",), attrs={"units": "rad/s", "long_name": "Speed"}
+    )
+    with pytest.raises(ModelError, match="the speed stays at 300 rad/s"):
+        waterfall(series(time, np.sin(time)), speed)

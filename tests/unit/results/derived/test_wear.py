@@ -1,0 +1,55 @@
+"""Wear of a belt that slips steadily is its power times the time."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beltdyn.results import Run
+from beltdyn.results.derived import wear_by_arc, wear_by_belt
+from beltdyn.results.mechanics import cells
+
+MakeRun = Callable[..., Run]
+POWER = 40.0 * 0.025
+"""W/m."""
+
+
+@pytest.fixture
+def steady(make_run: MakeRun, run: Run) -> Run:
+    touched = run.dataset["contact_pulley"].values >= 0
+    return make_run(friction_force=np.where(touched, -40.0, 0.0), slip_velocity=np.where(touched, 0.025, 0.0))
+
+
+def test_wear_of_the_arc_is_even(steady: Run) -> None:
+    """Over 1 s and a belt 0.3 % longer than its unstretched length; contact comes and goes by whole points."""
+    wear = wear_by_arc(steady, bins=12, start=0.0)
+    inside = (wear["share"] > 0.1) & (wear["share"] < 0.9)
+    stretch = steady.drive.path.length / steady.drive.belt.length
+    values = wear.where(inside, drop=True).sum("share") / inside.sum()
+    np.testing.assert_allclose(values, POWER / stretch, rtol=0.02)
+    assert wear.attrs["units"] == "J/m"
+
+
+def test_all_work_is_somewhere_on_the_arc_and_somewhere_on_the_belt(steady: Run) -> None:
+    dataset, drive = steady.dataset, steady.drive
+    cell = cells(dataset["belt_coordinate"].values, drive.belt.length)
+    power = np.abs(dataset["friction_force"].values * dataset["slip_velocity"].values) @ cell
+    work = np.trapezoid(power, dataset["time"])
+    arc, belt = wear_by_arc(steady), wear_by_belt(steady)
+    assert float((arc * arc["part_length"]).sum()) == pytest.approx(work)
+    assert float((belt * cell).sum()) == pytest.approx(work)
+    by_pulley = (arc * arc["part_length"]).sum("share")
+    np.testing.assert_allclose(by_pulley, belt.values @ cell)
+
+
+def test_nothing_outside_of_the_arc_wears(steady: Run) -> None:
+    wear = wear_by_arc(steady, bins=60)
+    outside = (wear["share"] < -0.05) | (wear["share"] > 1.05)
+    assert float(wear.where(outside, 0.0).max()) == 0.0
+    assert float(wear.max()) > 0.0
+
+
+def test_belt_wears_where_it_has_been_on_a_pulley(steady: Run) -> None:
+    wear = wear_by_belt(steady)
+    touched = (steady.dataset["contact_pulley"].values == 1).any(axis=0)
+    np.testing.assert_array_equal(wear.values[1] > 0.0, touched)

@@ -1,0 +1,123 @@
+"""Formulas of belt drives against their own definitions."""
+
+from math import pi
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beltdyn.model import Drive
+from beltdyn.results.mechanics import (
+    across,
+    capstan_margin,
+    cells,
+    gross_sliding,
+    pressing,
+    rim_speeds,
+    sliding_shares,
+    sliding_velocity,
+    slip,
+)
+from beltdyn.theory.capstan import tight_tension
+
+ROUNDING = 1e-9
+
+
+def serpentine(**contact: float | None) -> Any:
+    """Three pulleys of which the belt's back touches the last, with as much of a drive as the formulas ask for."""
+    contact = {"creep_rate_factor": 1e3, "creep_velocity": None} | contact
+    return SimpleNamespace(
+        pulleys=[SimpleNamespace(turning=turning) for turning in (1, 1, -1)],
+        radii=np.array([0.1, 0.05, 0.02]),
+        frictions=np.array([0.5, 1.0, 0.3]),
+        contact=SimpleNamespace(**contact),
+        belt=SimpleNamespace(mass_per_length=0.2),
+    )
+
+
+def test_rims_run_with_the_belt_on_either_side() -> None:
+    """A pulley at the back turns clockwise, and none of the three slips."""
+    rim = rim_speeds(np.array([10.0, 20.0, -50.0]), serpentine())
+    np.testing.assert_allclose(rim, 1.0)
+    np.testing.assert_allclose(slip(rim), 0.0)
+
+
+def test_slip_is_the_loss_against_the_first_pulley_whichever_way_it_runs() -> None:
+    for way in (1.0, -1.0):
+        np.testing.assert_allclose(slip(way * np.array([2.0, 1.9, 2.1])), [0.0, 0.05, -0.05])
+    assert np.all(np.isnan(slip(np.array([0.0, 1.0]))))
+
+
+def test_spans_before_and_after_pulleys() -> None:
+    before, after = across(np.array([1.0, 2.0, 3.0]))
+    assert before.tolist() == [3.0, 1.0, 2.0]
+    assert after.tolist() == [1.0, 2.0, 3.0]
+
+
+@given(slack=st.floats(50.0, 500.0), speed=st.floats(0.0, 10.0), wrap=st.floats(0.2, 6.0), factor=st.floats(0.1, 1.0))
+def test_margin_of_a_capstan_is_one_and_grows_as_the_load_falls(
+    slack: float, speed: float, wrap: float, factor: float
+) -> None:
+    """The second pulley slides on its whole arc; with less load at the same sum of tensions, 1 / factor is left."""
+    drive = serpentine()
+    tight = tight_tension(slack, drive.frictions[1], wrap, mass_per_length=drive.belt.mass_per_length, speed=speed)
+    mean, half = 0.5 * (tight + slack), 0.5 * (tight - slack)
+    tensions = np.array([mean + factor * half, mean - factor * half, 700.0])
+    margin = capstan_margin(tensions, np.full(3, speed), np.full(3, wrap), drive)[1]
+    assert margin == pytest.approx(1.0 / factor, rel=ROUNDING)
+
+
+def test_margin_without_load_or_grip() -> None:
+    drive = serpentine()
+    assert np.all(np.isinf(capstan_margin(np.full(3, 100.0), np.zeros(3), np.full(3, pi), drive)))
+    flung = capstan_margin(np.array([10.0, 12.0, 11.0]), np.full(3, 50.0), np.full(3, pi), drive)
+    assert np.all(flung == 0.0)  # m v^2 = 500 N lifts the belt off
+
+
+def test_cells_share_out_the_belt(drive: Drive) -> None:
+    coordinate = np.sort(np.random.default_rng(1).uniform(0.0, drive.belt.length, 50))
+    cell = cells(coordinate, drive.belt.length)
+    assert cell.sum() == pytest.approx(drive.belt.length)
+    assert cell[7] == pytest.approx(0.5 * (coordinate[8] - coordinate[6]))
+
+
+@pytest.mark.parametrize(
+    ("contact", "creep"), [({}, 0.5 * 200.0 / 1e3), ({"creep_rate_factor": None, "creep_velocity": 0.02}, 0.02)]
+)
+def test_sliding_is_what_goes_beyond_creep(contact: dict[str, float | None], creep: float) -> None:
+    """At mu f_n / nu_s with a slope of the force, at the creep velocity with one of the coefficient."""
+    velocity = np.array([[0.5 * creep, creep + 0.3, -creep - 0.2, 5.0, 5.0]])
+    normal = np.array([[200.0, 200.0, 200.0, 0.0, 200.0]])
+    touched = np.array([[0, 0, 0, 0, -1]])
+    found = sliding_velocity(velocity, normal, touched, serpentine(**contact))
+    np.testing.assert_allclose(found, [[0.0, 0.3, -0.2, 0.0, 0.0]], atol=ROUNDING)
+
+
+def test_shares_of_arcs_that_slide() -> None:
+    touched = np.array([[0, 0, 0, 1, 1, -1]])
+    sliding = np.array([[0.0, 0.1, 0.1, -0.2, -0.3, 0.0]])
+    pressed = pressing(np.full((1, 6), 9.0), touched, 3)
+    shares = sliding_shares(sliding, pressed, np.array([2.0, 1.0, 1.0, 1.0, 1.0, 1.0]))
+    np.testing.assert_allclose(shares, [[0.5, 1.0, 0.0]])
+
+
+def test_a_whole_arc_slides_only_if_all_of_it_slides_one_way() -> None:
+    touched = np.array([[0, 0, 1, 1, 2, 2]] * 3)
+    pressed = pressing(np.full((3, 6), 9.0), touched, 3)
+    sliding = np.array(
+        [
+            [0.2, 0.1, -0.3, -0.4, 0.6, 0.5],
+            [0.2, 0.0, -0.3, 0.0, 0.0, 0.5],
+            [0.2, -0.1, 0.3, -0.4, 0.0, 0.0],
+        ]
+    )
+    found = gross_sliding(sliding, pressed, serpentine())
+    np.testing.assert_allclose(found, [[0.1, -0.3, -0.5], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+
+
+def test_a_pulley_without_contact_does_not_slide() -> None:
+    pressed = pressing(np.zeros((1, 2)), np.array([[-1, 0]]), 3)
+    assert not gross_sliding(np.array([[1.0, 1.0]]), pressed, serpentine()).any()
