@@ -6,7 +6,7 @@ from typing import Protocol, Self
 
 import numpy as np
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Motor, Pulley, install
 from beltdyn.system.arrays import POWERS, FloatArray, System
 from beltdyn.system.state import State
 
@@ -194,7 +194,7 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
 
 
 def velocity_scale(drive: Drive) -> float:
-    """Velocity that local errors are measured by: the largest prescribed rim speed, or what the strain can cause.
+    """Velocity that local errors are measured by: the fastest rim that is driven, or what the strain can cause.
 
     Parameters
     ----------
@@ -204,15 +204,17 @@ def velocity_scale(drive: Drive) -> float:
     Returns
     -------
     float
-        m/s; the second is strain times the speed of axial waves, the velocity of a belt end that is let go.
+        m/s; rims are driven by a prescribed speed, or by a motor up to its synchronous speed.  The second is strain at
+        rest times the speed of axial waves, the velocity of a belt end that is let go.
     """
     times = np.linspace(0.0, drive.simulation.duration, 1001)
-    radii: list[float] = drive.radii.tolist()
-    rims = [
-        radius * float(np.max(np.abs(pulley.speed.at(times))))
-        for pulley, radius in zip(drive.pulleys, radii, strict=True)
-        if pulley.speed is not None
-    ]
-    belt = drive.belt
-    strain = drive.path.length / belt.length - 1.0
-    return max(*rims, strain * float(np.sqrt(belt.axial_stiffness / belt.mass_per_length)), 0.0)
+    rims = [radius * _driven_speed(pulley, times) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
+    wave = float(np.sqrt(drive.belt.axial_stiffness / drive.belt.mass_per_length))
+    return float(max(*rims, install(drive).strain * wave, 0.0))
+
+
+def _driven_speed(pulley: Pulley, times: FloatArray) -> float:
+    """Largest speed at which a pulley's shaft is driven, rad/s; zero where it is not."""
+    if pulley.speed is not None:
+        return float(np.max(np.abs(pulley.speed.at(times))))
+    return max((abs(load.synchronous_speed) for load in pulley.load if isinstance(load, Motor)), default=0.0)

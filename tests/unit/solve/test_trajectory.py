@@ -52,3 +52,10 @@ def test_velocity_scale(drive: Drive, change: Change) -> None:
     fast[0]["speed"] = {"kind": "constant", "value": -120.0}
     assert velocity_scale(change(pulley=fast)) == pytest.approx(120.0 * 0.08125)
     assert velocity_scale(change(simulation={"duration": 0.01, "output_interval": 0.01})) == pytest.approx(recoil)
+
+
+def test_a_motor_drives_up_to_its_synchronous_speed(drive: Drive, change: Change) -> None:
+    motor = {"kind": "motor", "breakdown_torque": 5.0, "breakdown_slip": 0.2, "synchronous_speed": -100.0}
+    pulleys: list[dict[str, Any]] = [pulley.model_dump(exclude_none=True) for pulley in drive.pulleys]
+    pulleys[0] |= {"speed": None, "inertia": 0.1, "load": [motor]}
+    assert velocity_scale(change(pulley=pulleys)) == pytest.approx(100.0 * 0.08125)
