@@ -14,12 +14,14 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
 import platformdirs
+from llvmlite.binding import parse_assembly
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.registry import CPUDispatcher
@@ -58,30 +60,36 @@ def kernel(function: Callable[P, R]) -> Callable[P, R]:
     Callable
         The compiled function, with the signature of the given one.
     """
-    with _cache_folder(str(kernel_cache())):
-        compiled = _Kernel(function, targetoptions=_OPTIONS)
-        compiled.enable_caching()
-    return cast(Callable[P, R], compiled)
+    return cast(Callable[P, R], _Kernel(function, str(kernel_cache())))
 
 
 class _Kernel(CPUDispatcher):  # type: ignore[misc]
     """A compiled function that shows itself to other kernels as code to be optimised along with them."""
 
-    def __init__(self, py_func: Any, variables: Any = None, targetoptions: Any = None) -> None:
-        super().__init__(py_func, variables, targetoptions)
-        inlined = {"forceinline": py_func.__name__.startswith("_"), "no_cpython_wrapper": True}
-        self._code = CPUDispatcher(py_func, variables, {**targetoptions, **inlined}, _CodeCompiler)
+    def __init__(self, function: Any, folder: str) -> None:
+        super().__init__(function, targetoptions=_OPTIONS)
+        self._folder: str | None = folder
+
+    @cached_property
+    def _code(self) -> CPUDispatcher:
+        """What another kernel calls."""
+        inlined = {"forceinline": self.py_func.__name__.startswith("_"), "no_cpython_wrapper": True}
+        return CPUDispatcher(self.py_func, None, {**_OPTIONS, **inlined}, _CodeCompiler)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Type a call by another kernel, constants like any other number."""
         return self._code.get_call_template([unliteral(argument) for argument in args], kws)
 
     def get_overload(self, sig: Any) -> Any:
-        """What another kernel calls."""
+        """What another kernel calls, for some types of arguments."""
         return self._code.get_overload(sig)
 
     def compile(self, sig: Any) -> Any:
         """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects."""
+        if self._folder:
+            with _cache_folder(self._folder):
+                self._cache = _Cache(self.py_func)
+            self._folder = None
         collecting = gc.isenabled()
         gc.disable()
         try:
@@ -89,6 +97,27 @@ class _Kernel(CPUDispatcher):  # type: ignore[misc]
         finally:
             if collecting:
                 gc.enable()
+
+
+class _Stored(CompileResultCacheImpl):  # type: ignore[misc]
+    """What is kept of a compiled function: machine code and its name, without the code that others would take in."""
+
+    def reduce(self, cres: Any) -> Any:
+        """What is written."""
+        (name, kind, (machine_code, _)), *rest = super().reduce(cres)
+        entry = f'define void @"{cres.fndesc.llvm_cpython_wrapper_name}"() {{ ret void }}'
+        return (name, kind, (machine_code, parse_assembly(entry).as_bitcode())), *rest
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    """Numba's cache, which loads machine code without filling the tables that only compilation needs."""
+
+    _impl_class = _Stored
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load the machine code for some types of arguments; None where there is none."""
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
 
 
 class _CodeCompiler(Compiler):  # type: ignore[misc]

@@ -104,6 +104,17 @@ print(point_force(here, Wheel(0.0, 0.0, 0.081, 0.0), law).normal)
 
 
 @pytest.mark.slow
+def test_kernels_from_the_disk_need_no_tables_of_the_compiler(tmp_path: Path) -> None:
+    """Numba fills them, with SciPy's linear algebra, only where something is compiled; later code may need them."""
+    environment = os.environ | {CACHE_VARIABLE: str(tmp_path)}
+    tables = "import sys; print('numba.np.arraymath' in sys.modules)"
+    later = "import numba, numpy; print(numba.njit(lambda a: numpy.dot(a, a))(numpy.ones(3)))"
+    command = [sys.executable, "-c", f"{_CALLER}\n{tables}\n{later}"]
+    runs = [subprocess.run(command, env=environment, capture_output=True, text=True, check=True) for _ in range(2)]
+    assert [run.stdout.split() for run in runs] == [["10000.0", "True", "3.0"], ["10000.0", "False", "3.0"]]
+
+
+@pytest.mark.slow
 def test_an_edited_law_acts_at_once_in_kernels_that_inline_it(tmp_path: Path) -> None:
     """The file of the caller stays as it is, and so does the folder of the cache."""
     copy = tmp_path / "beltdyn"

@@ -31,7 +31,9 @@ def _without_default(schema: dict[str, Any]) -> None:
 class Part(BaseModel):
     """A validated, immutable piece of a drive; its constructor's arguments are the keys of the file."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True, defer_build=True
+    )
 
     def __init__(self, **data: Any) -> None:
         try:

@@ -1,6 +1,6 @@
 """The belt at rest without friction: its stretch, how deep it sinks in, and where springs hold its tensioners."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from beltdyn.model.path import Path
 from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner, SlidingTensioner, path_gradient
 from beltdyn.theory.stretch import stretch as stretch_under
 from beltdyn.theory.stretch import tension as tension_of
+from beltdyn.theory.sunk_belt import sunk_stretch
 
 FloatArray = NDArray[np.float64]
 _GROWTH = 1.3
@@ -132,39 +133,35 @@ def settle(path: Path, belt: Belt, contact: Contact) -> Rest:
     """
     radii = np.abs(path.radii)
 
-    def sunk(load: float, stiffness: float | None) -> FloatArray:
-        if stiffness is None:
+    def sunk(load: float) -> FloatArray:
+        if contact.stiffness is None:
             return np.asarray(contact.allowed_penetration * radii.min() / radii)
-        return np.asarray(load / (radii * stiffness))
+        return np.asarray(load / (radii * contact.stiffness))
 
     if belt.installed_tension is not None:
         tension = belt.installed_tension
         stretch = float(stretch_under(tension, belt.axial_stiffness))
-        depths = sunk(tension * stretch, contact.stiffness)
+        depths = sunk(tension * stretch)
         length = (path.length - float(path.wrap_angles @ depths)) / stretch
     else:
         length = belt.length
-        stretch = _stretch(path, belt, lambda load: sunk(load, contact.stiffness))
+        stretch = _stretch(path, belt, contact, sunk(0.0))
         tension = max(float(tension_of(stretch, belt.axial_stiffness)), 0.0)
-        depths = sunk(tension * stretch, contact.stiffness)
+        depths = sunk(tension * stretch)
     stiffness = contact.stiffness
     if stiffness is None:
         stiffness = tension * stretch / (float(radii.min()) * float(depths.max()))
     return Rest(path, length, stiffness, tension, depths)
 
 
-def _stretch(path: Path, belt: Belt, sunk: Callable[[float], FloatArray]) -> float:
-    """Stretch at which a belt of given length is as long as its path, which `sunk` shortens under a load T g."""
-    from scipy.optimize import brentq
-
-    def excess(stretch: float) -> float:
-        load = float(tension_of(stretch, belt.axial_stiffness)) * stretch
-        return stretch * belt.length + float(path.wrap_angles @ sunk(load)) - path.length
-
-    laid = path.length / belt.length
-    if laid <= 1 or excess(1.0) >= 0:
-        return min(laid, 1.0)
-    return float(brentq(excess, 1.0, laid * (1 + 1e-9), xtol=1e-14, maxiter=_MOST_STEPS))
+def _stretch(path: Path, belt: Belt, contact: Contact, depths: FloatArray) -> float:
+    """Stretch of a belt of given length that sinks in as deep as allowed, or as the stiffness of contact lets it."""
+    if contact.stiffness is None:
+        return (path.length - float(path.wrap_angles @ depths)) / belt.length
+    if path.length <= belt.length:
+        return path.length / belt.length
+    sinking = float(np.sum(path.wrap_angles / np.abs(path.radii))) / contact.stiffness
+    return sunk_stretch(belt.length, path.length, belt.axial_stiffness, sinking)
 
 
 def come_to_rest(path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier]) -> tuple[Rest, FloatArray]:

@@ -1,10 +1,10 @@
 """The NetCDF4 file of a growing result.
 
-The header is made by h5netcdf, which knows the conventions of NetCDF4; outputs are appended by h5py,
-which is quick to open. Both keep to HDF5's earliest format: it has no consistency flags, so that a file
-whose writer was killed opens like any other. ``time`` is extended last and on its own, after
-everything else has reached the file: its length is the number of complete outputs. What is left is a kill within
-the milliseconds in which HDF5 splits a node of a chunk index: one of several hundred writers without pause was lost.
+Dimensions and coordinates are made by h5netcdf, which knows the conventions of NetCDF4; variables are made and
+outputs appended by h5py, which is quicker. Both keep to HDF5's earliest format: it has no consistency flags, so that
+a file whose writer was killed opens like any other. ``time`` is extended last and on its own, after everything else
+has reached the file: its length is the number of complete outputs. What is left is a kill within the milliseconds in
+which HDF5 splits a node of a chunk index: one of several hundred writers without pause was lost.
 """
 
 from collections.abc import Mapping
@@ -40,9 +40,14 @@ def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
         file.dimensions = {"time": None, **layout.sizes}
         for name, values in layout.coordinates.items():
             _create_coordinate(file, name, values)
-        for name, variable in layout.recorded.items():
-            _create_recorded(file, name, variable, layout)
+        time = COORDINATES["time"]
+        created = file.create_variable("time", time.dims, time.dtype, chunks=(_CHUNK_ROWS,), fillvalue=np.nan)
+        created.attrs.update(time.attributes)
         file.attrs.update(attributes)
+    with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
+        for name, variable in layout.recorded.items():
+            if name != "time":
+                _create_variable(file, name, variable, layout.shape(variable, 1)[1:])
 
 
 def append(path: Path, start: int, arrays: Mapping[str, NDArray[Any]]) -> None:
@@ -93,20 +98,25 @@ def _create_coordinate(file: h5netcdf.File, name: str, values: NDArray[Any]) -> 
     created.attrs.update(variable.attributes)
 
 
-def _create_recorded(file: h5netcdf.File, name: str, variable: Variable, layout: Layout) -> None:
-    row = layout.shape(variable, 1)
+def _create_variable(file: h5py.File, name: str, variable: Variable, row: tuple[int, ...]) -> None:
+    """Make a variable without outputs, whose rows have a shape."""
     rows = _CHUNK_BYTES // (int(np.prod(row)) * np.dtype(variable.dtype).itemsize)
-    created = file.create_variable(
-        name,
-        variable.dims,
-        variable.dtype,
-        chunks=(min(max(rows, 1), _CHUNK_ROWS), *row[1:]),
-        fillvalue=np.nan if variable.dtype == "float64" else None,
-    )
-    created.attrs.update(variable.attributes)
+    chunks = min(max(rows, 1), _CHUNK_ROWS), *row
+    fill = {"_FillValue": np.array([np.nan])} if variable.dtype == "float64" else {}
     auxiliary = [AUXILIARY_COORDINATES[dim] for dim in variable.dims if dim in AUXILIARY_COORDINATES]
-    if auxiliary:
-        created.attrs["coordinates"] = " ".join(auxiliary)
+    coordinates = {"coordinates": " ".join(auxiliary)} if auxiliary else {}
+    created = file.create_dataset(
+        name,
+        (0, *row),
+        variable.dtype,
+        maxshape=(None, *row),
+        chunks=chunks,
+        fillvalue=fill.get("_FillValue"),
+        track_order=True,
+    )
+    for axis, dim in enumerate(variable.dims):
+        created.dims[axis].attach_scale(file[dim])
+    created.attrs.update({**fill, **variable.attributes, **coordinates})
 
 
 def _extend(file: h5py.File, name: str, start: int, values: NDArray[Any]) -> None:
