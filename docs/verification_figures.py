@@ -53,7 +53,7 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("order", STEPS, "Error over the amplitude", slope=(2, 200, 800, 1e-2)),
         Panel("radius", "ρ∞ asked for", "Spectral radius found", "linear"),
     ],
-    "integrators": [Panel("", RTOL, "Difference to BDF at 1e-5", slope=(1, 1e-5, 1e-3, 2e-5))],
+    "integrators": [Panel("", RTOL, "Difference to Radau at 1e-5", slope=(1, 1e-5, 1e-3, 2e-5))],
     "matrix": [
         Panel("equilibrium", RTOL, "Largest error, from equilibrium", slope=(1, 1e-4, 1e-2, 1e-4), below=True),
         Panel("laid", RTOL, "Largest error, laid", slope=(1, 1e-4, 1e-2, 2e-4), below=True),

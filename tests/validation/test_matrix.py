@@ -1,22 +1,23 @@
 """The promise of the tolerance, held by a matrix of runs: each lands within it, or stops with a clear error.
 
 The error of a run is that of the driven speed, root mean square over the run, over the largest speed of the driver;
-the reference is a run on the same mesh from the same start at rtol 1e-5.  From equilibrium contact is integrated over
-the touching zone; laid drives are as published, with fixed Gauss points.
+the reference is a run on the same mesh from the same start by generalised-alpha at rtol 1e-5.  From equilibrium contact
+is integrated over the touching zone; laid drives are as published, with fixed Gauss points.
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 import pytest
 
-from beltdyn import Drive
+from beltdyn import Drive, Pulley
+from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
 from beltdyn.published import CASES as PUBLISHED
 from beltdyn.published import better, loaded_two_pulley, two_pulley
 from beltdyn.solve import simulate_all
@@ -30,14 +31,23 @@ CASES: dict[str, Callable[[int], Drive]] = {
     "case 2, 1e4": partial(loaded_two_pulley, 1e4, 5),
     "case 2, 1e5": partial(loaded_two_pulley, 1e5, 5),
 }
-ELEMENTS = {"equilibrium": (12, 16, 20, 30, 60, 120), "laid": (12, 16, 20, 30)}
+ELEMENTS = (12, 16, 20, 30, 60, 120)
 DURATIONS = {"equilibrium": 0.4, "laid": 0.2}
 """Of the published second, s: the laid belt rings, and the drive starts."""
-PROMISE, PROMISE_OF_FINE, COARSE = 2.0, 10.0, 30
-"""Largest error over rtol in cases 1 and 2, on meshes up to 30 elements and on finer ones: with 60 elements and more
-case 1 has vibrations that only steps of a tolerance below 1e-5 follow, and that change its speed by 3e-4 to 5e-4."""
+PROMISE = 2.0
+"""Largest error over rtol in cases 1 and 2."""
+COARSE, FLUTTER = 30, {"equilibrium": 1e-3, "laid": 2.5e-3}
+"""What may be added to the error of case 1 on meshes of more than 30 elements, over the speed of the driver: there the
+belt flutters where it slides, which changes its speed, and which steps damp away unless rtol is 1e-5 and the spectral
+radius above zero (tests/verification/theory/test_sliding_flutter.py)."""
+DAMPING = 100.0
+"""Contact damping with which it hardly does, N s/m^2; ten times the published one."""
+STANDARD = {"cvode": (12, 20, 30), "ida": (12, 20, 30), "bdf": (12,), "radau": (12,)}
+"""Integrators with dense matrices, and elements from equilibrium; laid belts, which ring, have 12."""
+BEGINNINGS = {"equilibrium": 0.1, "laid": 0.015}
+"""Of a drive whose driver starts at once, s."""
 PROMISE_OF_ALL = 5.0
-"""The same in every published case."""
+"""Largest error over rtol in every published case."""
 MANY_POINTS = 11
 """Fixed points of an element where there are less than 20 elements.  With 5 the drive does not know its own speed: a
 belt longer by a billionth changes it by 1e-4, since points touch or do not."""
@@ -52,17 +62,40 @@ class Key(NamedTuple):
     elements: int
     radius: float
     rtol: float
+    kind: str = ""
+    """Empty, "damped", or for beginnings of a drive the integrator."""
 
     @property
     def reference(self) -> "Key":
-        return self._replace(radius=DEFAULT, rtol=REFERENCE)
+        kind = "generalized_alpha" if self.kind in STANDARD else self.kind
+        return self._replace(radius=DEFAULT, rtol=REFERENCE, kind=kind)
 
     def __str__(self) -> str:
-        return f"{self.case} {self.start} {self.elements} {self.radius:g} {self.rtol:g}"
+        return f"{self.case} {self.start} {self.elements} {self.radius:g} {self.rtol:g} {self.kind}"
+
+
+def promise(key: Key) -> float:
+    """Largest error of a run over the speed of the driver."""
+    flutters = key.case == "case 1" and key.elements > COARSE and key.kind != "damped"
+    return PROMISE * key.rtol + (FLUTTER[key.start] if flutters else 0.0)
 
 
 def keys_of(case: str, start: str, radius: float) -> Iterator[Key]:
-    return (Key(case, start, *items) for items in product(ELEMENTS[start], (radius,), RTOLS))
+    return (Key(case, start, *items) for items in product(ELEMENTS, (radius,), RTOLS))
+
+
+def damped_keys(start: str, elements: Sequence[int], radius: float) -> Iterator[Key]:
+    return (Key("case 1", start, *items, "damped") for items in product(elements, (radius,), RTOLS))
+
+
+DAMPED = [*damped_keys("equilibrium", ELEMENTS, DEFAULT), *damped_keys("laid", (60,), 0.0)]
+"""All meshes, and a run whose error is mostly that of flutter with the published damping."""
+
+
+def standard_keys(case: str, start: str, integrator: str) -> Iterator[Key]:
+    elements = STANDARD[integrator] if start == "equilibrium" else (12,)
+    items = product(elements, (DEFAULT,), RTOLS, (integrator,))
+    return (Key(case, start, *item) for item in items)
 
 
 def drive_of(key: Key) -> Drive:
@@ -71,8 +104,20 @@ def drive_of(key: Key) -> Drive:
         drive = better(drive)
     elif key.elements < 20:
         drive = drive.replace(contact=drive.contact.replace(quadrature_points=MANY_POINTS))
-    settings = {"rtol": key.rtol, "spectral_radius": key.radius, "duration": DURATIONS[key.start]}
+    settings: dict[str, Any] = {"rtol": key.rtol, "spectral_radius": key.radius, "duration": DURATIONS[key.start]}
+    if key.kind == "damped":
+        drive = drive.replace(contact=drive.contact.replace(damping=DAMPING))
+    elif key.kind:
+        settings |= {"integrator": key.kind, "duration": BEGINNINGS[key.start]}
+        drive = drive.replace(pulley=[at_once(pulley) for pulley in drive.pulleys])
     return drive.replace(simulation=drive.simulation.replace(**settings))
+
+
+def at_once(pulley: Pulley) -> Pulley:
+    """A pulley whose speed or torque rises from time zero, as steeply."""
+    name, profile = ("speed", pulley.speed) if pulley.speed else ("torque", pulley.torque)
+    assert isinstance(profile, Ramp | CosineRamp | CosineRampPublished)
+    return pulley.replace(**{name: profile.replace(start=0.0, end=profile.end - profile.start)})
 
 
 class Speeds(NamedTuple):
@@ -93,6 +138,11 @@ def run_all(drives: dict[str, Drive], folder: Path) -> Speeds:
     return Speeds(speeds, failures)
 
 
+def run_keys(keys: list[Key], folder: Path) -> Speeds:
+    """Runs and their references."""
+    return run_all({str(key): drive_of(key) for key in [*keys, *(key.reference for key in keys)]}, folder)
+
+
 def error(runs: Speeds, name: str, reference: str) -> float:
     """Largest error of the driven speed of a run: several pulleys may be driven."""
     speed, exact = runs.of[name], runs.of[reference]
@@ -104,8 +154,14 @@ def error(runs: Speeds, name: str, reference: str) -> float:
 def matrix(tmp_path_factory: pytest.TempPathFactory) -> Speeds:
     """All runs of the matrix, and their references."""
     keys = [key for group in product(CASES, DURATIONS, RADII) for key in keys_of(*group)]
-    drives = {str(key): drive_of(key) for key in [*keys, *(key.reference for key in keys)]}
-    return run_all(drives, tmp_path_factory.mktemp("matrix"))
+    return run_keys([*keys, *DAMPED], tmp_path_factory.mktemp("matrix"))
+
+
+@pytest.fixture(scope="session")
+def standard(tmp_path_factory: pytest.TempPathFactory) -> Speeds:
+    """All runs by standard integrators, and their references."""
+    keys = [key for group in product(CASES, BEGINNINGS, STANDARD) for key in standard_keys(*group)]
+    return run_keys(keys, tmp_path_factory.mktemp("standard"))
 
 
 @pytest.fixture(scope="session")
@@ -130,7 +186,7 @@ def test_every_run_lands_or_stops(
     measured(**{f"rtol_{rtol:.0e}": ratio for rtol, ratio in largest.items()}, stopped=len(stopped))
     landed = {rtol: ratio * rtol for rtol, ratio in largest.items() if ratio > 0.0}
     curve(f"matrix/{start}", list(landed), list(landed.values()), f"{case}, ρ = {radius:g}")
-    assert all(ratio <= (PROMISE if key.elements <= COARSE else PROMISE_OF_FINE) for key, ratio in ratios.items())
+    assert all(ratio <= promise(key) / key.rtol for key, ratio in ratios.items())
     assert all(CLEAR.match(matrix.failures[str(key)]) for key in stopped)
     assert all(key.radius == 1.0 and key.rtol > RTOLS[-1] for key in stopped)
 
@@ -142,13 +198,41 @@ def test_errors_fall_in_proportion(
 ) -> None:
     """From equilibrium.  A laid belt rings so fast that coarse tolerances damp it away, and err less than they may."""
     fitted = []
-    for elements in (count for count in ELEMENTS["equilibrium"] if count <= COARSE):
+    for elements in (count for count in ELEMENTS if case != "case 1" or count <= COARSE):
         keys = [key for key in keys_of(case, "equilibrium", radius) if key.elements == elements]
         landed = [key for key in keys if str(key) not in matrix.failures]
         errors = [error(matrix, str(key), str(key.reference)) for key in landed]
         fitted.append(-order([key.rtol for key in landed], errors))
     measured(smallest=min(fitted), median=float(np.median(fitted)), largest=max(fitted))
     assert min(fitted) > 0.75
+
+
+def test_no_exceptions_where_flutter_is_damped(
+    matrix: Speeds, measured: Callable[..., None], order: Callable[..., float]
+) -> None:
+    """With the contact damping that its belt needs where it slides, case 1 keeps the promise on all meshes."""
+    errors = {key: error(matrix, str(key), str(key.reference)) for key in DAMPED}
+    fitted = [
+        -order(RTOLS, [errors[key] for key in damped_keys("equilibrium", (elements,), DEFAULT)])
+        for elements in ELEMENTS
+    ]
+    largest = max(value / key.rtol for key, value in errors.items())
+    measured(smallest=min(fitted), largest=max(fitted), largest_error=largest)
+    assert min(fitted) > 0.75
+    assert all(value <= promise(key) for key, value in errors.items())
+
+
+@pytest.mark.parametrize("integrator", STANDARD)
+@pytest.mark.parametrize("start", BEGINNINGS)
+@pytest.mark.parametrize("case", CASES)
+def test_every_standard_integrator_lands(
+    standard: Speeds, measured: Callable[..., None], case: str, start: str, integrator: str
+) -> None:
+    keys = list(standard_keys(case, start, integrator))
+    assert not standard.failures.keys() & {str(key) for key in keys}
+    ratios = {key: error(standard, str(key), str(key.reference)) / key.rtol for key in keys}
+    measured(**{f"rtol_{rtol:.0e}": max(ratios[key] for key in keys if key.rtol == rtol) for rtol in RTOLS})
+    assert max(ratios.values()) <= PROMISE
 
 
 @pytest.mark.parametrize("name", PUBLISHED)

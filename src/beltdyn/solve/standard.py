@@ -19,6 +19,9 @@ Name = Literal["cvode", "ida", "bdf", "radau"]
 
 _POSITION_TIME = 1e-3
 _RELATIVE = 1e-9
+_PART = 0.02
+"""Error that one step may make, over that of the run: the errors of steps add up."""
+_HUGE = 1e30
 _HIGHEST_A_STABLE_ORDER = 2
 """Of the backward differentiation formulas: higher orders feed the belt's fast vibrations, which nothing damps."""
 
@@ -33,7 +36,7 @@ class StandardIntegrator:
         "cvode", "ida", "bdf" or "radau".
     rtol : float
         Allowed error of velocities over the velocity scale of the task; positions may err by what that makes in a
-        millisecond.
+        millisecond.  A single step may make a fiftieth of it.
     max_step : float or None
         s.
     """
@@ -45,7 +48,7 @@ class StandardIntegrator:
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
-        tolerances = equations.tolerances(self.rtol * task.velocity_scale, _POSITION_TIME)
+        tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, _POSITION_TIME)
         y, time = equations.pack(task.start), float(task.times[0])
         yield Chunk.start(time, task.start)
         written = 1
@@ -125,6 +128,8 @@ class _SciPy:
             atol=leg.tolerances,
             jac=leg.equations.jacobian,
         )
+        if kind is BDF:  # which takes no largest order, but none whose error it thinks huge
+            self._solver.error_const[_HIGHEST_A_STABLE_ORDER + 1] = _HUGE
         self.time = leg.start
 
     def step(self) -> None:

@@ -144,7 +144,8 @@ def short(small: Drive, change: Change) -> Drive:
 
 @pytest.fixture(scope="module")
 def converged(short: Drive, change: Change) -> xr.Dataset:
-    return simulate(change(short, simulation={"integrator": "bdf", "rtol": 1e-5})).dataset
+    """By the method of the highest order."""
+    return simulate(change(short, simulation={"integrator": "radau", "rtol": 1e-5})).dataset
 
 
 @pytest.mark.parametrize(
