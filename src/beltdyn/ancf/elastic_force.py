@@ -16,19 +16,18 @@ from beltdyn.ancf.section import Section
 from beltdyn.ancf.shape_functions import Four, bends, slopes
 from beltdyn.ancf.strain_energy import energy_curvature, energy_density, energy_gradient, thickness_energy
 from beltdyn.kernel import kernel
+from beltdyn.records import blank, record
 
 FloatArray = NDArray[np.float64]
 
 
-class ElasticWorkspace(NamedTuple):
-    """Scratch arrays of `element_force`, made once for many elements by `elastic_workspace`."""
-
-    xx: FloatArray
-    """d2U / d(x of vector a) d(x of vector b), shape (4, 4)."""
-    xy: FloatArray
-    yy: FloatArray
-    by_shear: FloatArray
-    """d2U / d(coordinate) d(s_k), shape (2, 12)."""
+ELASTIC_WORKSPACE = record(
+    xx="(4,4)f8",  # d2U / d(x of vector a) d(x of vector b)
+    xy="(4,4)f8",
+    yy="(4,4)f8",
+    by_shear="(2,12)f8",  # d2U / d(coordinate) d(s_k)
+)
+"""Scratch arrays of `element_force`, made once for many elements by `elastic_workspace`."""
 
 
 class ShearSums(NamedTuple):
@@ -41,9 +40,9 @@ class ShearSums(NamedTuple):
     jj: float
 
 
-def elastic_workspace() -> ElasticWorkspace:
+def elastic_workspace() -> np.record:
     """Make the scratch arrays of `element_force`."""
-    return ElasticWorkspace(np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((4, 4)), np.zeros((2, 12)))
+    return blank(ELASTIC_WORKSPACE)
 
 
 @kernel
@@ -104,7 +103,7 @@ def element_force(
     length: float,
     points: FloatArray,
     weights: FloatArray,
-    work: ElasticWorkspace,
+    work: np.record,
     gradient: FloatArray,
     tangent: FloatArray,
 ) -> None:
@@ -147,7 +146,7 @@ def _add_point(
     weight: float,
     section: Section,
     length: float,
-    work: ElasticWorkspace,
+    work: np.record,
     gradient: FloatArray,
     sums: ShearSums,
 ) -> ShearSums:
@@ -258,7 +257,7 @@ def _add_shear_row(
 
 
 @kernel
-def _fill_centreline(work: ElasticWorkspace, tangent: FloatArray) -> None:
+def _fill_centreline(work: np.record, tangent: FloatArray) -> None:
     """Overwrite the tangent by the centreline's part."""
     tangent[:] = 0.0
     for a in range(4):
@@ -276,7 +275,7 @@ def _carry_shear(
     shear_i: NodalShear,
     shear_j: NodalShear,
     sums: ShearSums,
-    work: ElasticWorkspace,
+    work: np.record,
     gradient: FloatArray,
     tangent: FloatArray,
 ) -> None:

@@ -20,24 +20,19 @@ from beltdyn.ancf.elastic_force import centreline
 from beltdyn.ancf.section import Section
 from beltdyn.ancf.shape_functions import Four, bends, slopes
 from beltdyn.kernel import kernel
+from beltdyn.records import blank, record
 
 FloatArray = NDArray[np.float64]
 
 
-class DampingWorkspace(NamedTuple):
-    """Scratch arrays of `damping_force`, made once for many elements by `damping_workspace`."""
-
-    slope: FloatArray
-    """Derivatives of eps and kappa with respect to the coordinates e at a point, shape (2, 12)."""
-    change: FloatArray
-    """Rates of these derivatives, which are the derivatives of the rates of eps and kappa; then derivatives of the
-    stress in both, the tangent's part; shape (2, 12)."""
-    by_shear: FloatArray
-    """Derivative of p = ds/dx with respect to e, and its rate, shape (2, 12)."""
-    shear_curvature: FloatArray
-    """Second derivative of p with respect to e, shape (12, 12)."""
-    pull: FloatArray
-    """Sum over the points of the moment times the derivative of |q| with respect to e, shape (12,)."""
+DAMPING_WORKSPACE = record(
+    slope="(2,12)f8",  # derivatives of eps and kappa with respect to the coordinates e at a point
+    change="(2,12)f8",  # rates of these derivatives; then derivatives of the stress in both, the tangent's part
+    by_shear="(2,12)f8",  # derivative of p = ds/dx with respect to e, and its rate
+    shear_curvature="(12,12)f8",  # second derivative of p with respect to e
+    pull="12f8",  # sum over the points of the moment times the derivative of |q| with respect to e
+)
+"""Scratch arrays of `damping_force`, made once for many elements by `damping_workspace`."""
 
 
 class _Point(NamedTuple):
@@ -57,9 +52,9 @@ class _Point(NamedTuple):
     cross: float
 
 
-def damping_workspace() -> DampingWorkspace:
+def damping_workspace() -> np.record:
     """Make the scratch arrays of `damping_force`."""
-    return DampingWorkspace(np.zeros((2, 12)), np.zeros((2, 12)), np.zeros((2, 12)), np.zeros((12, 12)), np.zeros(12))
+    return blank(DAMPING_WORKSPACE)
 
 
 @kernel
@@ -72,7 +67,7 @@ def damping_force(
     weights: FloatArray,
     by_position: float,
     by_velocity: float,
-    work: DampingWorkspace,
+    work: np.record,
     gradient: FloatArray,
     tangent: FloatArray,
 ) -> float:
@@ -145,7 +140,7 @@ def _first(a: int) -> int:
 
 
 @kernel
-def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: DampingWorkspace) -> tuple[float, float]:
+def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: np.record) -> tuple[float, float]:
     """Overwrite the derivatives of p = (s_j - s_i) / L; give p (1/m) and its rate."""
     work.by_shear[:] = 0.0
     work.shear_curvature[:] = 0.0
@@ -173,7 +168,7 @@ def _strain_rates(
     bend: Four,
     shear: float,
     shear_rate: float,
-    work: DampingWorkspace,
+    work: np.record,
 ) -> _Point:
     """Overwrite the derivatives of both strains at a point and their rates.
 
@@ -219,7 +214,7 @@ def _add_products(
     point: _Point,
     by_position: float,
     by_velocity: float,
-    work: DampingWorkspace,
+    work: np.record,
     gradient: FloatArray,
     tangent: FloatArray,
 ) -> None:
@@ -259,7 +254,7 @@ def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment:
 
 
 @kernel
-def _add_shear_products(by_position: float, twist: float, work: DampingWorkspace, tangent: FloatArray) -> None:
+def _add_shear_products(by_position: float, twist: float, work: np.record, tangent: FloatArray) -> None:
     """Add the sum over the points of the moment times the second derivative of kappa in q and p, and in p alone."""
     for row in range(12):
         for column in range(12):

@@ -11,34 +11,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.contact.bezier import Four, bernstein, bernstein_rates, combine, shape_functions
-from beltdyn.contact.contact_zone import MAX_INTERVALS, touching_intervals, zone_scratch
+from beltdyn.contact.contact_zone import MAX_INTERVALS, touching_intervals
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import approach
 from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent
 from beltdyn.contact.pulley_moment import pulley_moment
 from beltdyn.kernel import kernel
+from beltdyn.records import blank, record
 
 FloatArray = NDArray[np.float64]
 
 
-class ContactWorkspace(NamedTuple):
-    """Results and scratch arrays of `contact_force`, made once for many elements by `contact_workspace`."""
-
-    force: FloatArray
-    """Forces on the four vectors, N, shape (8,): x and y in turn."""
-    xx: FloatArray
-    """Derivative of the x force on vector a with respect to the x of vector b, N/m, shape (4, 4)."""
-    xy: FloatArray
-    yx: FloatArray
-    yy: FloatArray
-    by_speed: FloatArray
-    """Derivative of `force` with respect to the pulley's speed, N s, shape (8,)."""
-    moment: FloatArray
-    """Derivative of the moment on the pulley with respect to the four vectors, N, shape (8,)."""
-    intervals: FloatArray
-    pieces: FloatArray
-    by_end: FloatArray
-    """Derivative of force and moment with respect to start and end of an interval, shape (2, 9)."""
+CONTACT_WORKSPACE = record(
+    force="8f8",  # forces on the four vectors, N: x and y in turn
+    xx="(4,4)f8",  # derivative of the x force on vector a with respect to the x of vector b, N/m
+    xy="(4,4)f8",
+    yx="(4,4)f8",
+    yy="(4,4)f8",
+    by_speed="8f8",  # derivative of `force` with respect to the pulley's speed, N s
+    moment="8f8",  # derivative of the moment on the pulley with respect to the four vectors, N
+    intervals=f"({MAX_INTERVALS},2)f8",
+    pieces="(13,8)f8",  # scratch of `touching_intervals`
+    by_end="(2,9)f8",  # derivative of force and moment with respect to start and end of an interval
+)
+"""Results and scratch arrays of `contact_force`, made once for many elements by `contact_workspace`."""
 
 
 class ContactTotals(NamedTuple):
@@ -59,20 +55,9 @@ class ContactTotals(NamedTuple):
     """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - (R - d) omega), W."""
 
 
-def contact_workspace() -> ContactWorkspace:
+def contact_workspace() -> np.record:
     """Make the arrays of `contact_force`."""
-    return ContactWorkspace(
-        np.zeros(8),
-        np.zeros((4, 4)),
-        np.zeros((4, 4)),
-        np.zeros((4, 4)),
-        np.zeros((4, 4)),
-        np.zeros(8),
-        np.zeros(8),
-        np.zeros((MAX_INTERVALS, 2)),
-        zone_scratch(),
-        np.zeros((2, 9)),
-    )
+    return blank(CONTACT_WORKSPACE)
 
 
 @kernel
@@ -87,7 +72,7 @@ def contact_force(
     weights: FloatArray,
     by_position: float,
     by_velocity: float,
-    work: ContactWorkspace,
+    work: np.record,
 ) -> ContactTotals:
     """Contact forces of an element against a pulley by Gauss quadrature, with their tangent (Eqs. 17-24).
 
@@ -179,7 +164,7 @@ def contact_force(
 
 
 @kernel
-def _clear(work: ContactWorkspace) -> None:
+def _clear(work: np.record) -> None:
     """Set the results to zero."""
     work.force[:] = 0.0
     work.xx[:] = 0.0
@@ -197,7 +182,7 @@ def _spread(
     tangent: PointTangent,
     speed_x: float,
     speed_y: float,
-    work: ContactWorkspace,
+    work: np.record,
 ) -> None:
     """Give tangent and couplings of a point to the four vectors (Eq. 24)."""
     _add_pairs(work.by_speed, shape, weight * speed_x, weight * speed_y)
@@ -272,7 +257,7 @@ def _move_end(
     xi: float,
     end: int,
     by_position: float,
-    work: ContactWorkspace,
+    work: np.record,
 ) -> None:
     """Add what the motion of one end of the touching interval does to the tangent.
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solve.generalized_alpha import REACHED, STRETCH, advance
+from beltdyn.solve.engine import advance, restart
+from beltdyn.solve.generalized_alpha import REACHED, STRETCH
 from beltdyn.solve.march import (
     FAILED,
     ITERATIONS,
@@ -17,7 +18,6 @@ from beltdyn.solve.march import (
     Settings,
     empty_outputs,
     new_march,
-    restart,
 )
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import NODE, FloatArray

@@ -1,7 +1,7 @@
 """Compile the kernels of a simulation before its clock starts: once on a machine, then they come from the disk.
 
-Time stepping takes more than half of the compilation; where nothing is on the disk yet and there is a second core, a
-second process does that part.
+What solves the equations of motion takes more than half of the compilation; where nothing is on the disk yet and there
+is a second core, a second process does that part.
 """
 
 import os
@@ -14,11 +14,10 @@ import numpy as np
 
 from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
 from beltdyn.model import Belt
-from beltdyn.solve.generalized_alpha import advance
-from beltdyn.solve.march import Settings, empty_outputs, new_march
+from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import accelerate, new_equations
+from beltdyn.system.motion import new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, straight
 
@@ -39,34 +38,31 @@ def compile_kernels(system: System, state: State) -> None:
         A state of it.
     """
     with _second_process():
-        velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
-        accelerate(system, 0.0, state.position, velocity, acceleration, np.zeros(NODE), new_equations(system))
         observe(system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
-    _compile_stepping(system, state)
+    _compile_solving(system, state)
 
 
-def compile_stepping() -> None:
-    """Compile time stepping alone, on a belt that stands for all others."""
+def compile_solving() -> None:
+    """Compile what solves the equations of motion alone, on a belt that stands for all others."""
     belt = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3, elements=3)
     system = belt_system(belt)
-    _compile_stepping(system, straight(system))
+    _compile_solving(system, straight(system))
 
 
-def _compile_stepping(system: System, state: State) -> None:
-    settings = Settings(0.0, 1.0, 1.0, 1.0)
-    march = new_march(0.0, 1.0, state.position, state.velocity)
-    advance(system, settings, march, new_equations(system), 0.0, 0, empty_outputs(np.zeros(0), state.position.size))
+def _compile_solving(system: System, state: State) -> None:
+    velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
+    accelerate(system, 0.0, state.position, velocity, acceleration, np.zeros(NODE), new_equations(system))
 
 
 @contextmanager
 def _second_process() -> Iterator[None]:
-    """Compile time stepping in another process meanwhile, if that is of use; if it fails, this one does it later."""
+    """Compile that part in another process meanwhile, if that is of use; if it fails, this one does it later."""
     folder = kernel_cache()
     if any(folder.rglob("*.nbi")) or usable_cores() < 2 or not sys.executable:
         yield
         return
     process = subprocess.Popen(
-        [sys.executable, "-c", f"from {__name__} import compile_stepping; compile_stepping()"],
+        [sys.executable, "-c", f"from {__name__} import compile_solving; compile_solving()"],
         env={**os.environ, CACHE_VARIABLE: str(folder.parent), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,

@@ -5,9 +5,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.errors import ConvergenceError
-from beltdyn.system.arrays import NODE, POWERS, FloatArray, System
-from beltdyn.system.motion import Equations, accelerate
+from beltdyn.system.arrays import NODE, POWERS, FloatArray
 
 IntArray = NDArray[np.int64]
 
@@ -111,7 +109,7 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
     Returns
     -------
     March
-        `restart` has to give it accelerations before it can `advance`.
+        `engine.restart` has to give it accelerations before it can advance.
     """
     size = position.size
     return March(
@@ -126,27 +124,3 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
         trial=np.zeros((4, size)),
         counts=np.zeros(4, dtype=np.int64),
     )
-
-
-def restart(system: System, march: March, equations: Equations) -> None:
-    """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system.
-
-    Parameters
-    ----------
-    system
-        Belt, pulleys, supports.
-    march
-        Changed in place; profiles are taken just after its time.
-    equations
-        Arrays to work in.
-
-    Raises
-    ------
-    ConvergenceError
-        If the mass matrix is singular.
-    """
-    after = float(np.nextafter(march.clock[0], np.inf))
-    if not accelerate(system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations):
-        raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
-    march.auxiliary[:] = march.acceleration
-    march.power[:] = equations.loads.power

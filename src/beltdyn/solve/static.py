@@ -14,10 +14,10 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
+from beltdyn.records import Records
+from beltdyn.solve.engine import linearise, move, solve
 from beltdyn.system.arrays import NODE, FloatArray, System
-from beltdyn.system.machine_arrays import Records
-from beltdyn.system.motion import Equations, linearise, new_equations, subtract_multipliers, subtract_solution
-from beltdyn.system.ring_matrix import solve_ring
+from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.state import State
 
 _TOLERANCE = 1e-11
@@ -145,8 +145,7 @@ class _Search:
 
     def step(self, length: float) -> None:
         """Take the step, or a part of it."""
-        subtract_solution(self._system, self._here, length, self.position)
-        subtract_multipliers(self._system, self._here, length, self._multipliers)
+        move(self._system, self._here, length, self.position, self._multipliers)
 
     def step_naturally(self) -> bool:
         """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""
@@ -156,7 +155,7 @@ class _Search:
             self._solve(self._ahead, 0.0)
             here, ahead = self._here.matrix, self._ahead.matrix
             mixed = here._replace(node_side=ahead.node_side, border_side=ahead.border_side)
-            solve_ring(mixed, self._system.closed, self._ahead.node_part, self._ahead.border_part)
+            solve(self._system, self._ahead._replace(matrix=mixed))
             if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:
                 return True
             self.step(-length)

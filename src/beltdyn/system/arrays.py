@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from beltdyn.ancf.section import Section
 from beltdyn.contact.law import ContactLaw
-from beltdyn.system.machine_arrays import Profiles, Records, Torques, record
+from beltdyn.records import Records, record
+from beltdyn.system.machine_arrays import Profiles, Torques
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

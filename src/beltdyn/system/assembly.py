@@ -5,17 +5,16 @@ I domega/dt - moment - T_a = 0                              free bodies (Eq. 23)
 C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.ancf.elastic_force import ElasticWorkspace, elastic_workspace, element_force
-from beltdyn.ancf.material_damping import DampingWorkspace, damping_force, damping_workspace
+from beltdyn.ancf.elastic_force import ELASTIC_WORKSPACE, element_force
+from beltdyn.ancf.material_damping import DAMPING_WORKSPACE, damping_force
 from beltdyn.chain.chain_force import chain_force
-from beltdyn.contact.contact_force import ContactWorkspace, contact_force, contact_workspace
+from beltdyn.contact.contact_force import CONTACT_WORKSPACE, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
+from beltdyn.records import blank, record
 from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
 from beltdyn.system.carriage import carriage_of, couple_carriage, keep_drift
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
@@ -26,38 +25,23 @@ from beltdyn.system.wheels import law_of, wheel_of
 FloatArray = NDArray[np.float64]
 
 
-class AssemblyWorkspace(NamedTuple):
-    """Scratch arrays of `assemble`, made once by `assembly_workspace`."""
-
-    elastic: ElasticWorkspace
-    damping: DampingWorkspace
-    contact: ContactWorkspace
-    coordinates: FloatArray
-    """Position, velocity and acceleration of one element, shape (3, 12)."""
-    control: FloatArray
-    """Control points of a curve of the centreline, shape (4, 2)."""
-    control_velocity: FloatArray
-    gradient: FloatArray
-    """Residual of one element, shape (12,)."""
-    tangent: FloatArray
-    """Tangent of one element, shape (12, 12)."""
-    drift: FloatArray
-    """Force on the four vectors and moment on the pulley, by a change of its centre's velocity; shape (9,)."""
+ASSEMBLY_WORKSPACE = record(
+    elastic=ELASTIC_WORKSPACE,
+    damping=DAMPING_WORKSPACE,
+    contact=CONTACT_WORKSPACE,
+    coordinates="(3,12)f8",  # position, velocity and acceleration of one element
+    control="(4,2)f8",  # control points of a curve of the centreline
+    control_velocity="(4,2)f8",
+    gradient="12f8",  # residual of one element
+    tangent="(12,12)f8",  # its tangent
+    drift="9f8",  # force on the four vectors and moment on the pulley, by a change of its centre's velocity
+)
+"""Scratch arrays of `assemble`, made once by `assembly_workspace`."""
 
 
-def assembly_workspace() -> AssemblyWorkspace:
+def assembly_workspace() -> np.record:
     """Make the scratch arrays of `assemble`."""
-    return AssemblyWorkspace(
-        elastic_workspace(),
-        damping_workspace(),
-        contact_workspace(),
-        np.zeros((3, 12)),
-        np.zeros((4, 2)),
-        np.zeros((4, 2)),
-        np.zeros(12),
-        np.zeros((12, 12)),
-        np.zeros(9),
-    )
+    return blank(ASSEMBLY_WORKSPACE)
 
 
 def border_size(system: System) -> int:
@@ -77,7 +61,7 @@ def assemble(
     by_position: float,
     by_velocity: float,
     by_acceleration: float,
-    work: AssemblyWorkspace,
+    work: np.record,
     matrix: RingMatrix,
     loads: Loads,
 ) -> None:
@@ -138,7 +122,7 @@ def assemble(
 
 @kernel
 def _gather(
-    i: int, j: int, position: FloatArray, velocity: FloatArray, acceleration: FloatArray, work: AssemblyWorkspace
+    i: int, j: int, position: FloatArray, velocity: FloatArray, acceleration: FloatArray, work: np.record
 ) -> None:
     """Coordinates of the element between nodes i and j."""
     for c in range(NODE):
@@ -152,7 +136,7 @@ def _gather(
 
 @kernel
 def _elastic_and_inertia(
-    system: System, element: int, by_position: float, by_acceleration: float, work: AssemblyWorkspace
+    system: System, element: int, by_position: float, by_acceleration: float, work: np.record
 ) -> None:
     """Overwrite residual and tangent of the element by those of elasticity and inertia."""
     section, length = system.section, system.length[element]
@@ -214,7 +198,7 @@ def _contact(
     velocity: FloatArray,
     by_position: float,
     by_velocity: float,
-    work: AssemblyWorkspace,
+    work: np.record,
     matrix: RingMatrix,
     loads: Loads,
 ) -> None:
@@ -266,7 +250,7 @@ def _contact(
 
 
 @kernel
-def _take_contact(system: System, work: AssemblyWorkspace) -> None:
+def _take_contact(system: System, work: np.record) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
     contact, tangent = work.contact, work.tangent
     for a in range(4):
@@ -288,7 +272,7 @@ def _couple(
     node_j: int,
     unknown: int,
     by_velocity: float,
-    contact: ContactWorkspace,
+    contact: np.record,
     matrix: RingMatrix,
 ) -> None:
     """Coupling of the element with the speed of a free pulley."""
@@ -301,7 +285,7 @@ def _couple(
 
 
 @kernel
-def _scatter(i: int, j: int, work: AssemblyWorkspace, matrix: RingMatrix) -> None:
+def _scatter(i: int, j: int, work: np.record, matrix: RingMatrix) -> None:
     """Add residual and tangent of the element between nodes i and j."""
     for row in range(NODE):
         matrix.node_side[i, row] += work.gradient[row]

@@ -13,6 +13,7 @@ from beltdyn.model.layout import radii as effective_radii
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
+from beltdyn.records import Records, records
 from beltdyn.system.arrays import BODY, NODE, PULLEY, FloatArray, Quadrature, Supports, System
 from beltdyn.system.build_machines import (
     body_inertias,
@@ -21,7 +22,6 @@ from beltdyn.system.build_machines import (
     tensioner_inertias,
 )
 from beltdyn.system.discretization import discretize
-from beltdyn.system.machine_arrays import Records, records
 from beltdyn.system.weight import weight_forces
 
 _REDUCED = 3

@@ -22,6 +22,7 @@ from beltdyn.model import (
     SlidingTensioner,
 )
 from beltdyn.model.tensioner import AnyTensioner, path_gradient
+from beltdyn.records import Records, records
 from beltdyn.system.machine_arrays import (
     COUPLING,
     FRICTION_CLUTCH,
@@ -35,9 +36,7 @@ from beltdyn.system.machine_arrays import (
     FloatArray,
     IntArray,
     Profiles,
-    Records,
     Torques,
-    records,
 )
 
 

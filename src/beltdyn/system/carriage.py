@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.contact.contact_force import ContactWorkspace
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.tensioner import tensioner_place
@@ -51,7 +50,7 @@ def carriage_of(system: System, pulley: int, position: FloatArray, velocity: Flo
 
 
 @kernel
-def keep_drift(system: System, carriage: Carriage, contact: ContactWorkspace, drift: FloatArray) -> None:
+def keep_drift(system: System, carriage: Carriage, contact: np.record, drift: FloatArray) -> None:
     """Overwrite drift by D and by its counterpart for the moment.
 
     Parameters
@@ -71,7 +70,7 @@ def keep_drift(system: System, carriage: Carriage, contact: ContactWorkspace, dr
 
 
 @kernel
-def _along(system: System, contact: ContactWorkspace, a: int, x: float, y: float) -> tuple[float, float]:
+def _along(system: System, contact: np.record, a: int, x: float, y: float) -> tuple[float, float]:
     """Sum over b of T_ab w_b (x, y): what a shift of the curve does to the force on a vector."""
     fx = fy = 0.0
     for b in range(4):
@@ -90,7 +89,7 @@ def couple_carriage(
     carriage: Carriage,
     by_velocity: float,
     drifting: float,
-    contact: ContactWorkspace,
+    contact: np.record,
     drift: FloatArray,
     matrix: RingMatrix,
 ) -> None:

@@ -1,8 +1,9 @@
 """What a link of a hub chain transmits: torsional isolator, one-way clutch, friction clutch."""
 
 from beltdyn.kernel import kernel
+from beltdyn.records import Records
 from beltdyn.system.excitation import profile_value
-from beltdyn.system.machine_arrays import ISOLATOR, ONE_WAY_CLUTCH, Profiles, Records
+from beltdyn.system.machine_arrays import ISOLATOR, ONE_WAY_CLUTCH, Profiles
 
 
 @kernel

@@ -1,43 +1,14 @@
 """The machines around the belt as arrays: functions of time, loads on shafts, hub chains, tensioners."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+
+from beltdyn.records import record
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-Records = np.recarray[Any, Any]
-"""Rows of one kind: `table.name` is a column, `table[k].name` a value."""
-
-
-def record(**fields: str) -> np.dtype[np.void]:
-    """Kind of the rows of a table: the type of each field by its name."""
-    return np.dtype(list(fields.items()), align=True)
-
-
-def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Records:
-    """Make a table of rows of a kind; fields that are not given are zero.
-
-    One array takes the place of one for every field, which spares the compiler most of its work.
-
-    Parameters
-    ----------
-    kind
-        Names and types of the fields.
-    **columns : array_like
-        Values of the fields, row by row.
-
-    Returns
-    -------
-    recarray
-    """
-    table: Records = np.zeros(len(np.asarray(next(iter(columns.values())))), kind).view(np.recarray)
-    for name, values in columns.items():
-        table[name] = values
-    return table
-
 
 POLYNOMIAL, TABLE, KLOSS = 0, 1, 2
 """Kinds of loads: see `shaft_torque`."""

@@ -1,4 +1,4 @@
-"""Solutions of the linear system applied to states, and the accelerations of a state (Eqs. 25 and 27)."""
+"""Linearised equations of motion as arrays, and their solutions applied to states."""
 
 from typing import NamedTuple
 
@@ -7,10 +7,9 @@ from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
-from beltdyn.system.assembly import AssemblyWorkspace, assemble, assembly_workspace, border_size
-from beltdyn.system.excitation import prescribe
+from beltdyn.system.assembly import assembly_workspace, border_size
 from beltdyn.system.loads import new_loads
-from beltdyn.system.ring_matrix import ring_matrix, solve_ring
+from beltdyn.system.ring_matrix import ring_matrix
 
 FloatArray = NDArray[np.float64]
 
@@ -24,7 +23,7 @@ class Equations(NamedTuple):
     border_part: FloatArray
     """Solution for the free bodies and the multipliers, shape (m,)."""
     loads: Loads
-    work: AssemblyWorkspace
+    work: np.record
 
 
 def new_equations(system: System) -> Equations:
@@ -37,42 +36,6 @@ def new_equations(system: System) -> Equations:
         new_loads(system),
         assembly_workspace(),
     )
-
-
-def linearise(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    by_acceleration: float,
-    equations: Equations,
-) -> bool:
-    """Assemble the equations at a state and solve tangent x = residual; arguments as for `assemble`.
-
-    Returns
-    -------
-    bool
-        False if the tangent is singular.
-    """
-    assemble(
-        system,
-        time,
-        position,
-        velocity,
-        acceleration,
-        multipliers,
-        by_position,
-        by_velocity,
-        by_acceleration,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
-    return solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
 
 
 @kernel
@@ -107,44 +70,3 @@ def subtract_multipliers(system: System, equations: Equations, factor: float, mu
         first = equations.border_part.size - NODE
         for c in range(NODE):
             multipliers[c] -= factor * equations.border_part[first + c]
-
-
-def accelerate(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
-    equations: Equations,
-) -> bool:
-    """Accelerations and multipliers that the equations of motion ask for (Eq. 25, and Eq. 27 where nodes are shared).
-
-    Parameters
-    ----------
-    system
-        The system.
-    time
-        s.
-    position, velocity : ndarray, shape (6 N + D,)
-        The state; the motion of prescribed bodies is written into it.
-    acceleration : ndarray, shape (6 N + D,)
-        Overwritten.
-    multipliers : ndarray, shape (6,)
-        Overwritten.
-    equations
-        Arrays to work in; afterwards its loads are those of the state.
-
-    Returns
-    -------
-    bool
-        False if the mass matrix is singular.
-    """
-    acceleration[:] = 0.0
-    multipliers[:] = 0.0
-    prescribe(system, time, position, velocity, acceleration)
-    if not linearise(system, time, position, velocity, acceleration, multipliers, 0.0, 0.0, 1.0, equations):
-        return False
-    subtract_solution(system, equations, 1.0, acceleration)
-    subtract_multipliers(system, equations, 1.0, multipliers)
-    return True

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.contact.contact_force import ContactWorkspace, contact_workspace
+from beltdyn.contact.contact_force import contact_workspace
 from beltdyn.contact.contact_zone import MAX_INTERVALS, zone_scratch
 from beltdyn.system.arrays import NODE, Loads, System
 from beltdyn.system.loads import new_loads
@@ -74,7 +74,7 @@ class Samples(NamedTuple):
     acceleration: FloatArray
     corner: FloatArray
     """No tangent, shape (0, 0)."""
-    contact: ContactWorkspace
+    contact: np.record
     loads: Loads
 
 

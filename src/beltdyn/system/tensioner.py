@@ -3,7 +3,7 @@
 from math import cos, sin, tanh
 
 from beltdyn.kernel import kernel
-from beltdyn.system.machine_arrays import Records
+from beltdyn.records import Records
 
 
 @kernel

@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.solve.alpha_step import allowed_error, method_of, try_step
-from beltdyn.solve.march import ITERATIONS, Settings, new_march, restart
+from beltdyn.solve.engine import restart
+from beltdyn.solve.march import ITERATIONS, Settings, new_march
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight

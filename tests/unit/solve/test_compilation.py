@@ -7,17 +7,17 @@ from pathlib import Path
 
 import pytest
 
-FIRST = "from beltdyn.solve.compilation import compile_stepping; compile_stepping()"
+FIRST = "from beltdyn.solve.compilation import compile_solving; compile_solving()"
 THEN = """
 from beltdyn.published import loaded_two_pulley
 from beltdyn.solve.compilation import compile_kernels
-from beltdyn.solve.generalized_alpha import advance
+from beltdyn.solve.engine import serve
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
 drive = loaded_two_pulley()
 compile_kernels(drive_system(drive), laid(drive_system(drive), drive.path))
-print(sum(advance.stats.cache_hits.values()), sum(advance.stats.cache_misses.values()))
+print(sum(serve.stats.cache_hits.values()), sum(serve.stats.cache_misses.values()))
 """
 
 

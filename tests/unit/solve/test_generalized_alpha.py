@@ -5,8 +5,9 @@ import pytest
 from numpy.typing import NDArray
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL, advance
-from beltdyn.solve.march import FAILED, STEPS, March, Outputs, Settings, empty_outputs, new_march, restart
+from beltdyn.solve.engine import advance, restart
+from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
+from beltdyn.solve.march import FAILED, STEPS, March, Outputs, Settings, empty_outputs, new_march
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.motion import new_equations

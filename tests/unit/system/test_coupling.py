@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Pulley
+from beltdyn.records import Records
 from beltdyn.system.build_machines import machine_arrays
 from beltdyn.system.coupling import coupling_torque
-from beltdyn.system.machine_arrays import Profiles, Records
+from beltdyn.system.machine_arrays import Profiles
 
 ENGAGE = {"kind": "step", "time": 0.5, "value": 1.0}
 LINKS: dict[str, dict[str, Any]] = {

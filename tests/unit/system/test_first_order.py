@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import NODE, POWERS, System
 from beltdyn.system.first_order import FirstOrder
-from beltdyn.system.motion import accelerate, new_equations
+from beltdyn.system.motion import new_equations
 from beltdyn.system.state import State
 
 FloatArray = NDArray[np.float64]

@@ -7,10 +7,11 @@ import pytest
 from numpy.typing import NDArray
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
+from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import accelerate, new_equations, subtract_multipliers, subtract_solution
+from beltdyn.system.motion import new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.state import State, straight
 
 FloatArray = NDArray[np.float64]

@@ -7,9 +7,10 @@ import pytest
 from numpy.typing import NDArray
 
 from beltdyn.model import Belt, Drive
+from beltdyn.solve.engine import linearise
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import Equations, linearise, new_equations
+from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.state import straight
 from beltdyn.system.supports import add_nodal_loads
 

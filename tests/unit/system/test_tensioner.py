@@ -9,8 +9,8 @@ import pytest
 from beltdyn.model import Belt, Path, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.model.tensioner import AnyTensioner
+from beltdyn.records import Records
 from beltdyn.system.build_machines import machine_arrays
-from beltdyn.system.machine_arrays import Records
 from beltdyn.system.tensioner import dry_friction, tensioner_force, tensioner_place
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)

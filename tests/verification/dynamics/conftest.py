@@ -8,8 +8,9 @@ import pytest
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
-from beltdyn.solve.generalized_alpha import REACHED, advance
-from beltdyn.solve.march import REJECTED, STEPS, Settings, empty_outputs, new_march, restart
+from beltdyn.solve.engine import advance, restart
+from beltdyn.solve.generalized_alpha import REACHED
+from beltdyn.solve.march import REJECTED, STEPS, Settings, empty_outputs, new_march
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations
 

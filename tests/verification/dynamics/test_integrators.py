@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from beltdyn import simulate
 from beltdyn.model import Belt, Drive
-from beltdyn.solve.generalized_alpha import REACHED, advance
+from beltdyn.solve.engine import advance
+from beltdyn.solve.generalized_alpha import REACHED
 from beltdyn.solve.march import STEPS, Settings, empty_outputs, new_march
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system

@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 from beltdyn import simulate
 from beltdyn.model import Drive
 from beltdyn.solve import find_equilibrium
+from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
 from beltdyn.system.joint_constraint import joint_constraint
-from beltdyn.system.motion import accelerate, new_equations
+from beltdyn.system.motion import new_equations
 from beltdyn.system.state import laid
 
 FloatArray = NDArray[np.float64]

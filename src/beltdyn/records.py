@@ -1,0 +1,49 @@
+"""Tables of rows with named fields: what compiled code takes as one argument in place of one for every array.
+
+In kernels `table[k].name` is a number or an array of fixed shape, and a row alone is passed as one pointer.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Records = np.recarray[Any, Any]
+"""Rows of one kind: `table.name` is a column, `table[k].name` a value."""
+
+
+def record(**fields: str | np.dtype[np.void]) -> np.dtype[np.void]:
+    """Kind of the rows of a table.
+
+    Parameters
+    ----------
+    **fields : str or dtype
+        Type of each field as NumPy writes it, "f8", "i8" or "(4,2)f8"; or the kind of a row within the row.
+    """
+    return np.dtype(list(fields.items()), align=True)
+
+
+def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Records:
+    """Make a table of rows of a kind; fields that are not given are zero.
+
+    Parameters
+    ----------
+    kind
+        Names and types of the fields.
+    **columns : array_like
+        Values of the fields, row by row.
+
+    Returns
+    -------
+    recarray
+    """
+    table: Records = np.zeros(len(np.asarray(next(iter(columns.values())))), kind).view(np.recarray)
+    for name, values in columns.items():
+        table[name] = values
+    return table
+
+
+def blank(kind: np.dtype[np.void]) -> np.record:
+    """Make one row of a kind, of zeros."""
+    row: np.record = np.zeros(1, kind).view(np.recarray)[0]
+    return row

@@ -1,0 +1,222 @@
+"""The one door to compiled code that solves the equations of motion.
+
+A kernel that Python calls is compiled whole, with all that it calls.  Linearising, for statics and for starts, and
+stepping through time share most of their code: behind one door it is compiled once.
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.kernel import kernel
+from beltdyn.solve import generalized_alpha
+from beltdyn.solve.march import March, Outputs, Settings, empty_outputs, new_march
+from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.assembly import assemble
+from beltdyn.system.excitation import prescribe
+from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
+from beltdyn.system.ring_matrix import solve_ring
+
+ADVANCE: Final = 0
+"""Step through time."""
+LINEARISE: Final = 1
+"""Assemble at the trial state of the march, and solve."""
+ACCELERATE: Final = 2
+"""Prescribe the motion of what is driven, linearise, and put the solution into the trial acceleration."""
+SOLVE: Final = 3
+"""Solve what is assembled."""
+MOVE: Final = 4
+"""Take a part of the solution off the trial position."""
+
+_NO_SETTINGS = Settings(0.0, 1.0, 1.0, 1.0)
+
+
+class Request(NamedTuple):
+    """What is asked for, and numbers that some of it needs."""
+
+    kind: int
+    time: float = 0.0
+    """Where the last step ends, or where to linearise, s."""
+    budget: int = 0
+    """Steps to try at most."""
+    by_position: float = 0.0
+    """Factors of the tangent, as for `assemble`."""
+    by_velocity: float = 0.0
+    by_acceleration: float = 0.0
+    factor: float = 0.0
+    """Part of the solution."""
+
+
+@kernel
+def serve(
+    system: System, request: Request, settings: Settings, march: March, equations: Equations, outputs: Outputs
+) -> tuple[int, int]:
+    """Do what is asked for.
+
+    Parameters
+    ----------
+    system
+        Belt, bodies, supports.
+    request
+        What to do.
+    settings, march, outputs
+        As for `generalized_alpha.advance`.
+    equations
+        Arrays to work in.
+
+    Returns
+    -------
+    status, filled : int
+        Those of `generalized_alpha.advance`; of others 1, or 0 where the tangent is singular, and 0.
+    """
+    kind, trial = request.kind, march.trial
+    if kind == ADVANCE:
+        return generalized_alpha.advance(system, settings, march, equations, request.time, request.budget, outputs)
+    if kind == MOVE:
+        subtract_solution(system, equations, request.factor, trial[0])
+        subtract_multipliers(system, equations, request.factor, march.multipliers)
+        return 1, 0
+    if kind == ACCELERATE:
+        prescribe(system, request.time, trial[0], trial[1], trial[2])
+    if kind != SOLVE:
+        assemble(
+            system,
+            request.time,
+            trial[0],
+            trial[1],
+            trial[2],
+            march.multipliers,
+            request.by_position,
+            request.by_velocity,
+            request.by_acceleration,
+            equations.work,
+            equations.matrix,
+            equations.loads,
+        )
+    if not solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part):
+        return 0, 0
+    if kind == ACCELERATE:
+        subtract_solution(system, equations, 1.0, trial[2])
+        subtract_multipliers(system, equations, 1.0, march.multipliers)
+    return 1, 0
+
+
+def advance(
+    system: System, settings: Settings, march: March, equations: Equations, stop: float, budget: int, outputs: Outputs
+) -> tuple[int, int]:
+    """Integrate; see `generalized_alpha.advance`."""
+    return serve(system, Request(ADVANCE, stop, budget), settings, march, equations, outputs)
+
+
+def linearise(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    multipliers: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    by_acceleration: float,
+    equations: Equations,
+) -> bool:
+    """Assemble the equations at a state and solve tangent x = residual; arguments as for `assemble`.
+
+    Returns
+    -------
+    bool
+        False if the tangent is singular.
+    """
+    request = Request(LINEARISE, time, 0, by_position, by_velocity, by_acceleration)
+    return _serve(system, request, (position, velocity, acceleration), multipliers, equations)
+
+
+def solve(system: System, equations: Equations) -> bool:
+    """Solve equations that are assembled; False if their matrix is singular."""
+    nothing = np.zeros(0)
+    return _serve(system, Request(SOLVE), (nothing, nothing, nothing), np.zeros(NODE), equations)
+
+
+def move(system: System, equations: Equations, factor: float, position: FloatArray, multipliers: FloatArray) -> None:
+    """Take factor times the solution off a position and the multipliers of the joint, in place."""
+    spare = np.zeros((2, position.size))
+    _serve(system, Request(MOVE, factor=factor), (position, spare[0], spare[1]), multipliers, equations)
+
+
+def accelerate(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    multipliers: FloatArray,
+    equations: Equations,
+) -> bool:
+    """Accelerations and multipliers that the equations of motion ask for (Eq. 25, and Eq. 27 where nodes are shared).
+
+    Parameters
+    ----------
+    system
+        The system.
+    time
+        s.
+    position, velocity : ndarray, shape (6 N + D,)
+        The state; the motion of prescribed bodies is written into it.
+    acceleration : ndarray, shape (6 N + D,)
+        Overwritten.
+    multipliers : ndarray, shape (6,)
+        Overwritten.
+    equations
+        Arrays to work in; afterwards its loads are those of the state.
+
+    Returns
+    -------
+    bool
+        False if the mass matrix is singular.
+    """
+    acceleration[:] = 0.0
+    multipliers[:] = 0.0
+    request = Request(ACCELERATE, time, by_acceleration=1.0)
+    return _serve(system, request, (position, velocity, acceleration), multipliers, equations)
+
+
+def _serve(
+    system: System,
+    request: Request,
+    motion: tuple[FloatArray, FloatArray, FloatArray],
+    multipliers: FloatArray,
+    equations: Equations,
+) -> bool:
+    """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
+    size = motion[0].size
+    march = new_march(request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
+    march.trial[:3] = motion
+    solved = serve(system, request, _NO_SETTINGS, march, equations, empty_outputs(np.zeros(0), size))[0] == 1
+    for changed, vector in zip(motion, march.trial, strict=False):
+        changed[:] = vector
+    return solved
+
+
+def restart(system: System, march: March, equations: Equations) -> None:
+    """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system.
+
+    Parameters
+    ----------
+    system
+        Belt, bodies, supports.
+    march
+        Changed in place; profiles are taken just after its time.
+    equations
+        Arrays to work in.
+
+    Raises
+    ------
+    ConvergenceError
+        If the mass matrix is singular.
+    """
+    after = float(np.nextafter(march.clock[0], np.inf))
+    if not accelerate(system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations):
+        raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
+    march.auxiliary[:] = march.acceleration
+    march.power[:] = equations.loads.power
