@@ -46,6 +46,10 @@ _OPTIONS = {
 }
 
 
+_OPTIMISATION = type(numba.config.OPT)(1)
+"""LLVM's level: a higher one takes a fifth longer to compile, and the code is no faster."""
+
+
 def kernel(function: Callable[P, R]) -> Callable[P, R]:
     """Compile a function with Numba at its first call and keep the machine code on disk.
 
@@ -87,13 +91,14 @@ class _Kernel(CPUDispatcher):  # type: ignore[misc]
     def compile(self, sig: Any) -> Any:
         """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects."""
         if self._folder:
-            with _cache_folder(self._folder):
+            with _setting("CACHE_DIR", self._folder):
                 self._cache = _Cache(self.py_func)
             self._folder = None
         collecting = gc.isenabled()
         gc.disable()
         try:
-            return super().compile(sig)
+            with _setting("OPT", _OPTIMISATION):
+                return super().compile(sig)
         finally:
             if collecting:
                 gc.enable()
@@ -192,11 +197,11 @@ def source_hash(package: Path) -> str:
 
 
 @contextmanager
-def _cache_folder(folder: str) -> Iterator[None]:
-    """Point Numba at a cache folder while a function is decorated; other packages keep theirs."""
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = folder
+def _setting(name: str, value: Any) -> Iterator[None]:
+    """Change a setting of Numba for a while; other packages keep theirs."""
+    before = getattr(numba.config, name)
+    setattr(numba.config, name, value)
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        setattr(numba.config, name, before)

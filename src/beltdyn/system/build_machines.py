@@ -26,11 +26,16 @@ from beltdyn.records import Records, records
 from beltdyn.system.machine_arrays import (
     COUPLING,
     FRICTION_CLUTCH,
+    HARMONIC,
     ISOLATOR,
     KLOSS,
+    LOAD,
     NO_SCHEDULE,
     ONE_WAY_CLUTCH,
+    POINT,
     POLYNOMIAL,
+    PROFILE,
+    SEGMENT,
     TABLE,
     TENSIONER,
     FloatArray,
@@ -38,6 +43,8 @@ from beltdyn.system.machine_arrays import (
     Profiles,
     Torques,
 )
+
+_NO_CONSTANTS = (0.0, 0.0, 0.0, 0.0)
 
 
 class Machines(NamedTuple):
@@ -137,11 +144,13 @@ def _profiles(pulleys: Sequence[Pulley]) -> Profiles:
     pieces = [_segments(profile) for profile in (*own, *schedules)]
     first, harmonic = _harmonics([*(pulley.harmonics for pulley in pulleys), *([()] * len(schedules))])
     return Profiles(
-        first=_offsets(len(start) for start, _, _ in pieces),
-        start=np.concatenate([np.empty(0), *(start for start, _, _ in pieces)]),
-        segment=np.concatenate([np.empty((0, 5)), *(segment for _, segment, _ in pieces)]),
-        angle=np.concatenate([np.empty(0), *(angle for _, _, angle in pieces)]),
-        harmonic_first=first,
+        table=records(PROFILE, segment=_offsets(len(start) for start, _, _ in pieces), harmonic=first),
+        segment=records(
+            SEGMENT,
+            start=np.concatenate([np.empty(0), *(start for start, _, _ in pieces)]),
+            coefficients=np.concatenate([np.empty((0, 5)), *(segment for _, segment, _ in pieces)]),
+            angle=np.concatenate([np.empty(0), *(angle for _, _, angle in pieces)]),
+        ),
         harmonic=harmonic,
     )
 
@@ -170,20 +179,26 @@ def _integral(segment: FloatArray, begin: float, end: float) -> float:
 def _torques(pulleys: Sequence[Pulley]) -> Torques:
     """Loads of all pulleys laid end to end."""
     loads = [load for pulley in pulleys for load in pulley.load]
-    tables = [
-        np.column_stack([load.speeds, load.torques]) if isinstance(load, LoadTable) else np.empty((0, 2))
-        for load in loads
+    points = [
+        tuple(zip(load.speeds, load.torques, strict=True)) if isinstance(load, LoadTable) else () for load in loads
     ]
-    harmonic_first, harmonic = _harmonics([load.harmonics for load in loads])
-    kinds = [_load_constants(load) for load in loads]
+    first, harmonic = _harmonics([load.harmonics for load in loads])
+    kinds = [*(_load_constants(load) for load in loads), (POLYNOMIAL, _NO_CONSTANTS)]
     return Torques(
         first=_offsets(len(pulley.load) for pulley in pulleys),
-        schedule=_schedule_numbers(pulleys)[0],
-        kind=np.array([kind for kind, _ in kinds], dtype=np.int64),
-        constants=np.array([constants for _, constants in kinds], dtype=float).reshape(-1, 4),
-        table_first=_offsets(len(table) for table in tables),
-        table=np.concatenate([np.empty((0, 2)), *tables]),
-        harmonic_first=harmonic_first,
+        table=records(
+            LOAD,
+            schedule=[*_schedule_numbers(pulleys)[0], NO_SCHEDULE],
+            kind=[kind for kind, _ in kinds],
+            constants=[constants for _, constants in kinds],
+            point=_offsets(len(group) for group in points),
+            harmonic=first,
+        ),
+        point=records(
+            POINT,
+            speed=[speed for group in points for speed, _ in group],
+            torque=[torque for group in points for _, torque in group],
+        ),
         harmonic=harmonic,
     )
 
@@ -194,7 +209,7 @@ def _load_constants(load: Resistance | LoadTable | Motor) -> tuple[int, tuple[fl
         return POLYNOMIAL, (load.constant, load.creep_speed, load.linear, load.quadratic)
     if isinstance(load, Motor):
         return KLOSS, (load.breakdown_torque, load.breakdown_slip, load.synchronous_speed, 0.0)
-    return TABLE, (0.0, 0.0, 0.0, 0.0)
+    return TABLE, _NO_CONSTANTS
 
 
 def _couplings(pulleys: Sequence[Pulley]) -> Records:
@@ -293,10 +308,16 @@ def _place(
     return pivot, (center - pivot) / arm, arm, sense
 
 
-def _harmonics(groups: Sequence[Sequence[Harmonic]]) -> tuple[IntArray, FloatArray]:
+def _harmonics(groups: Sequence[Sequence[Harmonic]]) -> tuple[IntArray, Records]:
     """Harmonics laid end to end: the first of each group, and all of them."""
-    rows = [(item.order, item.amplitude, item.phase) for group in groups for item in group]
-    return _offsets(len(group) for group in groups), np.array(rows, dtype=float).reshape(-1, 3)
+    found = [item for group in groups for item in group]
+    table = records(
+        HARMONIC,
+        order=[item.order for item in found],
+        amplitude=[item.amplitude for item in found],
+        phase=[item.phase for item in found],
+    )
+    return _offsets(len(group) for group in groups), table
 
 
 def _offsets(counts: Iterable[int]) -> IntArray:

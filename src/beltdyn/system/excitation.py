@@ -33,8 +33,8 @@ def profile_value(profiles: Profiles, number: int, time: float) -> tuple[float, 
         Speed and angular acceleration (rad/s, rad/s^2), torque and its rate (N m, N m/s), or factor and rate (1/s).
     """
     k = _segment(profiles, number, time)
-    constant, slope, amplitude, omega, phase = profiles.segment[k]
-    since = time - profiles.start[k] if slope != 0.0 else 0.0
+    constant, slope, amplitude, omega, phase = profiles.segment[k].coefficients
+    since = time - profiles.segment[k].start if slope != 0.0 else 0.0
     return (
         constant + slope * since + amplitude * cos(omega * time + phase),
         slope - amplitude * omega * sin(omega * time + phase),
@@ -63,13 +63,13 @@ def profile_angle(profiles: Profiles, number: int, time: float) -> float:
         rad, where the profile is a speed.
     """
     k = _segment(profiles, number, time)
-    begin = profiles.start[k] if k > profiles.first[number] else 0.0
-    constant, slope, amplitude, omega, phase = profiles.segment[k]
+    begin = profiles.segment[k].start if k > profiles.table[number].segment else 0.0
+    constant, slope, amplitude, omega, phase = profiles.segment[k].coefficients
     since = time - begin
     half = 0.5 * omega * since
     wave = sin(half) / half if half != 0.0 else 1.0
     mean = constant + 0.5 * slope * since + amplitude * wave * cos(0.5 * omega * (begin + time) + phase)
-    return float(profiles.angle[k] + mean * since)
+    return float(profiles.segment[k].angle + mean * since)
 
 
 @kernel
@@ -93,8 +93,9 @@ def prescribed_motion(profiles: Profiles, number: int, time: float) -> tuple[flo
     mean, rate = profile_value(profiles, number, time)
     angle = profile_angle(profiles, number, time)
     turned, factor, change = angle, 1.0, 0.0
-    for h in range(profiles.harmonic_first[number], profiles.harmonic_first[number + 1]):
-        order, amplitude, phase = profiles.harmonic[h]
+    for h in range(profiles.table[number].harmonic, profiles.table[number + 1].harmonic):
+        order, amplitude = profiles.harmonic[h].order, profiles.harmonic[h].amplitude
+        phase = profiles.harmonic[h].phase
         turned += amplitude / order * (sin(order * angle + phase) - sin(phase))
         factor += amplitude * cos(order * angle + phase)
         change -= amplitude * order * sin(order * angle + phase)
@@ -126,10 +127,10 @@ def prescribe(
 @kernel
 def _segment(profiles: Profiles, number: int, time: float) -> int:
     """Segment that holds at an instant."""
-    first, last = profiles.first[number], profiles.first[number + 1] - 1
+    first, last = profiles.table[number].segment, profiles.table[number + 1].segment - 1
     while first < last:
         middle = (first + last + 1) // 2
-        if profiles.start[middle] < time:
+        if profiles.segment[middle].start < time:
             first = middle
         else:
             last = middle - 1

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.records import record
+from beltdyn.records import Records, record
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -18,43 +18,65 @@ NO_SCHEDULE = -1
 """Stands for the number of a profile where there is none."""
 
 
+HARMONIC = record(
+    order="f8",  # over an angle
+    amplitude="f8",  # over the value
+    phase="f8",  # rad
+)
+"""A harmonic of a speed or of a torque."""
+
+SEGMENT = record(
+    start="f8",  # instant from which the segment holds, s
+    coefficients="5f8",  # c0, c1, amplitude, omega, phase
+    angle="f8",  # integral of the profile from time zero to the start (of the first: to time zero as if it held there)
+)
+"""A piece of a function of time."""
+
+PROFILE = record(
+    segment="i8",  # its first segment; the last is that before the first of the next row
+    harmonic="i8",  # its first harmonic, alike
+)
+"""A function of time."""
+
+
 class Profiles(NamedTuple):
     """Functions of time: one of each pulley (speed if prescribed, torque if free, zero if none), then schedules."""
 
-    first: IntArray
-    """First segment of each, shape (n + 1,)."""
-    start: FloatArray
-    """Instants from which the segments hold, s, shape (S,)."""
-    segment: FloatArray
-    """c0, c1, amplitude, omega, phase of each segment, shape (S, 5)."""
-    angle: FloatArray
-    """Integral of the profile from time zero to the start of the segment (of the first one: to time zero as if it held
-    there), rad for speeds, shape (S,)."""
-    harmonic_first: IntArray
-    """First harmonic of each, shape (n + 1,)."""
-    harmonic: FloatArray
-    """Order, amplitude over the value, phase (rad), shape (H, 3)."""
+    table: Records
+    """Rows of `PROFILE`, one more than there are profiles."""
+    segment: Records
+    """Rows of `SEGMENT`."""
+    harmonic: Records
+    """Rows of `HARMONIC`."""
+
+
+LOAD = record(
+    schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`
+    kind="i8",  # `POLYNOMIAL`, `TABLE` or `KLOSS`
+    constants="4f8",  # constants of its kind: see `shaft_torque`
+    point="i8",  # its first point; the last is that before the first of the next row
+    harmonic="i8",  # its first harmonic over the shaft angle, alike
+)
+"""A load on a shaft."""
+
+POINT = record(
+    speed="f8",  # rad/s
+    torque="f8",  # N m
+)
+"""A point of a table of torque over speed."""
 
 
 class Torques(NamedTuple):
-    """The n loads on the shafts, sorted by pulley."""
+    """The loads on the shafts, sorted by pulley."""
 
     first: IntArray
     """First load of each pulley, shape (P + 1,)."""
-    schedule: IntArray
-    """Number of the profile that multiplies it, or `NO_SCHEDULE`; shape (n,)."""
-    kind: IntArray
-    """`POLYNOMIAL`, `TABLE` or `KLOSS`, shape (n,)."""
-    constants: FloatArray
-    """Constants of its kind, shape (n, 4): see `shaft_torque`."""
-    table_first: IntArray
-    """First point of each load's table, shape (n + 1,)."""
-    table: FloatArray
-    """Speed (rad/s) and torque (N m), shape (T, 2)."""
-    harmonic_first: IntArray
-    """First harmonic of each load, shape (n + 1,)."""
-    harmonic: FloatArray
-    """Order over the shaft angle, amplitude over the torque, phase (rad), shape (H, 3)."""
+    table: Records
+    """Rows of `LOAD`, one more than there are loads."""
+    point: Records
+    """Rows of `POINT`."""
+    harmonic: Records
+    """Rows of `HARMONIC`."""
 
 
 COUPLING = record(

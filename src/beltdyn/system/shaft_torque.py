@@ -35,7 +35,8 @@ def shaft_torque(
     for load in range(torques.first[pulley], torques.first[pulley + 1]):
         torque, slope = _characteristic(torques, load, speed)
         factor, change = _harmonic_factor(torques, load, angle)
-        scale = profile_value(profiles, torques.schedule[load], time)[0] if torques.schedule[load] >= 0 else 1.0
+        schedule = torques.table[load].schedule
+        scale = profile_value(profiles, schedule, time)[0] if schedule >= 0 else 1.0
         total += scale * torque * factor
         by_angle += scale * torque * change
         by_speed += scale * slope * factor
@@ -104,8 +105,8 @@ def kloss(
 @kernel
 def _characteristic(torques: Torques, load: int, speed: float) -> tuple[float, float]:
     """Torque of a load over the speed, and its slope."""
-    kind = torques.kind[load]
-    a, b, c, d = torques.constants[load]
+    kind = torques.table[load].kind
+    a, b, c, d = torques.table[load].constants
     if kind == TABLE:
         return _interpolate(torques, load, speed)
     if kind == KLOSS:
@@ -116,27 +117,28 @@ def _characteristic(torques: Torques, load: int, speed: float) -> tuple[float, f
 @kernel
 def _interpolate(torques: Torques, load: int, speed: float) -> tuple[float, float]:
     """Linear between the points of a table, constant outside."""
-    first, last = torques.table_first[load], torques.table_first[load + 1] - 1
-    if speed <= torques.table[first, 0]:
-        return torques.table[first, 1], 0.0
-    if speed >= torques.table[last, 0]:
-        return torques.table[last, 1], 0.0
+    first, last = torques.table[load].point, torques.table[load + 1].point - 1
+    points = torques.point
+    if speed <= points[first].speed:
+        return points[first].torque, 0.0
+    if speed >= points[last].speed:
+        return points[last].torque, 0.0
     while last - first > 1:
         middle = (first + last) // 2
-        if torques.table[middle, 0] <= speed:
+        if points[middle].speed <= speed:
             first = middle
         else:
             last = middle
-    slope = (torques.table[last, 1] - torques.table[first, 1]) / (torques.table[last, 0] - torques.table[first, 0])
-    return torques.table[first, 1] + slope * (speed - torques.table[first, 0]), slope
+    slope = (points[last].torque - points[first].torque) / (points[last].speed - points[first].speed)
+    return points[first].torque + slope * (speed - points[first].speed), slope
 
 
 @kernel
 def _harmonic_factor(torques: Torques, load: int, angle: float) -> tuple[float, float]:
     """1 + sum a_k cos(k theta + phi_k), and its derivative with respect to theta."""
     factor, change = 1.0, 0.0
-    for h in range(torques.harmonic_first[load], torques.harmonic_first[load + 1]):
-        order, amplitude, phase = torques.harmonic[h]
-        factor += amplitude * cos(order * angle + phase)
-        change -= amplitude * order * sin(order * angle + phase)
+    for h in range(torques.table[load].harmonic, torques.table[load + 1].harmonic):
+        wave = torques.harmonic[h]
+        factor += wave.amplitude * cos(wave.order * angle + wave.phase)
+        change -= wave.amplitude * wave.order * sin(wave.order * angle + wave.phase)
     return factor, change

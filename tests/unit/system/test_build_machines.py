@@ -69,7 +69,7 @@ def test_bodies_are_the_rims_and_then_the_chains() -> None:
 
 def test_schedules_follow_the_profiles_of_the_pulleys() -> None:
     machines = machine_arrays(PULLEYS)
-    np.testing.assert_array_equal(machines.torques.schedule, [NO_SCHEDULE, 3, NO_SCHEDULE])
+    np.testing.assert_array_equal(machines.torques.table.schedule[:-1], [NO_SCHEDULE, 3, NO_SCHEDULE])
     np.testing.assert_array_equal(machines.couplings.schedule, [NO_SCHEDULE, NO_SCHEDULE, 4])
     assert [profile_value(machines.profiles, k, 0.0)[0] for k in range(5)] == [7.0, 0.0, 0.0, 0.25, 0.5]
 
@@ -77,11 +77,11 @@ def test_schedules_follow_the_profiles_of_the_pulleys() -> None:
 def test_loads_are_sorted_by_pulley() -> None:
     torques = machine_arrays(PULLEYS).torques
     np.testing.assert_array_equal(torques.first, [0, 0, 2, 3])
-    np.testing.assert_array_equal(torques.kind, [TABLE, POLYNOMIAL, KLOSS])
-    np.testing.assert_array_equal(torques.table_first, [0, 2, 2, 2])
-    np.testing.assert_array_equal(torques.table, [[0.0, 0.0], [10.0, -1.0]])
-    np.testing.assert_array_equal(torques.harmonic_first, [0, 1, 1, 1])
-    np.testing.assert_array_equal(torques.harmonic, [[3.0, 0.1, 0.0]])
+    np.testing.assert_array_equal(torques.table.kind[:-1], [TABLE, POLYNOMIAL, KLOSS])
+    np.testing.assert_array_equal(torques.table.point, [0, 2, 2, 2])
+    np.testing.assert_array_equal(torques.point.tolist(), [(0.0, 0.0), (10.0, -1.0)])
+    np.testing.assert_array_equal(torques.table.harmonic, [0, 1, 1, 1])
+    np.testing.assert_array_equal(torques.harmonic.tolist(), [(3.0, 0.1, 0.0)])
 
 
 def test_moving_tensioners_keep_their_order_and_fixed_ones_leave_no_trace() -> None:
@@ -102,8 +102,8 @@ def test_inertia_and_weight_of_tensioners() -> None:
 
 def test_a_drive_without_machines() -> None:
     machines = machine_arrays(())
-    assert [len(machines.torques.kind), len(machines.couplings.kind), len(machines.tensioners.pulley)] == [0, 0, 0]
-    assert [len(item) for item in (machines.profiles.first, machines.torques.first)] == [1, 1]
+    assert [len(machines.torques.table) - 1, len(machines.couplings.kind), len(machines.tensioners.pulley)] == [0, 0, 0]
+    assert [len(item) for item in (machines.profiles.table, machines.torques.first)] == [1, 1]
     assert machines.tensioners.origin.shape == (0, 2)
 
 
