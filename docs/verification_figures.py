@@ -2,8 +2,8 @@
 
     python docs/verification_figures.py [CURVES]
 
-runs all verification tests, slow ones too, and those of tolerance and ripple (a quarter of an hour), or takes a file
-that `pytest --curves FILE` has written, and draws docs/_static/verification/*.svg.
+runs all verification tests, slow ones too, and those of tolerance, ripple and the published drive (a quarter of an
+hour), or takes a file that `pytest --curves FILE` has written, and draws docs/_static/verification/*.svg.
 """
 
 import json
@@ -20,7 +20,12 @@ from beltdyn.plot.style import COLORS, dash, new_figure, styled
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "_static" / "verification"
-TESTS = ("tests/verification", "tests/validation/test_matrix.py", "tests/validation/test_ripple.py")
+TESTS = (
+    "tests/verification",
+    "tests/validation/test_matrix.py",
+    "tests/validation/test_ripple.py",
+    "tests/validation/test_published_benchmarks.py",
+)
 Curves = list[dict[str, Any]]
 
 
@@ -93,6 +98,14 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("speed_loss", "Torque [N m]", "Loss of speed [%]", "linear"),
         Panel("slip_arc", "Torque [N m]", "Arc of sliding [°]", "linear"),
         Panel("gross_slip", "Time [s]", "Driven pulley [rad/s]", "linear"),
+    ],
+    "creep_rate_law": [
+        Panel("driver", "Angle from the inlet of the driver [°]", "Slip velocity / v_c", "linear"),
+        Panel("driven", "Angle from the inlet of the driven pulley [°]", "", "linear"),
+    ],
+    "published_drive": [
+        Panel("speed", "Time [s]", "Driven pulley [rad/s]", "linear"),
+        Panel("arc", "Angle on the driven pulley [°]", "Tension [N]", "linear"),
     ],
 }
 
