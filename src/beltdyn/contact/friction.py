@@ -44,11 +44,10 @@ def force_slope(slip: float, normal: float, friction: float, creep_rate_factor: 
         nu_s, kg/(m s).
     """
     creep, limit = creep_rate_factor * slip, friction * normal
-    if creep > limit:
-        return -limit, 0.0, -friction
-    if creep < -limit:
-        return limit, 0.0, friction
-    return -creep, -creep_rate_factor, 0.0
+    if abs(creep) < limit:
+        return -creep, -creep_rate_factor, 0.0
+    sign = 1.0 if creep > 0.0 else -1.0 if creep < 0.0 else 0.0
+    return -sign * limit, 0.0, -sign * friction
 
 
 @kernel

@@ -125,7 +125,8 @@ class Recording:
         nodes, pulleys = NODE * system.nodes, len(system.pulleys)
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
         coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
-        stored = np.sum([values for name, values in seen.items() if name.endswith("_energy")], axis=0)
+        stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
+        potential = np.stack([seen["spring_energy"], seen["potential_energy"]], axis=1)
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
         return {
             **seen,
@@ -139,7 +140,7 @@ class Recording:
             "node_position": coordinates[..., :2],
             "nodal_coordinates": coordinates,
             "nodal_velocities": velocity[:, :nodes].reshape(coordinates.shape),
-            "energy_closure": self._energy.closure(stored, chunk.work),
+            "energy_closure": self._energy.closure(stored, potential, chunk.work),
             "step_size": chunk.step,
         }
 

@@ -215,4 +215,5 @@ def _chunk(equations: FirstOrder, time: FloatArray, states: list[FloatArray], st
     """Outputs from unknowns."""
     y = np.array(states).reshape(len(states), equations.size)
     position, velocity, work = equations.unpack(y)
+    equations.prescribe(time, position, velocity)
     return replace(Chunk.at(time, position, velocity, work, np.full(len(time), step)), reached=reached)

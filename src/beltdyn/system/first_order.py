@@ -45,6 +45,12 @@ class FirstOrder:
         """Positions, velocities and works from unknowns of shape (..., size)."""
         return y[..., : self._half], y[..., self._half : 2 * self._half], y[..., 2 * self._half :]
 
+    def prescribe(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> None:
+        """Write the prescribed motion into states of shape (k, 6 N + D): a solver's integral of it has its errors."""
+        acceleration = np.zeros(self._half)
+        for k, instant in enumerate(time):
+            prescribe(self._system, float(instant), position[k], velocity[k], acceleration)
+
     def tolerances(self, velocity: float, time: float) -> FloatArray:
         """Absolute tolerances of the unknowns.
 
