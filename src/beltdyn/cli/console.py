@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from rich.console import Console
+from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
@@ -19,7 +20,9 @@ def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]
         table.add_column(heading, justify="right" if index else "left", header_style="dim")
     for row in rows:
         table.add_row(*map(Text, row))
-    Console().print(table)
+    console = Console()
+    table.collapse_padding = Measurement.get(console, console.options, table).maximum >= console.width
+    console.print(table)
 
 
 def show_facts(facts: Iterable[tuple[str, str]]) -> None:

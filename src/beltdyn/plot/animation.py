@@ -7,7 +7,7 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.colors import Normalize
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.drive import DrivePicture
+from beltdyn.plot.drive import DrivePicture, size_of
 from beltdyn.plot.style import new_figure, styled
 from beltdyn.results import Run
 from beltdyn.results.atomic import atomic_path
@@ -44,7 +44,7 @@ def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25)
     path = Path(path)
     run.require_output()
     writer = _writer(path, frame_rate)
-    figure = new_figure()
+    figure = new_figure(size_of(run.drive))
     tension = run.dataset["belt_tension"]
     picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
     outputs = np.unique(np.linspace(0, run.dataset.sizes["time"] - 1, frames).round().astype(int))

@@ -3,7 +3,7 @@
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 
-from beltdyn.plot.drive import DrivePicture, draw_rotation
+from beltdyn.plot.drive import DrivePicture, draw_rotation, size_of
 from beltdyn.plot.instant import at
 from beltdyn.plot.style import axes_or_new, styled
 from beltdyn.results import Run
@@ -33,7 +33,7 @@ def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -
         If the run holds no output.
     """
     instant = at(run, time)
-    ax = axes_or_new(ax)
+    ax = axes_or_new(ax, size_of(run.drive))
     tension = instant["belt_tension"].values
     DrivePicture(run, ax, Normalize(tension.min(), tension.max())).show(instant)
     centers = instant["pulley_center"].values if "pulley_center" in instant else run.drive.centers

@@ -66,6 +66,7 @@ def contact_forces(
     values = force.values[wrap.points]
     ax.plot(wrap.distance, values, color=color(number), marker="o", markersize=3.0)
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
+    ax.locator_params(axis="x", nbins=5)
     coordinate_unit = unit(run.dataset["belt_coordinate"])
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(instant['time']):.4g} s")

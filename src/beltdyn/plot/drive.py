@@ -1,7 +1,6 @@
 """The picture of a drive at one instant, which can be moved to another instant."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,18 +10,22 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path as Outline
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from beltdyn.model import Pulley
+from beltdyn.model import Drive, Path, Pulley
+from beltdyn.model.tensioner import RotaryTensioner
 from beltdyn.plot.curve import centerline, element_lengths
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
 from beltdyn.results import Run
 
+FloatArray = NDArray[np.float64]
 _ARROW_RADIUS = 0.62
 _ARROW_ANGLE = np.radians(60.0)
 _MARK = (0.84, 0.97)
-_ROOMY = 0.12
-_STEEP = 0.5
+_ROOMY = 0.13
+_STEEP = 0.4
+_SIZE = 8.0
+_NARROW, _WIDE = 0.55, 1.1
 
 
 class DrivePicture:
@@ -43,7 +46,9 @@ class DrivePicture:
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
         self._centers = run.drive.centers
         self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.drive.pulleys)]
-        _write_names(ax, run.drive.pulleys)
+        extent = float(np.ptp(extent_of(run.drive, run.drive.path), axis=0).max())
+        for number, pulley in enumerate(run.drive.pulleys):
+            write_pulley(ax, run.drive.path, number, pulley.name, extent, color(number))
         self._belt = LineCollection([], cmap=tension_colors(), norm=norm, linewidths=4.0, capstyle="round", zorder=3)
         self._belt.set_snap(False)
         ax.add_collection(self._belt)
@@ -93,6 +98,51 @@ def draw_rotation(ax: Axes, center: ArrayLike, radius: float, speed: float) -> N
     ax.add_patch(FancyArrowPatch(path=Outline(points), arrowstyle=style, color=INK, linewidth=1.3, zorder=2))
 
 
+def size_of(drive: Drive) -> tuple[float, float]:
+    """Width and height of a figure of a drive, inches: as high as it needs."""
+    width, height = np.ptp(extent_of(drive, drive.path), axis=0)
+    return _SIZE, _SIZE * float(np.clip(height / width, _NARROW, _WIDE))
+
+
+def extent_of(drive: Drive, path: Path) -> FloatArray:
+    """Lower left and upper right corner of what is drawn, shape (2, 2), m."""
+    radii = np.maximum(np.abs(path.radii), [pulley.radius for pulley in drive.pulleys])[:, None]
+    points = [*(path.centers - radii), *(path.centers + radii)]
+    points += [np.array(one.pivot) for one in drive.tensioners if isinstance(one, RotaryTensioner)]
+    return np.array([np.min(points, axis=0), np.max(points, axis=0)])
+
+
+def arc(path: Path, number: int) -> FloatArray:
+    """Angles along the arc on a pulley, in the direction of motion, rad."""
+    enters = path.span_points[number - 1, 1] - path.centers[number]
+    start = np.arctan2(enters[1], enters[0])
+    turned = np.linspace(0.0, path.wrap_angles[number], 90)
+    return np.asarray(start + np.sign(path.radii[number]) * turned)
+
+
+def write_pulley(ax: Axes, path: Path, number: int, text: str, extent: float, tint: str = INK) -> None:
+    """Write into a pulley; beside one too small for a drive of this extent, where there is no belt or beyond it."""
+    style: dict[str, Any] = {"color": tint, "fontsize": 9, "weight": "bold", "linespacing": 1.2, "zorder": 6}
+    radius = abs(path.radii[number])
+    if radius > _ROOMY * extent:
+        place = path.centers[number] - [0.0, 0.28 * radius]
+        style |= {"horizontalalignment": "center", "verticalalignment": "center"}
+        ax.text(place[0], place[1], text, **style)
+        return
+    away = path.radii[number] < 0 and path.wrap_angles[number] < np.pi
+    middle = float(np.mean(arc(path, number)[[0, -1]])) + (np.pi if away else 0.0)
+    x, y = np.cos(middle), np.sin(middle)
+    ax.annotate(
+        text,
+        tuple(path.centers[number] + radius * np.array([x, y])),
+        xytext=(8.0 * x, 8.0 * y),
+        textcoords="offset points",
+        horizontalalignment="left" if x > _STEEP else "right" if x < -_STEEP else "center",
+        verticalalignment="bottom" if y > _STEEP else "top" if y < -_STEEP else "center",
+        **style,
+    )
+
+
 class _Body(NamedTuple):
     """What is drawn of a pulley: rim and hub, which a tensioner may move, and the mark that turns."""
 
@@ -109,30 +159,6 @@ def _draw_pulley(ax: Axes, pulley: Pulley, number: int) -> _Body:
     return _Body(rim, hub, ax.plot([], [], color=color(number), linewidth=3.0, zorder=2)[0])
 
 
-def _write_names(ax: Axes, pulleys: Sequence[Pulley]) -> None:
-    """Write names into the pulleys; beside those too small, on the side of the middle of the drive."""
-    centers = np.array([pulley.center for pulley in pulleys])
-    middle, extent = centers.mean(axis=0), np.ptp(centers, axis=0).max()
-    for number, pulley in enumerate(pulleys):
-        place, offset, align = np.array([0.0, -0.32]), np.zeros(2), "center"
-        if pulley.radius < _ROOMY * extent:
-            place = (middle - pulley.center) / np.linalg.norm(middle - pulley.center)
-            offset = 12.0 * place
-            align = "center" if abs(place[0]) < _STEEP else "left" if place[0] > 0 else "right"
-        x, y = pulley.center + pulley.radius * place
-        ax.annotate(
-            pulley.name,
-            (x, y),
-            xytext=(offset[0], offset[1]),
-            textcoords="offset points",
-            horizontalalignment=align,
-            verticalalignment="center",
-            color=color(number),
-            weight="bold",
-            zorder=4,
-        )
-
-
 def _frame(ax: Axes, run: Run) -> None:
     """Make room for the pulleys, and for the belt at any time."""
     positions = run.dataset["node_position"]
@@ -140,8 +166,8 @@ def _frame(ax: Axes, run: Run) -> None:
     radii = np.array([[pulley.radius] for pulley in run.drive.pulleys])
     low = np.min([positions.min(("time", "node")), *(centers - radii)], axis=0)
     high = np.max([positions.max(("time", "node")), *(centers + radii)], axis=0)
-    margin = 0.06 * float((high - low).max())
-    ax.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin))
+    beside, above = np.array([0.15, 0.06]) * float((high - low).max())
+    ax.set(xlim=(low[0] - beside, high[0] + beside), ylim=(low[1] - above, high[1] + above))
     ax.set_aspect("equal")
     ax.set(xlabel=f"x [{positions.attrs['units']}]", ylabel=f"y [{positions.attrs['units']}]")
 

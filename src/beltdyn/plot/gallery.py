@@ -12,10 +12,11 @@ from matplotlib.figure import Figure
 from beltdyn.errors import ModelError
 from beltdyn.plot.configuration import configuration
 from beltdyn.plot.contact import Kind, contact_forces, contact_pressure
+from beltdyn.plot.drive import size_of
 from beltdyn.plot.history import energy, span_tensions, speeds, torques
 from beltdyn.plot.pulleys import capstan_margins, hub_loads, losses, powers, slip
 from beltdyn.plot.spans import mid_spans, tension_spectrum, tensioners
-from beltdyn.plot.style import new_figure, styled
+from beltdyn.plot.style import SIZE, new_figure, styled
 from beltdyn.plot.sweep import names_of, orders, waterfall
 from beltdyn.plot.wear import wear_by_arc, wear_by_belt
 from beltdyn.results import Run, derived
@@ -112,7 +113,7 @@ def _essential(run: Run) -> tuple[str, ...]:
 def _figure(run: Run, name: str, pulley: int | None, variable: str) -> Figure:
     """Draw a figure, with as many panels as it needs."""
     if name in _WHOLE:
-        figure = new_figure()
+        figure = new_figure(size_of(run.drive) if name == "configuration" else SIZE)
         _WHOLE[name](run, ax=figure.add_subplot())
         return figure
     if name == "hub_loads":

@@ -1,5 +1,6 @@
 """Figures over time."""
 
+import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
@@ -17,11 +18,13 @@ _ENERGIES = (
     "potential_energy",
     *LOSSES,
 )
+_WAVES = 5.0
+"""Vibrations as high as the figure above which dashes cannot be told from them."""
 
 
 @styled
 def speeds(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the speeds of the pulleys over time.
+    """Draw the speeds of the pulleys over time, and those of the shafts behind hub chains.
 
     Parameters
     ----------
@@ -35,7 +38,14 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
     """
-    return lines(run.dataset["pulley_speed"], axes_or_new(ax))
+    ax = lines(run.dataset["pulley_speed"], axes_or_new(ax))
+    shafts = run.dataset["shaft_speed"]
+    for number, pulley in enumerate(run.drive.pulleys):
+        if pulley.hub:
+            name = f"shaft of {pulley.name}"
+            ax.plot(shafts["time"], shafts[:, number], label=name, color=color(number), linewidth=0.9)
+    name_lines(ax)
+    return ax
 
 
 @styled
@@ -115,12 +125,31 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
 
 
 def lines(variable: xr.DataArray, ax: Axes) -> Axes:
-    """Draw one line for each name along the second dimension."""
+    """Draw one line for each name along the second dimension, dashed unless it vibrates a lot; none without values."""
+    vibrating = vibrates(variable)
     for number, name in enumerate(variable[variable.dims[1]].values):
-        _line(ax, variable[:, number], str(name), number, dash(number))
+        if bool(variable[:, number].isnull().all()):
+            continue
+        if vibrating[number]:
+            ax.plot(variable["time"], variable[:, number], label=str(name), color=color(number), linewidth=0.8)
+        else:
+            _line(ax, variable[:, number], str(name), number, dash(number))
     ax.set(xlabel=label(variable["time"]), ylabel=label(variable))
     name_lines(ax)
     return ax
+
+
+def vibrates(variable: xr.DataArray) -> np.ndarray:
+    """Tell which lines, shape (lines,), go up and down by more than many times the height of all that is drawn.
+
+    The height is that of the middle 98 %.
+    """
+    values = variable.values
+    if not np.isfinite(values).any():
+        return np.zeros(values.shape[1], dtype=bool)
+    low, high = np.nanpercentile(values[np.isfinite(values)], (1.0, 99.0))
+    traveled = np.nansum(np.abs(np.diff(np.clip(values, low, high), axis=0)), axis=0)
+    return np.asarray(traveled > 2.0 * _WAVES * (high - low))
 
 
 def _line(ax: Axes, values: xr.DataArray, name: str, number: int, style: Dash) -> None:

@@ -14,16 +14,12 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
 from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner
-from beltdyn.plot.drive import draw_rotation
+from beltdyn.plot.drive import arc, draw_rotation, extent_of, size_of, write_pulley
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 from beltdyn.results.atomic import atomic_path
 
 FloatArray = NDArray[np.float64]
 _BELT, _TENSIONER = COLORS[0], COLORS[1]
-_ROOMY = 0.13
-_STEEP = 0.4
-_SIZE = 8.0
-_NARROW, _WIDE = 0.55, 1.1
 _ARROW = "-|>,head_length=5,head_width=2.4"
 
 
@@ -47,9 +43,9 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     """
     installation = installation or install(drive)
     path = installation.path
-    extent = _extent(drive, path)
+    extent = extent_of(drive, path)
     width, height = np.ptp(extent, axis=0)
-    ax = axes_or_new(ax, _size(drive))
+    ax = axes_or_new(ax, size_of(drive))
     for number in range(path.count):
         _draw_pulley(ax, drive, path, number)
     _draw_belt(ax, path)
@@ -58,7 +54,8 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
         position = float(next(moving)) if isinstance(tensioner, MovingTensioner) else 0.0
         _draw_tensioner(ax, tensioner, path, drive.carried(tensioner), position)
     for number, pulley in enumerate(drive.pulleys):
-        _write_pulley(ax, path, number, f"{number + 1} {pulley.name}", float(max(width, height)))
+        text = f"{number + 1} {pulley.name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
+        write_pulley(ax, path, number, text, float(max(width, height)))
     _write_spans(ax, path)
     beside, above = np.array([0.17, 0.1]) * float(max(width, height))
     ax.set(xlim=extent[:, 0] + [-beside, beside], ylim=extent[:, 1] + [-above, above])
@@ -94,7 +91,7 @@ def save_layout(drive: Drive, path: FilePath | str, installation: Installation |
         If the format is unknown, or the file cannot be written.
     """
     path = FilePath(path)
-    figure = new_figure(_size(drive))
+    figure = new_figure(size_of(drive))
     formats = figure.canvas.get_supported_filetypes()
     if path.suffix.lower().lstrip(".") not in formats:
         raise ModelError(
@@ -107,25 +104,11 @@ def save_layout(drive: Drive, path: FilePath | str, installation: Installation |
     return path
 
 
-def _size(drive: Drive) -> tuple[float, float]:
-    """Width and height of a figure, inches: as high as the drive needs."""
-    width, height = np.ptp(_extent(drive, drive.path), axis=0)
-    return _SIZE, _SIZE * float(np.clip(height / width, _NARROW, _WIDE))
-
-
-def _extent(drive: Drive, path: Path) -> FloatArray:
-    """Lower left and upper right corner of what is drawn, shape (2, 2), m."""
-    radii = np.maximum(np.abs(path.radii), [pulley.radius for pulley in drive.pulleys])[:, None]
-    points = [*(path.centers - radii), *(path.centers + radii)]
-    points += [np.array(one.pivot) for one in drive.tensioners if isinstance(one, RotaryTensioner)]
-    return np.array([np.min(points, axis=0), np.max(points, axis=0)])
-
-
 def _draw_pulley(ax: Axes, drive: Drive, path: Path, number: int) -> None:
     """Draw a pulley with the sector that the belt wraps, and its direction of rotation."""
     center, radius = path.centers[number], drive.pulleys[number].radius
     ax.add_patch(Circle(tuple(center), radius, facecolor=PALE, edgecolor="none", zorder=1))
-    start, end = np.degrees(_arc(path, number)[[0, -1]])
+    start, end = np.degrees(arc(path, number)[[0, -1]])
     tint: dict[str, Any] = {"facecolor": color(number), "alpha": 0.22, "edgecolor": "none", "zorder": 1.1}
     ax.add_patch(Wedge(tuple(center), radius, min(start, end), max(start, end), **tint))
     ax.add_patch(Circle(tuple(center), radius, facecolor="none", edgecolor=INK, linewidth=0.9, zorder=1.2))
@@ -137,7 +120,7 @@ def _draw_belt(ax: Axes, path: Path) -> None:
     """Draw arcs and spans with the direction of motion, each span over those before it."""
     crossing = set(chain(*crossings(path)))
     for number in range(path.count):
-        angle = _arc(path, number)
+        angle = arc(path, number)
         points = path.centers[number] + abs(path.radii[number]) * np.column_stack([np.cos(angle), np.sin(angle)])
         ax.plot(*points.T, color=_BELT, linewidth=3.0, solid_capstyle="butt", zorder=3)
         start, end = path.span_points[number]
@@ -147,14 +130,6 @@ def _draw_belt(ax: Axes, path: Path) -> None:
             ax.plot(*free.T, color="white", linewidth=7.0, **style)
         ax.plot(*path.span_points[number].T, color=_BELT, linewidth=3.0, **style)
         ax.add_patch(_arrow([start + 0.7 * (end - start), start + 0.8 * (end - start)], _BELT, 14))
-
-
-def _arc(path: Path, number: int) -> FloatArray:
-    """Angles along the arc on a pulley, in the direction of motion, rad."""
-    enters = path.span_points[number - 1, 1] - path.centers[number]
-    start = np.arctan2(enters[1], enters[0])
-    turned = np.linspace(0.0, path.wrap_angles[number], 90)
-    return np.asarray(start + np.sign(path.radii[number]) * turned)
 
 
 def _draw_tensioner(ax: Axes, tensioner: AnyTensioner, path: Path, pulley: int, position: float) -> None:
@@ -186,30 +161,6 @@ def _arrow(points: ArrayLike, paint: str, size: float) -> FancyArrowPatch:
         linewidth=1.6,
         mutation_scale=size / 8,
         zorder=5,
-    )
-
-
-def _write_pulley(ax: Axes, path: Path, number: int, name: str, extent: float) -> None:
-    """Write name and wrap angle into a pulley; beside one too small, where there is no belt or beyond it."""
-    text = f"{name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
-    style: dict[str, Any] = {"color": INK, "fontsize": 9, "weight": "bold", "linespacing": 1.2, "zorder": 6}
-    radius = abs(path.radii[number])
-    if radius > _ROOMY * extent:
-        place = path.centers[number] - [0.0, 0.28 * radius]
-        style |= {"horizontalalignment": "center", "verticalalignment": "center"}
-        ax.text(place[0], place[1], text, **style)
-        return
-    away = path.radii[number] < 0 and path.wrap_angles[number] < np.pi
-    middle = float(np.mean(_arc(path, number)[[0, -1]])) + (np.pi if away else 0.0)
-    x, y = np.cos(middle), np.sin(middle)
-    ax.annotate(
-        text,
-        tuple(path.centers[number] + radius * np.array([x, y])),
-        xytext=(8.0 * x, 8.0 * y),
-        textcoords="offset points",
-        horizontalalignment="left" if x > _STEEP else "right" if x < -_STEEP else "center",
-        verticalalignment="bottom" if y > _STEEP else "top" if y < -_STEEP else "center",
-        **style,
     )
 
 

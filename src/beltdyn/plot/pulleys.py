@@ -7,7 +7,7 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.history import lines
+from beltdyn.plot.history import lines, vibrates
 from beltdyn.plot.style import axes_or_new, color, label, name_lines, polar_or_new, styled
 from beltdyn.results import Run, derived
 from beltdyn.results.means import first_of_window
@@ -19,6 +19,8 @@ _RINGS = 4
 @styled
 def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the first over time, and thin the part of it that is creep.
+
+    Where vibrations hide it, means over a turn of the first pulley are drawn.
 
     Parameters
     ----------
@@ -38,7 +40,11 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
         If the run holds no output.
     """
     parts = derived.slips(run)
-    ax = lines(parts["slip"], axes_or_new(ax))
+    ax = axes_or_new(ax)
+    if vibrates(parts["slip"]).any():
+        parts = parts.map(lambda part: derived.turn_means(run, part), keep_attrs=True)
+        ax.set_title(f"means over a turn of {run.drive.pulleys[0].name}")
+    lines(parts["slip"], ax)
     if bool((np.abs(parts["sliding"]) > 0.0).any()):
         for number in range(parts.sizes["pulley"]):
             creep = parts["creep"][:, number]
@@ -51,6 +57,8 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
 @styled
 def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     """Draw how many times its load each pulley could transmit, over time; below 1 its whole arc slides.
+
+    Pulleys that hardly carry a load, whose margin is mostly above ten, are left out where others are below.
 
     Parameters
     ----------
@@ -70,7 +78,8 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
         If the run holds no output.
     """
     margins = derived.capstan_margins(run)
-    ax = lines(margins.where(np.isfinite(margins)), axes_or_new(ax))
+    loaded = margins.median("time") < _LARGEST_MARGIN
+    ax = lines(margins.where(np.isfinite(margins) & (loaded | ~loaded.any())), axes_or_new(ax))
     ax.axhspan(0.0, 1.0, color="#f6d9c9", linewidth=0.0, zorder=0)
     ax.annotate("gross slip", (0.995, 0.5), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=9)
     ax.set_ylim(0.0, _LARGEST_MARGIN)
@@ -118,6 +127,7 @@ def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None)
     ax.set_rmin(0.0)
     ax.yaxis.set_major_locator(MaxNLocator(_RINGS))
     ax.tick_params(axis="y", labelsize=8)
+    ax.set_rlabel_position(_widest_gap(loads["hub_direction"].values[half:, numbers]))
     ax.set_title(label(loads["hub_load"]), loc="left")
     ax.legend(loc="center left", bbox_to_anchor=(1.12, 0.5))
     return ax
@@ -193,6 +203,14 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {start:.4g} to {time[-1]:.4g} s")
     name_lines(ax)
     return ax
+
+
+def _widest_gap(directions: np.ndarray) -> float:
+    """Middle of the widest sector without a direction, degrees."""
+    angles = np.sort(np.degrees(directions), axis=None)
+    gaps = np.diff(angles, append=angles[0] + 360.0)
+    widest = int(gaps.argmax())
+    return float(angles[widest] + 0.5 * gaps[widest])
 
 
 def _stack(ax: Axes, row: int, powers: xr.DataArray) -> float:

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from beltdyn.errors import ModelError
+from beltdyn.model.tensioner import MovingTensioner
 from beltdyn.plot.history import lines
 from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, styled
 from beltdyn.results import Run, derived
@@ -77,7 +78,7 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
 
 @styled
 def tensioners(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the positions of the tensioners over time: m along a line, rad of an arm.
+    """Draw the positions of the tensioners over time: mm along a line, degrees of an arm.
 
     Parameters
     ----------
@@ -98,4 +99,8 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     """
     if "tensioner_position" not in run.dataset:
         raise ModelError("this drive has no tensioner that moves: there is no position to draw. Choose another figure.")
-    return lines(run.dataset["tensioner_position"], axes_or_new(ax))
+    position = run.dataset["tensioner_position"]
+    rotary = np.array([one.kind == "rotary" for one in run.drive.tensioners if isinstance(one, MovingTensioner)])
+    units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]
+    scaled = position * np.where(rotary, np.degrees(1.0), 1e3)
+    return lines(scaled.assign_attrs(position.attrs | {"units": ", ".join(units)}), axes_or_new(ax))

@@ -51,8 +51,11 @@ class Balance:
 
     @property
     def efficiency(self) -> float:
-        """Power out over power in; NaN when none goes in."""
-        return self.power_out / self.power_in if self.power_in > 0.0 else math.nan
+        """Power out over the sum of power out and lost; NaN when none goes in.
+
+        In steady running this is power out over power in; energy that is being stored or given back is left out.
+        """
+        return self.power_out / (self.power_out + self.lost) if self.power_in > 0.0 else math.nan
 
     @property
     def lost(self) -> float:

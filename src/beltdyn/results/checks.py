@@ -106,17 +106,20 @@ def _gross_slip(dataset: Recorded, drive: Drive) -> Iterator[str]:
 
 
 def _near_gross_slip_before(dataset: Recorded, drive: Drive) -> Iterator[str]:
-    """Pulleys that reached gross slip earlier than at the end of the run."""
+    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
     tension, speed, wrap = (np.asarray(dataset[name]) for name in ("span_tension", "belt_speed", "wrap_angle"))
     first = first_of_window(np.asarray(dataset["time"]))
     margins = capstan_margin(tension, speed, wrap, drive)[:first]
     reached = (margins < 1.0) & (drive.frictions > 0.0)
     for pulley, when in zip(drive.pulleys, reached.T, strict=True):
-        if when.any():
-            times = np.asarray(dataset["time"])[:first][when]
+        if np.count_nonzero(when) > 1:
+            times = np.asarray(dataset["time"])[:first]
+            reached_at = times[when]
+            total = np.gradient(times)[when].sum()
             yield (
-                f"{pulley.name} reached gross slip between t = {times[0]:.4g} s and {times[-1]:.4g} s: its load was "
-                "more than friction transmits. Raise the tension or the wrap angle, or load it more gently."
+                f"{pulley.name} reached gross slip between t = {reached_at[0]:.4g} s and {reached_at[-1]:.4g} s: its "
+                f"load was more than friction transmits, for {total:.2g} s in all. "
+                "Raise the tension or the wrap angle, or load it more gently."
             )
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beltdyn.cli.console import show_table
 from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.cli.summary import show_summary
 from beltdyn.results import Run, summarize
@@ -23,7 +24,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "0.500%",
         "180.0°",
         "29.25 W in, 29.1 W out",
-        "99.50%",
+        "96.04%",
         "1.2 W: friction 1.08 W, contact damping 0.12 W",
         "driven-driver 60 60 60 0.975",
         "1.0e-04 of the energy",
@@ -107,3 +108,13 @@ def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypa
         "span_summary.csv",
         "losses.csv",
     }
+
+
+def test_a_wide_table_moves_together_before_it_cuts_names(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ten columns of six letters are 78 wide with gaps of two, and 69 with gaps of one."""
+    monkeypatch.setenv("COLUMNS", "72")
+    words = [f"name{number:02}" for number in range(10)]
+    show_table("", words, [words])
+    assert capsys.readouterr().out.split() == 2 * words

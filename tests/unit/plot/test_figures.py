@@ -14,6 +14,7 @@ from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.plot.gallery import _panels, _rows
 from beltdyn.results import Run
+from beltdyn.results.derived import slips, turn_means
 
 
 @pytest.mark.parametrize(
@@ -132,12 +133,41 @@ def test_unknown_figure_is_a_model_error(tmp_path: Path, run: Run) -> None:
     assert not (tmp_path / "figures").exists()
 
 
+def tensioned_run(run: Run) -> Run:
+    """A run whose driver sits on an arm that turns as its shaft does."""
+    place = run.dataset["shaft_angle"][:, :1].rename(pulley="tensioner")
+    x, y = run.drive.pulleys[0].center
+    arm = {"kind": "rotary", "pulley": "driver", "pivot": (x, y + 1.0), "preload": 1.0, "inertia": 1.0}
+    dataset = run.dataset.assign(tensioner_position=place.assign_attrs(units="m, rad", long_name="Tensioner position"))
+    return Run(dataset, run.drive.replace(tensioner=[arm]))
+
+
+def test_the_place_of_an_arm_is_drawn_in_degrees(run: Run, ax: Axes) -> None:
+    plot.tensioners(tensioned_run(run), ax)
+    assert ax.get_ylabel() == "Tensioner position [°]"
+    np.testing.assert_allclose(np.asarray(ax.lines[0].get_ydata()), np.degrees(run.dataset["shaft_angle"].values[:, 0]))
+
+
+def test_what_vibrates_is_drawn_without_dashes(make_run: Callable[..., Run], ax: Axes) -> None:
+    """Six whole swings as high as the figure do, four do not."""
+    time = np.linspace(0.0, 1.0, 101)
+    swings = make_run(span_tension=50.0 + 9.0 * np.sin(2.0 * np.pi * np.outer(time, (4.0, 6.0))))
+    plot.span_tensions(swings, ax)
+    assert [line.get_linewidth() for line in ax.lines] == [1.7, 0.8]
+
+
+def test_slip_in_vibration_is_drawn_as_means_over_a_turn(make_run: Callable[..., Run], run: Run, ax: Axes) -> None:
+    speed = run.dataset["pulley_speed"].values.copy()
+    speed[60:, 1] *= 1.0 + 0.1 * (-1.0) ** np.arange(41)
+    shaken = make_run(pulley_speed=speed)
+    plot.slip(shaken, ax)
+    assert ax.get_title(loc="left") == "means over a turn of driver"
+    np.testing.assert_allclose(np.asarray(ax.lines[1].get_ydata()), turn_means(shaken, slips(shaken)["slip"])[:, 1])
+
+
 def test_all_figures_of_a_drive_with_a_tensioner(tmp_path: Path, run: Run) -> None:
     """Those of a sweep need more turns than this run has, and are tried elsewhere."""
-    place = run.dataset["shaft_angle"][:, :1].rename(pulley="tensioner")
-    tensioned = Run(
-        run.dataset.assign(tensioner_position=place.assign_attrs(units="rad", long_name="Place")), run.drive
-    )
+    tensioned = tensioned_run(run)
     chosen = [name for name in plot.FIGURES if name not in ("waterfall", "orders")]
     assert [path.stem for path in plot.save_all(tensioned, tmp_path, chosen)] == chosen
     assert "tensioners" in [path.stem for path in plot.save_all(tensioned, tmp_path)]

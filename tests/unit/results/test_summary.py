@@ -54,7 +54,8 @@ def test_spans_swing(make_run: Callable[..., Run]) -> None:
 
 def test_efficiency_is_that_of_the_end(run: Run) -> None:
     balance = summarize(run).balance
-    assert balance.efficiency == pytest.approx(0.995)
+    assert balance.efficiency == pytest.approx(1.0 - balance.lost / (balance.power_out + balance.lost))
+    assert balance.lost == pytest.approx(0.1 * 12.0)
     assert balance.losses["friction"] == pytest.approx(0.09 * 12.0)
 
 

@@ -7,6 +7,7 @@ from beltdyn.results.derived.pulley import capstan_margins, hub_loads, tension_r
 from beltdyn.results.derived.slip import sliding_arcs, slips
 from beltdyn.results.derived.span import mid_span_displacements, span_tensions
 from beltdyn.results.derived.spectrum import amplitude_spectrum, orders, waterfall
+from beltdyn.results.derived.turn import turn_means
 from beltdyn.results.derived.wear import wear_by_arc, wear_by_belt
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "slips",
     "span_tensions",
     "tension_ratios",
+    "turn_means",
     "waterfall",
     "wear_by_arc",
     "wear_by_belt",

@@ -52,6 +52,6 @@ def balance(run: Run, start: float | None = None, end: float | None = None) -> B
     Returns
     -------
     Balance
-        The efficiency says what it should only where as much energy is stored at the end as at the start.
+        Mean powers; the efficiency leaves out what is being stored or given back.
     """
     return power_balance(window(run, start, end))
