@@ -14,7 +14,7 @@ settings.load_profile("patient")
 
 @pytest.fixture(scope="session")
 def drive_text() -> str:
-    return files("beltdyn").joinpath("published", "two_pulley.toml").read_text(encoding="utf-8")
+    return files("beltdyn").joinpath("examples", "two_pulley.toml").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="session")

@@ -27,7 +27,7 @@ SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
 @pytest.fixture(scope="session")
 def drive() -> Drive:
     """The paper's drive."""
-    return loads(files("beltdyn").joinpath("published", "two_pulley.toml").read_text(encoding="utf-8"))
+    return loads(files("beltdyn").joinpath("examples", "two_pulley.toml").read_text(encoding="utf-8"))
 
 
 @pytest.fixture(scope="session")

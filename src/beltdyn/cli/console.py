@@ -7,6 +7,9 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
+_WIDEST = 200
+"""Columns of the widest table that is not broken."""
+
 
 def show(text: str = "") -> None:
     """Write a line on standard output, as it is."""
@@ -14,7 +17,7 @@ def show(text: str = "") -> None:
 
 
 def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
-    """Write a table whose first column holds names and whose other columns hold numbers."""
+    """Write a table whose first column holds names and whose other columns hold numbers, all of them whole."""
     table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
     for index, heading in enumerate(headings):
         table.add_column(heading, justify="right" if index else "left", header_style="dim")
@@ -22,7 +25,8 @@ def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]
         table.add_row(*map(Text, row))
     console = Console()
     table.collapse_padding = Measurement.get(console, console.options, table).maximum >= console.width
-    console.print(table)
+    needed = console.measure(table, options=console.options.update_width(_WIDEST)).maximum
+    Console(width=max(console.width, needed)).print(table)
 
 
 def show_facts(facts: Iterable[tuple[str, str]]) -> None:

@@ -9,7 +9,6 @@ if TYPE_CHECKING:
     from beltdyn.results import PulleySummary, Resolution, Run, SpanSummary, Summary
 
 _LARGEST_MARGIN = 100.0
-_FOUR_DIGITS = 9999.5
 _RPM = 30.0 / math.pi
 
 
@@ -63,9 +62,9 @@ def _span(span: "SpanSummary") -> tuple[str, ...]:
     return (span.name, *map(_number, (span.tension, span.lowest, span.highest, span.belt_speed)))
 
 
-def _number(value: float) -> str:
-    """Four digits, or those before the point where they are more."""
-    return f"{value:.4g}" if abs(value) < _FOUR_DIGITS else f"{value:.0f}"
+def _number(value: float, digits: int = 4) -> str:
+    """So many digits, or those before the point where they are more."""
+    return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
 
 
 def _power(summary: "Summary") -> list[tuple[str, str]]:
@@ -73,13 +72,13 @@ def _power(summary: "Summary") -> list[tuple[str, str]]:
     balance = summary.balance
     if not balance.power_in > 0.0:
         return []
-    losses = ", ".join(f"{cause} {power:.3g} W" for cause, power in balance.losses.items() if power != 0.0)
+    losses = ", ".join(f"{cause} {_number(power, 3)} W" for cause, power in balance.losses.items() if power != 0.0)
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
     flows = f"{_number(balance.power_in)} W in, {_number(balance.power_out)} W out"
     return [
         ("power", f"{flows}, {balance.stored:.3g} W being stored"),
         ("efficiency", efficiency),
-        ("losses", f"{balance.lost:.3g} W: {losses}" if losses else "none"),
+        ("losses", f"{_number(balance.lost, 3)} W: {losses}" if losses else "none"),
     ]
 
 

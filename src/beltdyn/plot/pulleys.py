@@ -187,15 +187,15 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     balance = derived.balance(run, start)
     by_pulley = derived.pulley_powers(run, start).mean("time")
     parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}
-    causes = list(balance.losses)
-    for row, (cause, power) in enumerate(balance.losses.items()):
+    drawn = {cause: power for cause, power in balance.losses.items() if power != 0.0 or cause in parts}
+    for row, (cause, power) in enumerate(drawn.items()):
         left = _stack(ax, row, parts[cause]) if cause in parts else power
         if cause not in parts:
             ax.barh(row, power, color="0.55", height=0.6)
         share = f" ({power / balance.power_in:.2%})" if balance.power_in > 0.0 else ""
         place = (max(left, power, 0.0), row)
-        ax.annotate(f"{power:.3g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center")
-    ax.set_yticks(range(len(causes)), causes)
+        ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center")
+    ax.set_yticks(range(len(drawn)), list(drawn))
     ax.invert_yaxis()
     ax.grid(axis="y", visible=False)
     ax.margins(x=0.3)

@@ -36,7 +36,7 @@ def demo_text() -> str:
 
     It departs from the published settings in contact, which is integrated over the touching zone and never pulls.
     """
-    return files("beltdyn").joinpath("published", "two_pulley.toml").read_text(encoding="utf-8")
+    return files("beltdyn").joinpath("examples", "two_pulley.toml").read_text(encoding="utf-8")
 
 
 def two_pulley(elements: int = 20, youngs_modulus: float = 1e8, creep_rate_factor: float = 1e5) -> Drive:

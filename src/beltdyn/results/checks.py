@@ -95,10 +95,10 @@ def _gross_slip(dataset: Recorded, drive: Drive) -> Iterator[str]:
     remedy = "Raise the tension or the wrap angle, or reduce the load."
     pulleys = pulley_means(dataset, drive)
     rims = np.abs(rim_speeds(np.array([pulley.speed for pulley in pulleys]), drive))
-    for pulley, rim in zip(pulleys, rims, strict=True):
+    for pulley in pulleys:
         sliding = abs(pulley.sliding_speed)
         if sliding > SLIDING_LIMIT * rims[0]:
-            share = f", {sliding / rim:.0%} of the rim's speed" if rim > 0.0 else ""
+            share = f", {sliding / rims[0]:.0%} of the rim's speed of {pulleys[0].name}" if rims[0] > 0.0 else ""
             yield f"{pulley.name} slides through: the whole arc slides, at {sliding:.3g} m/s{share}. {remedy}"
         elif 0.0 < pulley.margin < MARGIN_LIMIT and rims[0] > 0.0:
             slips = f" slips {pulley.slip:.1%}," if pulley.slip != 0.0 else ":"
@@ -107,19 +107,19 @@ def _gross_slip(dataset: Recorded, drive: Drive) -> Iterator[str]:
 
 def _near_gross_slip_before(dataset: Recorded, drive: Drive) -> Iterator[str]:
     """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
-    tension, speed, wrap = (np.asarray(dataset[name]) for name in ("span_tension", "belt_speed", "wrap_angle"))
+    tension, speed, wrap, torque = (
+        np.asarray(dataset[name]) for name in ("span_tension", "belt_speed", "wrap_angle", "pulley_torque")
+    )
     first = first_of_window(np.asarray(dataset["time"]))
-    margins = capstan_margin(tension, speed, wrap, drive)[:first]
+    times, margins = np.asarray(dataset["time"])[:first], capstan_margin(tension, speed, wrap, drive)[:first]
     reached = (margins < 1.0) & (drive.frictions > 0.0)
-    for pulley, when in zip(drive.pulleys, reached.T, strict=True):
+    for pulley, when, load in zip(drive.pulleys, reached.T, np.abs(torque[:first]).T, strict=True):
         if np.count_nonzero(when) > 1:
-            times = np.asarray(dataset["time"])[:first]
-            reached_at = times[when]
-            total = np.gradient(times)[when].sum()
             yield (
-                f"{pulley.name} reached gross slip between t = {reached_at[0]:.4g} s and {reached_at[-1]:.4g} s: its "
-                f"load was more than friction transmits, for {total:.2g} s in all. "
-                "Raise the tension or the wrap angle, or load it more gently."
+                f"{pulley.name} reached gross slip between t = {times[when][0]:.4g} s and {times[when][-1]:.4g} s, "
+                f"first at {load[when][0]:.4g} N m: its load was more than friction transmits, for "
+                f"{np.gradient(times)[when].sum():.2g} s in all. Raise the tension or the wrap angle, or load it more "
+                "gently."
             )
 
 

@@ -48,6 +48,19 @@ def test_no_load_no_efficiency(make_run: Callable[..., Run], capsys: pytest.Capt
     assert "none, nothing is taken out" in capsys.readouterr().out
 
 
+def test_nothing_in_a_table_is_cut_off(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, make_run: Callable[..., Run]
+) -> None:
+    """A narrow terminal breaks lines that are too long for it; a pipe has no width."""
+    monkeypatch.setenv("COLUMNS", "60")
+    run = make_run()
+    run.dataset["pulley"] = ["motor of the machine", "flywheel of the compressor"]
+    show_summary(run)
+    output = capsys.readouterr().out
+    assert "flywheel of the compressor" in output
+    assert "…" not in output
+
+
 def test_seven_pulleys_fit_one_screen(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, run: Run
 ) -> None:

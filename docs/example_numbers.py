@@ -1,0 +1,262 @@
+"""What the pages of the examples say in numbers: each run beside what a hand calculation gives.
+
+`docs/make_examples.py` prints them, and `tests/validation/test_examples.py` holds each within its tolerance.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from math import acos, asin, cos, hypot, pi, sqrt, tanh
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from beltdyn import Drive, Run
+from beltdyn.results import summarize
+from beltdyn.results.derived import capstan_margins
+from beltdyn.theory.creep import creep_speed_loss, layer_length
+from beltdyn.theory.elastic_creep import gross_slip_tensions
+from beltdyn.theory.path import open_belt
+from beltdyn.theory.stretch import stretch
+
+FloatArray = NDArray[np.float64]
+RPM = pi / 30.0
+
+
+class Number(NamedTuple):
+    """A number of a page.
+
+    Attributes
+    ----------
+    what : str
+        What it is, with its unit.
+    hand, found : float
+        By hand, and of the run.
+    tolerance : float
+        How far apart they may be, in the same unit.
+    """
+
+    what: str
+    hand: float
+    found: float
+    tolerance: float
+
+
+def two_pulley(run: Run) -> Iterator[Number]:
+    """The driven pulley swings on two spans; the hand calculation lets only them give, and no belt on the pulleys."""
+    belt, (driver, driven) = run.drive.belt, run.drive.pulleys
+    span = driven.center[0] - driver.center[0]
+    frequency = sqrt(2.0 * belt.axial_stiffness * driven.radius**2 / (span * driven.inertia)) / (2.0 * pi)
+    since = run.dataset["time"].values >= 0.6
+    time, speed = run.dataset["time"].values[since], speed_of(run, "driven")[since]
+    yield Number("path length, m", 2.0 * (span + pi * driven.radius), run.drive.path.length, 1e-12)
+    yield Number("mean driven speed from 0.6 s, rad/s", 12.0, float(speed.mean()), 0.06)
+    yield Number("frequency of the swing, Hz", frequency, frequency_of(time, speed - 12.0), 0.15 * frequency)
+
+
+def unequal_radii(run: Run) -> Iterator[Number]:
+    """The motor settles where Kloss's torque is that of the fan, through the ratio of radii and the creep."""
+    (motor, fan), summary = run.drive.pulleys, summarize(run)
+    (kloss,), (load,) = motor.load, fan.load
+    ratio, loss = motor.radius / fan.radius, creep(run)
+
+    def surplus(speed: float) -> float:
+        slip = 1.0 - speed / kloss.synchronous_speed
+        torque = 2.0 * kloss.breakdown_torque / (slip / kloss.breakdown_slip + kloss.breakdown_slip / slip)
+        return torque - ratio * (load.constant + load.quadratic * (speed * ratio * (1.0 - loss)) ** 2)
+
+    speed = brentq(surplus, 0.8 * kloss.synchronous_speed, 0.9999 * kloss.synchronous_speed)
+    belt = open_belt(hypot(*np.subtract(fan.center, motor.center)), (motor.radius, fan.radius))
+    yield Number("path length, m", belt.length, run.drive.path.length, 1e-9)
+    yield Number("wrap angle of the motor, °", np.degrees(belt.wrap[0]), wrap(run, 0), 1e-6)
+    yield Number("motor, rpm", speed / RPM, summary.pulleys[0].speed / RPM, 1.5)
+    yield Number("fan, rpm", speed * ratio * (1.0 - loss) / RPM, summary.pulleys[1].speed / RPM, 1.0)
+    yield from slip_and_efficiency(run, 0.05)
+
+
+def crossed_belt_drive(run: Run) -> Iterator[Number]:
+    """The lathe turns the other way; both pulleys have the same wrap."""
+    (first, second), summary = run.drive.pulleys, summarize(run)
+    radii = run.drive.radii
+    distance, both = second.center[0] - first.center[0], float(sum(radii))
+    angle = 2.0 * (pi - acos(both / distance))
+    loss = creep(run)
+    yield Number("path length, m", 2.0 * sqrt(distance**2 - both**2) + both * angle, run.drive.path.length, 1e-9)
+    yield Number("wrap angle of the line shaft, °", float(np.degrees(angle)), wrap(run, 0), 1e-6)
+    yield Number("wrap angle of the lathe, °", float(np.degrees(angle)), wrap(run, 1), 1e-6)
+    speed = -300.0 * radii[0] / radii[1] * (1.0 - loss)
+    yield Number("lathe, rpm", float(speed), summary.pulleys[1].speed / RPM, 0.2)
+    yield from slip_and_efficiency(run, 0.05)
+    limit = limit_force(run, 250.0, 0) * float(radii[1]) / 11.0
+    yield Number("capstan margin", limit, summary.pulleys[1].margin, 0.03 * limit)
+
+
+def washing_machine(run: Run) -> Iterator[Number]:
+    """Motor and drum as one body, with the belt's mass, against the run."""
+    (motor, drum), summary = run.drive.pulleys, summarize(run)
+    (table,), (load,) = motor.load, drum.load
+    small, large = map(float, run.drive.radii)
+    ratio = small / large
+    belt = run.drive.belt
+    inertia = motor.inertia + drum.inertia * ratio**2 + belt.mass_per_length * belt.length * small**2
+
+    def surplus(time: float, speed: FloatArray) -> FloatArray:
+        schedule = min(max((time - 0.01) / 0.07, 0.0), 1.0)
+        driving = 0.5 * (1.0 - cos(pi * schedule)) * np.interp(speed, table.speeds, table.torques)
+        braking = load.constant * np.tanh(speed * ratio / load.creep_speed) + load.linear * speed * ratio
+        return np.asarray((driving - ratio * braking) / inertia)
+
+    end = run.drive.simulation.duration
+    lumped = solve_ivp(surplus, (0.0, end), [0.0], method="LSODA", rtol=1e-8, dense_output=True, max_step=1e-3)
+    times = run.dataset["time"].values
+    mark = 1100.0 * RPM
+    final = float(lumped.y[0, -1])
+    yield Number("drum, rpm", final * ratio / RPM, summary.pulleys[1].speed / RPM, 0.005 * final * ratio / RPM)
+    yield Number("motor, rpm", final / RPM, summary.pulleys[0].speed / RPM, 0.005 * final / RPM)
+    by_hand = float(np.interp(mark, ratio * lumped.y[0], lumped.t))
+    found = float(np.interp(mark, np.maximum.accumulate(speed_of(run, "drum")), times))
+    yield Number("time at which the drum reaches 1100 rpm, s", by_hand, found, 0.03 * by_hand)
+    torque = load.constant + load.linear * final * ratio
+    yield Number("torque of the motor at 1200 rpm, N m", torque * ratio, summary.pulleys[0].shaft_torque, 0.003)
+    force = torque / large
+    tight, slack = (summary.spans[i].tension for i in (1, 0))
+    yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
+
+
+def flat_belt_idler(run: Run) -> Iterator[Number]:
+    """The idler's spring sets the slack tension, by virtual work on the part of it that presses, T - m v^2."""
+    drive, summary = run.drive, summarize(run)
+    (spring,) = drive.tensioners
+    position, step = float(run.dataset["tensioner_position"].values[-1, 0]), 1e-5
+    shorter, longer = (moved(drive, position + by).path.length for by in (-step, step))
+    pressing = (spring.preload - spring.rate * position) / ((longer - shorter) / (2.0 * step))
+    slack = pressing + drive.belt.mass_per_length * summary.spans[0].belt_speed ** 2
+    yield Number("slack tension, N", slack, summary.spans[0].tension, 0.01 * slack)
+    bare = without_idler(drive)
+    angle = np.degrees(pi - 2.0 * asin((bare.radii[1] - bare.radii[0]) / bare.pulleys[1].center[0]))
+    found = float(np.degrees(bare.path.wrap_angles[0]))
+    yield Number("wrap angle of the motor without the idler, °", float(angle), found, 1e-6)
+    force = summary.spans[2].tension - summary.spans[0].tension
+    torque = force * float(drive.radii[0])
+    yield Number("torque of the motor, N m", torque, summary.pulleys[0].shaft_torque, 0.01 * torque)
+    yield from slip_and_efficiency(run, 0.1)  # friction is capped on a third of the motor's arc, which adds slip
+    turning = 0.5 * float(drive.frictions[0] * moved(drive, position).path.wrap_angles[0])
+    margin = (2.0 * pressing + force) * tanh(turning) / force
+    yield Number("capstan margin of the motor", margin, summary.pulleys[0].margin, 0.03 * margin)
+
+
+def slip_through(run: Run) -> Iterator[Number]:
+    """Euler and Eytelwein's limit on both pulleys; the sum of tensions follows from the belt's length."""
+    drive = run.drive
+    conveyor = drive.pulleys[1]
+    radius, distance, friction = float(drive.radii[0]), conveyor.center[0], float(drive.frictions[0])
+    rim = 720.0 * RPM * radius
+    tight, slack = gross_slip_tensions(
+        300.0, friction, distance, radius, mass_per_length=drive.belt.mass_per_length, speed=rim
+    )
+    sliding = run.dataset.sel(time=slice(1.6, 1.85))
+    spans, torque = sliding["span_tension"].mean("time").values, sliding["pulley_torque"].mean("time").values[1]
+    limit = (tight - slack) * radius
+    yield Number("tight span while it slips, N", tight, float(spans[1]), 0.02 * tight)
+    yield Number("slack span while it slips, N", slack, float(spans[0]), 0.02 * slack)
+    yield Number("largest torque of the belt on the conveyor, N m", limit, float(torque), 0.02 * limit)
+    (load,) = conveyor.load
+    times, speeds = sliding["time"].values, sliding["pulley_speed"].values[:, 1]
+    braked = (limit - load.constant) / conveyor.inertia
+    yield Number("deceleration, rad/s²", braked, float(np.polyfit(times, speeds, 1)[0]), 0.05 * abs(braked))
+    margins = capstan_margins(run).sel(pulley="conveyor", time=slice(0.6, None))
+    since = float(margins["time"][int((margins.values < 1.0).argmax())])
+    yield Number("time at which it slips through, s", 0.6 + limit / load.constant, since, 0.03)
+    yield Number("capstan margin at the end", 1.0, summarize(run).pulleys[1].margin, 0.02)
+
+
+NUMBERS: Mapping[str, Callable[[Run], Iterator[Number]]] = MappingProxyType(
+    {
+        "two_pulley": two_pulley,
+        "unequal_radii": unequal_radii,
+        "crossed_belt": crossed_belt_drive,
+        "washing_machine": washing_machine,
+        "flat_belt_idler": flat_belt_idler,
+        "slip_through": slip_through,
+    }
+)
+"""The numbers of every example."""
+
+
+def slip_and_efficiency(run: Run, tolerance: float) -> Iterator[Number]:
+    """Creep of the last pulley, and what it leaves of the power: 1 - slip, since nothing else is lost."""
+    summary, loss = summarize(run), creep(run)
+    found = summary.pulleys[-1].slip
+    yield Number("slip, %", 100.0 * loss, 100.0 * found, 100.0 * tolerance * loss)
+    yield Number("efficiency, %", 100.0 * (1.0 - found), 100.0 * summary.balance.efficiency, 0.1)
+
+
+def creep(run: Run) -> float:
+    """Loss of speed from the first pulley to the last by theory, from the tensions of the run.
+
+    The creep of a drive with equal arcs, (T1 - T2) / EA and what a finite creep-rate factor adds, as the mean for the
+    arcs of the two pulleys.
+    """
+    belt, spans = run.drive.belt, summarize(run).spans
+    tensions = [span.tension for span in spans]
+    speed = max(span.belt_speed for span in spans)
+    layer = layer_length(
+        run.drive.contact.creep_rate_factor or np.inf, abs(speed), belt.axial_stiffness, mass=belt.mass_per_length
+    )
+    arcs = run.drive.path.wrap_angles * run.drive.radii
+    return 0.5 * sum(
+        creep_speed_loss(max(tensions), min(tensions), belt.axial_stiffness, float(arc), layer)
+        for arc in (arcs[0], arcs[-1])
+    )
+
+
+def limit_force(run: Run, tension: float, pulley: int) -> float:
+    """Euler and Eytelwein's largest difference of tensions at a mean tension, N."""
+    drive = run.drive
+    speed = summarize(run).spans[0].belt_speed
+    pressing = tension - drive.belt.mass_per_length * speed**2
+    return 2.0 * pressing * tanh(0.5 * float(drive.frictions[pulley] * drive.path.wrap_angles[pulley]))
+
+
+def moved(drive: Drive, position: float) -> Drive:
+    """The drive with the pulley of its sliding tensioner moved along the line."""
+    (tensioner,) = drive.tensioners
+    number = drive.carried(tensioner)
+    pulleys = list(drive.pulleys)
+    along = np.asarray(tensioner.direction) / np.hypot(*tensioner.direction)
+    pulleys[number] = pulleys[number].replace(center=tuple(pulleys[number].center + position * along))
+    return drive.replace(pulley=pulleys)
+
+
+def without_idler(drive: Drive) -> Drive:
+    """The same drive with fixed centres and without its idler, its belt as long as 600 N stretch it to the path."""
+    pulleys = [pulley for pulley in drive.pulleys if pulley.side == "inside"]
+    path = open_belt(pulleys[1].center[0], tuple(pulley.radius + drive.belt.pitch_offset for pulley in pulleys)).length
+    length = path / float(stretch(600.0, drive.belt.axial_stiffness))
+    return drive.replace(pulley=pulleys, tensioner=[], belt=drive.belt.replace(length=length))
+
+
+def with_load(drive: Drive, torque: float) -> Drive:
+    """The same drive with another constant load, N m, on its last pulley."""
+    (load,) = drive.pulleys[-1].load
+    loaded = drive.pulleys[-1].replace(load=[load.replace(constant=torque)])
+    return drive.replace(pulley=[*drive.pulleys[:-1], loaded])
+
+
+def wrap(run: Run, pulley: int) -> float:
+    """Wrap angle of the drive at rest, degrees."""
+    return float(np.degrees(run.drive.path.wrap_angles[pulley]))
+
+
+def speed_of(run: Run, pulley: str) -> FloatArray:
+    """Speed of a pulley over time, rad/s."""
+    return np.asarray(run.dataset["pulley_speed"].sel(pulley=pulley).values)
+
+
+def frequency_of(time: FloatArray, swing: FloatArray) -> float:
+    """Frequency of a swing by its upward crossings of zero, Hz."""
+    up = np.flatnonzero((swing[:-1] < 0.0) & (swing[1:] >= 0.0))
+    crossings = time[up] - swing[up] * (time[up + 1] - time[up]) / (swing[up + 1] - swing[up])
+    return float((len(crossings) - 1) / (crossings[-1] - crossings[0]))

@@ -1,0 +1,48 @@
+"""`beltdyn new`."""
+
+from collections.abc import Callable
+from importlib.resources import files
+from inspect import getdoc
+from pathlib import Path
+
+import pytest
+
+from beltdyn.cli.new import new
+from beltdyn.model import load
+
+RunMain = Callable[[list[str]], tuple[int, str, str]]
+EXAMPLES = sorted(file.name.removesuffix(".toml") for file in files("beltdyn").joinpath("examples").iterdir())
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example_is_written_as_it_is(name: str, tmp_path: Path, run_main: RunMain) -> None:
+    file = tmp_path / "mine.toml"
+    code, output, _ = run_main(["new", str(file), "--example", name])
+    assert code == 0
+    assert f"beltdyn run {file}" in output
+    assert file.read_bytes() == files("beltdyn").joinpath("examples", f"{name}.toml").read_bytes()
+    load(file)
+
+
+def test_example_names_the_file(tmp_path: Path, run_main: RunMain, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for arguments in (["--example", "slip-through"], []):
+        assert run_main(["new", *arguments])[0] == 0
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["drive.toml", "slip_through.toml"]
+
+
+def test_unknown_example_lists_the_names(refuse: Callable[[list[str]], str]) -> None:
+    message = refuse(["new", "--example", "tractor"])
+    assert f"example 'tractor' is not known. Choose out of {', '.join(EXAMPLES)}." in " ".join(message.split())
+
+
+def test_an_existing_file_is_kept(tmp_path: Path, refuse: Callable[[list[str]], str]) -> None:
+    file = tmp_path / "drive.toml"
+    file.write_text("mine", encoding="utf-8")
+    assert "exists already" in refuse(["new", str(file), "--example", "slip_through"])
+    assert file.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_help_names_every_example(name: str) -> None:
+    assert name in str(getdoc(new))

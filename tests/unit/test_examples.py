@@ -1,0 +1,53 @@
+"""The examples that come with the package: each can be written, is valid, and warns of what its page explains."""
+
+import re
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from beltdyn.model import advise, dumps, install, loads
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = {
+    file.name.removesuffix(".toml"): file.read_text(encoding="utf-8")
+    for file in files("beltdyn").joinpath("examples").iterdir()
+}
+EXPECTED = {
+    "two_pulley": ["sinking into the pulleys takes 5.8%", 'an element covers 45° of "driver"'],
+}
+"""How the warnings of `check` begin; an example that is not named here has none."""
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_warnings_are_those_that_the_page_explains(name: str) -> None:
+    drive = loads(EXAMPLES[name])
+    expected = EXPECTED.get(name, [])
+    found = advise(drive, install(drive))
+    assert [text[: len(start)] for text, start in zip(found, expected, strict=True)] == expected
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_what_the_writer_writes_of_it_is_the_same_drive(name: str) -> None:
+    drive = loads(EXAMPLES[name])
+    assert loads(dumps(drive)) == drive
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_it_says_what_it_is(name: str) -> None:
+    """A title, and a comment with most groups."""
+    text = EXAMPLES[name]
+    assert text.startswith("# ")
+    assert text.count("#") >= text.count("\n[")
+
+
+def test_every_example_has_a_page_with_its_file_and_pictures() -> None:
+    index = (ROOT / "docs" / "examples" / "index.md").read_text(encoding="utf-8")
+    for name in EXAMPLES:
+        page = (ROOT / "docs" / "examples" / f"{name}.md").read_text(encoding="utf-8")
+        assert f"src/beltdyn/examples/{name}.toml" in page
+        pictures = re.findall(r"\(\.\./_static/examples/(.*?)\)", page)
+        assert f"{name}_layout.png" in pictures
+        assert all((ROOT / "docs" / "_static" / "examples" / picture).is_file() for picture in pictures)
+        assert f"\n{name}\n" in index
+        assert f"_static/examples/{name}_layout.png" in index
