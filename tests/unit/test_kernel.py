@@ -97,7 +97,7 @@ _CALLER = """
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import Approach
 from beltdyn.contact.point_force import point_force
-law = ContactLaw(stiffness=1e7, damping=0.0, friction=1.2, friction_law=0, creep=1e5, may_pull=False, follow_zone=True)
+law = ContactLaw(1e7, 0.0, friction=1.2, friction_law=0, creep=1e5, may_pull=False, follow_zone=True, arm_to_rim=False)
 here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "distance": 0.08})
 print(point_force(here, Wheel(0.0, 0.0, 0.081, 0.0), law).normal)
 """

@@ -52,7 +52,7 @@ class ContactTotals(NamedTuple):
     damping_power: float
     """Power lost in the contact dampers, (f_n - k_p d) dd/dt over the touching length, W."""
     friction_power: float
-    """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - (R - d) omega), W."""
+    """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - arm omega), W."""
 
 
 def contact_workspace() -> np.record:
@@ -130,13 +130,13 @@ def contact_force(
                 _spread(shape, weight, tangent, -speed * here.normal_y, speed * here.normal_x, work)
             spring = law.stiffness * here.penetration
             totals = ContactTotals(
-                totals.moment + weight * pulley_moment(here, force.friction),
-                totals.moment_by_speed + weight * pulley_moment(here, speed),
+                totals.moment + weight * pulley_moment(force.arm, force.friction),
+                totals.moment_by_speed + weight * pulley_moment(force.arm, speed),
                 totals.hub_x - weight * force.x,
                 totals.hub_y - weight * force.y,
                 totals.penalty_energy + 0.5 * weight * spring * here.penetration,
                 totals.damping_power - weight * (force.normal - spring) * here.radial,
-                totals.friction_power - weight * force.friction * (here.circumferential - here.distance * wheel.speed),
+                totals.friction_power - weight * force.friction * (here.circumferential - force.arm * wheel.speed),
             )
             if moving:
                 rate = bernstein_rates(xi)
@@ -149,7 +149,7 @@ def contact_force(
                     by_place.yx * rx + by_place.yy * ry + by_motion.yx * sx + by_motion.yy * sy,
                     by_place.moment_x * rx + by_place.moment_y * ry + by_motion.moment_x * sx + by_motion.moment_y * sy,
                 )
-                moment = pulley_moment(here, force.friction)
+                moment = pulley_moment(force.arm, force.friction)
                 shape_rate = shape_functions(basis, rate)
                 grow = weight * (1.0 - points[point])
                 _add_end(work.by_end, 0, shape, shape_rate, -share, grow, force, moment, drift)

@@ -26,6 +26,8 @@ class ContactLaw(NamedTuple):
     """Whether f_n may become negative, as Eq. 17 is printed."""
     follow_zone: bool
     """Integrate over the touching part of an element only; False is the published rule, over the whole element."""
+    arm_to_rim: bool = False
+    """Whether friction turns the pulley with the arm R; False is the published rule, R - d."""
 
 
 class Wheel(NamedTuple):

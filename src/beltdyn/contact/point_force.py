@@ -6,7 +6,7 @@ distance from the pulley's centre, a change of position, velocity and pulley spe
     d by -dr_n,   dd/dt by -v_t dr_t / rho - dv_n,   n by t dr_t / rho,   t by -n dr_t / rho,
     the slip velocity by -v_n dr_t / rho + dv_t - R d(omega),
 
-from which the variations of f_n n + f_t t and of the moment -rho f_t follow.
+from which the variations of f_n n + f_t t and of the moment -rho f_t, or -R f_t, follow.
 """
 
 from typing import NamedTuple
@@ -15,6 +15,7 @@ from beltdyn.contact.friction import friction_force
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.normal_force import normal_force
 from beltdyn.contact.penetration import Approach, slip_velocity
+from beltdyn.contact.pulley_moment import moment_arm
 from beltdyn.kernel import kernel
 
 
@@ -34,6 +35,10 @@ class PointForce(NamedTuple):
     """df_t / d(slip velocity), N s/m^2."""
     by_normal: float
     """df_t / df_n."""
+    arm: float
+    """Arm of friction about the pulley's centre, m."""
+    arm_slope: float
+    """Its change with the distance of the point."""
 
 
 class PointTangent(NamedTuple):
@@ -62,6 +67,7 @@ def point_force(here: Approach, wheel: Wheel, law: ContactLaw) -> PointForce:
     """
     normal, active = normal_force(here.penetration, -here.radial, law)
     friction, by_slip, by_normal = friction_force(slip_velocity(here, wheel), normal, law)
+    arm, arm_slope = moment_arm(here, wheel, law)
     return PointForce(
         normal,
         friction,
@@ -70,6 +76,8 @@ def point_force(here: Approach, wheel: Wheel, law: ContactLaw) -> PointForce:
         active,
         by_slip,
         by_normal,
+        arm,
+        arm_slope,
     )
 
 
@@ -96,8 +104,8 @@ def point_tangent(
     friction_t = force.by_normal * sweep + force.by_slip * drag
     nn, nt = sink, sweep - by_position * force.friction * curvature
     tn, tt = friction_n, friction_t + by_position * force.normal * curvature
-    moment_n = -by_position * force.friction - here.distance * friction_n
-    moment_t = -here.distance * friction_t
+    moment_n = -by_position * force.arm_slope * force.friction - force.arm * friction_n
+    moment_t = -force.arm * friction_t
     nx, ny = here.normal_x, here.normal_y
     xn, xt, yn, yt = nx * nn - ny * tn, nx * nt - ny * tt, ny * nn + nx * tn, ny * nt + nx * tt
     return PointTangent(

@@ -1,17 +1,28 @@
 """Moment of the contact forces on the pulley (Eq. 23)."""
 
+from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import Approach
 from beltdyn.kernel import kernel
 
 
 @kernel
-def pulley_moment(point: Approach, friction: float) -> float:
-    """Moment per length about the pulley's centre, -(R - d) f_t (Eq. 23); R - d is the distance of the point.
+def moment_arm(point: Approach, wheel: Wheel, law: ContactLaw) -> tuple[float, float]:
+    """Arm of friction about the pulley's centre, m, and its change with the distance of the point.
+
+    The arm is R - d as published (Eq. 23), the distance of the point; or R, with which slip is taken (Eq. 22), so that
+    friction can only lose energy: f_t v_t in place of f_t (v_t + omega d).
+    """
+    return (wheel.radius, 0.0) if law.arm_to_rim else (point.distance, 1.0)
+
+
+@kernel
+def pulley_moment(arm: float, friction: float) -> float:
+    """Moment per length about the pulley's centre, -arm f_t (Eq. 23).
 
     Parameters
     ----------
-    point
-        The belt point.
+    arm
+        m.
     friction
         Friction force f_t on the belt along t, N/m.
 
@@ -20,4 +31,4 @@ def pulley_moment(point: Approach, friction: float) -> float:
     float
         N m per m of reference length, counter-clockwise positive.
     """
-    return -point.distance * friction
+    return -arm * friction

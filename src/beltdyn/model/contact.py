@@ -40,6 +40,11 @@ class Contact(Part):
     creep_velocity: Speed | None = Field(
         None, gt=0, description="the slip velocity at which friction is fully used, in m/s"
     )
+    moment_arm: Literal["point", "rim"] = Field(
+        "point",
+        description="the arm of friction about the shaft: to the belt's point, as published, or the effective radius, "
+        "with which friction never gives energy",
+    )
     sampling: Literal["distributed", "nodal"] = Field(
         "distributed",
         description="the places of contact: all along an element, or for comparison its end nodes only",

@@ -192,7 +192,7 @@ def contact_points(contact: Contact | None) -> Quadrature:
 def _contact_law(contact: Contact | None) -> ContactLaw:
     """Constants of contact; a law that is never used where there is none."""
     if contact is None:
-        return ContactLaw(1.0, 0.0, 0.0, FORCE_SLOPE, 1.0, False, True)
+        return ContactLaw(1.0, 0.0, 0.0, FORCE_SLOPE, 1.0, False, True, False)
     by_force = contact.friction_law == "force_slope"
     creep = contact.creep_rate_factor if by_force else contact.creep_velocity
     assert creep is not None
@@ -204,6 +204,7 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
         creep=creep,
         may_pull=contact.normal_law == "published",
         follow_zone=contact.sampling == "distributed" and contact.integration == "zone",
+        arm_to_rim=contact.moment_arm == "rim",
     )
 
 

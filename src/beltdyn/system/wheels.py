@@ -52,4 +52,5 @@ def law_of(system: System, pulley: int) -> ContactLaw:
         law.creep,
         law.may_pull,
         law.follow_zone,
+        law.arm_to_rim,
     )

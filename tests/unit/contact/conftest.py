@@ -20,7 +20,7 @@ def wheel() -> Wheel:
 @pytest.fixture(scope="session", params=[FORCE_SLOPE, COEFFICIENT_SLOPE], ids=["force_slope", "coefficient_slope"])
 def law(request: pytest.FixtureRequest) -> ContactLaw:
     creep = 300.0 if request.param == FORCE_SLOPE else 0.4
-    return ContactLaw(1e6, 40.0, 0.5, request.param, creep, may_pull=False, follow_zone=True)
+    return ContactLaw(1e6, 40.0, 0.5, request.param, creep, may_pull=False, follow_zone=True, arm_to_rim=False)
 
 
 @pytest.fixture(scope="session")

@@ -29,10 +29,11 @@ def state(request: pytest.FixtureRequest, wheel: Wheel, place: Place) -> FloatAr
     return np.array([*place(wheel, penetration, angle), *velocity])
 
 
-@pytest.fixture(params=[False, True], ids=["no_pull", "published"])
-def law(request: pytest.FixtureRequest, law: ContactLaw) -> ContactLaw:
-    """Either normal law, with either friction law."""
-    return law._replace(may_pull=request.param)
+@pytest.fixture(params=[(False, False), (True, False), (False, True)], ids=["no_pull", "published", "rim"])
+def every_law(request: pytest.FixtureRequest, law: ContactLaw) -> ContactLaw:
+    """Either normal law and either arm of friction, with either friction law."""
+    may_pull, arm_to_rim = request.param
+    return law._replace(may_pull=may_pull, arm_to_rim=arm_to_rim)
 
 
 def point(state: FloatArray, wheel: Wheel) -> Approach:
@@ -44,39 +45,46 @@ def act(state: FloatArray, wheel: Wheel, law: ContactLaw) -> FloatArray:
     """Force and moment."""
     here = point(state, wheel)
     force = point_force(here, wheel, law)
-    return np.array([force.x, force.y, pulley_moment(here, force.friction)])
+    return np.array([force.x, force.y, pulley_moment(force.arm, force.friction)])
 
 
 def difference(state: FloatArray, change: FloatArray, wheel: Wheel, law: ContactLaw) -> FloatArray:
     return np.asarray((act(state + change, wheel, law) - act(state - change, wheel, law)) / 2)
 
 
-def test_force_is_made_of_normal_and_friction(state: FloatArray, wheel: Wheel, law: ContactLaw) -> None:
+def test_force_is_made_of_normal_and_friction(state: FloatArray, wheel: Wheel, every_law: ContactLaw) -> None:
     here = point(state, wheel)
-    force = point_force(here, wheel, law)
+    force = point_force(here, wheel, every_law)
     normal, tangent = (here.normal_x, here.normal_y), (-here.normal_y, here.normal_x)
     assert force.x * normal[0] + force.y * normal[1] == pytest.approx(force.normal, abs=1e-10)
     assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(force.friction, abs=1e-10)
-    assert abs(force.friction) <= law.friction * abs(force.normal) * (1 + 1e-15)
+    assert abs(force.friction) <= every_law.friction * abs(force.normal) * (1 + 1e-15)
 
 
 @pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (0.0, 1.0), (1.0, 250.0)])
-def test_tangent(state: FloatArray, wheel: Wheel, law: ContactLaw, by_position: float, by_velocity: float) -> None:
+def test_tangent(
+    state: FloatArray, wheel: Wheel, every_law: ContactLaw, by_position: float, by_velocity: float
+) -> None:
     here = point(state, wheel)
-    tangent = point_tangent(here, point_force(here, wheel, law), law, by_position, by_velocity)
+    tangent = point_tangent(here, point_force(here, wheel, every_law), every_law, by_position, by_velocity)
     columns, step = [], 1e-9 if by_position else 1e-6
     for axis in range(2):
         change = np.zeros(4)
         change[axis], change[2 + axis] = step * by_position, step * by_velocity
-        columns.append(difference(state, change, wheel, law) / step)
+        columns.append(difference(state, change, wheel, every_law) / step)
     given = [[tangent.xx, tangent.xy], [tangent.yx, tangent.yy], [tangent.moment_x, tangent.moment_y]]
-    scale = law.stiffness * by_position + law.damping * by_velocity
+    scale = every_law.stiffness * by_position + every_law.damping * by_velocity
     np.testing.assert_allclose(given, np.array(columns).T, atol=1e-6 * scale)  # rounding of 1e3 N/m over the step
 
 
-def test_tangent_with_respect_to_the_speed_of_the_pulley(state: FloatArray, wheel: Wheel, law: ContactLaw) -> None:
+def test_tangent_with_respect_to_the_speed_of_the_pulley(
+    state: FloatArray, wheel: Wheel, every_law: ContactLaw
+) -> None:
     here = point(state, wheel)
-    by_speed = -point_force(here, wheel, law).by_slip * wheel.radius
-    faster, slower = (act(state, wheel._replace(speed=wheel.speed + s), law) for s in (1e-5, -1e-5))
-    expected = np.array([-here.normal_y, here.normal_x, -here.distance]) * by_speed
-    np.testing.assert_allclose((faster - slower) / 2e-5, expected, atol=1e-6 * law.creep)  # rounding over the step
+    force = point_force(here, wheel, every_law)
+    by_speed = -force.by_slip * wheel.radius
+    faster, slower = (act(state, wheel._replace(speed=wheel.speed + s), every_law) for s in (1e-5, -1e-5))
+    expected = np.array([-here.normal_y, here.normal_x, -force.arm]) * by_speed
+    np.testing.assert_allclose(
+        (faster - slower) / 2e-5, expected, atol=1e-6 * every_law.creep
+    )  # rounding over the step

@@ -21,5 +21,17 @@ def test_is_the_moment_of_the_reaction(
     here = approach(x, y, *velocity, wheel)
     force = point_force(here, wheel, law)
     arm_x, arm_y = x - wheel.center_x, y - wheel.center_y
-    assert pulley_moment(here, force.friction) == pytest.approx(-(arm_x * force.y - arm_y * force.x), rel=1e-12)
-    assert pulley_moment(here, force.friction) == pytest.approx(-(wheel.radius - 2e-3) * force.friction, rel=1e-12)
+    moment = pulley_moment(force.arm, force.friction)
+    assert moment == pytest.approx(-(arm_x * force.y - arm_y * force.x), rel=1e-12)
+    assert moment == pytest.approx(-(wheel.radius - 2e-3) * force.friction, rel=1e-12)
+
+
+@pytest.mark.parametrize("velocity", [(0.0, 0.0), (2.0, -1.0), (-0.5, 0.6), (-0.02, 0.01)])
+def test_with_the_arm_to_the_rim_friction_never_gives_energy(
+    wheel: Wheel, law: ContactLaw, place: Place, velocity: tuple[float, float]
+) -> None:
+    here = approach(*place(wheel, 2e-3, 1.0), *velocity, wheel)
+    force = point_force(here, wheel, law._replace(arm_to_rim=True))
+    moment = pulley_moment(force.arm, force.friction)
+    assert moment == -wheel.radius * force.friction
+    assert force.friction * here.circumferential + moment * wheel.speed <= 0.0

@@ -69,7 +69,7 @@ def _friction_coefficient() -> float:
 
 def _friction(slip: FloatArray, factor: float) -> FloatArray:
     """Friction force of the kernel, N/m."""
-    law = ContactLaw(1e7, 10.0, _friction_coefficient(), FORCE_SLOPE, factor, True, False)
+    law = ContactLaw(1e7, 10.0, _friction_coefficient(), FORCE_SLOPE, factor, True, False, False)
     return np.array([friction_force(float(value), _NORMAL, law)[0] for value in slip])
 
 
