@@ -42,6 +42,7 @@ _OPTIONS = {
     "error_model": "numpy",
     "fastmath": {"contract", "nsz"},
     "no_cfunc_wrapper": True,
+    "no_rewrites": True,
     "_nrt": False,
 }
 
