@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from beltdyn.results import PulleySummary, Resolution, Run, SpanSummary, Summary
 
 _LARGEST_MARGIN = 100.0
+_NOTHING = 1e-9
+"""Newtons, watts and metres a second that are rounding."""
 _RPM = 30.0 / math.pi
 
 
@@ -63,7 +65,9 @@ def _span(span: "SpanSummary") -> tuple[str, ...]:
 
 
 def _number(value: float, digits: int = 4) -> str:
-    """So many digits, or those before the point where they are more."""
+    """So many digits, or those before the point where they are more; nothing of what is next to nothing."""
+    if abs(value) < _NOTHING:
+        return "0"
     return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
 
 
@@ -76,7 +80,7 @@ def _power(summary: "Summary") -> list[tuple[str, str]]:
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
     flows = f"{_number(balance.power_in)} W in, {_number(balance.power_out)} W out"
     return [
-        ("power", f"{flows}, {balance.stored:.3g} W being stored"),
+        ("power", f"{flows}, {_number(balance.stored, 3)} W being stored"),
         ("efficiency", efficiency),
         ("losses", f"{_number(balance.lost, 3)} W: {losses}" if losses else "none"),
     ]
