@@ -14,7 +14,6 @@ from rich.table import Table
 from beltdyn.ancf.elastic_force import element_force
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
-from beltdyn.contact.law import Wheel
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import find_equilibrium
@@ -25,6 +24,7 @@ from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import laid
+from beltdyn.system.wheels import wheel_of
 
 ROUNDS, REPEATS = 15, 300
 
@@ -65,17 +65,17 @@ def repeat_elasticity(system: System, state: FloatArray, _r: FloatArray, work: E
 
 
 @kernel
-def repeat_contact(system: System, state: FloatArray, _r: FloatArray, work: Equations, _none: FloatArray) -> None:
+def repeat_contact(system: System, state: FloatArray, rates: FloatArray, work: Equations, _none: FloatArray) -> None:
     """Contact forces with their tangent."""
-    scratch, pulleys, points = work.work, system.pulleys, system.contact
+    scratch, points = work.work, system.contact
     for _ in range(REPEATS):
         for element in range(system.length.size):
             for c in range(NODE):
                 scratch.coordinates[0, c] = state[NODE * element + c]
                 scratch.coordinates[0, NODE + c] = state[NODE * ((element + 1) % system.nodes) + c]
             fill_control(system, element, 0, scratch.coordinates[0], scratch.control)
-            for p in range(pulleys.radius.size):
-                wheel = Wheel(pulleys.center[p, 0], pulleys.center[p, 1], pulleys.radius[p], 0.0)
+            for p in range(system.pulleys.size):
+                wheel = wheel_of(system, p, state, rates)
                 if not out_of_reach(scratch.control, wheel):
                     contact_force(
                         scratch.control,
