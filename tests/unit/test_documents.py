@@ -29,7 +29,10 @@ from beltdyn.model import (
     dumps,
     loads,
 )
+from beltdyn.model.belt_form import Sold, Stiffnesses
+from beltdyn.model.catalogue import Entry
 from beltdyn.model.part import Part
+from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Step, Table
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
@@ -70,6 +73,45 @@ def test_every_key_is_documented(document: Path, part: type[Part]) -> None:
     for key, field in part.model_fields.items():
         description = re.escape(str(field.description)[1:])
         assert key == "kind" or re.search(rf"\| `{key}` \| .{description} \|", text)
+
+
+@pytest.mark.parametrize("part", PARTS[MACHINES][1:])
+def test_every_key_of_a_machine_stands_under_its_kind(part: type[Part]) -> None:
+    """The keys that all loads share stand above their kinds."""
+    kind = part.model_json_schema()["properties"]["kind"]["const"]
+    group = "Tensioners" if "pulley" in part.model_fields else "Loads" if "harmonics" in part.model_fields else "Hub"
+    chapter = re.split(r"^## ", MACHINES.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    sections = next(text for text in chapter if text.startswith(group)).split("\n### ")
+    (section,) = [text for text in sections if f'`kind = "{kind}"`' in text.splitlines()[0]]
+    missing = [key for key in part.model_fields if key != "kind" and f"| `{key}` |" not in section]
+    shared = [key for key in missing if f"| `{key}` |" in sections[0]]
+    assert missing == shared
+
+
+@pytest.mark.parametrize("profile", [Constant, Step, Ramp, CosineRamp, CosineRampPublished, Table])
+def test_every_key_of_a_profile_is_documented(profile: type[Profile]) -> None:
+    kind = profile.model_fields["kind"].default or "table"
+    text = DRIVE_FILE.read_text(encoding="utf-8")
+    rows = [row for row in text.splitlines() if row.startswith(f'| `{{ kind = "{kind}",')]
+    assert rows
+    assert all(f"{key} = " in rows[0] for key in profile.model_fields)
+
+
+@pytest.mark.parametrize("key", [*Sold.model_fields, *Stiffnesses.model_fields])
+def test_every_key_of_a_belt_as_sold_is_documented(key: str) -> None:
+    assert f"| `{key}` |" in DRIVE_FILE.read_text(encoding="utf-8")
+
+
+def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
+    stiffnesses, profile, catalogue = blocks(DRIVE_FILE, "toml")[:3]
+    (entry,) = tomllib.loads(catalogue).values()
+    assert entry.keys() == Entry.model_fields.keys()
+    (tmp_path / "belts.toml").write_text(catalogue, encoding="utf-8")
+    data = tomllib.loads(new_drive)
+    own = {"profile": "my-belt", "ribs": 4, "catalogue": "belts.toml"}
+    for form in (tomllib.loads(stiffnesses)["belt"], tomllib.loads(profile)["belt"], own):
+        drive = loads(tomli_w.dumps(data | {"belt": form | {"length": data["belt"]["length"]}}), base=tmp_path)
+        assert loads(dumps(drive)) == drive
 
 
 @pytest.mark.parametrize("example", blocks(MACHINES, "toml"))

@@ -24,7 +24,7 @@ def catalogue(*, file: Path | None = None) -> None:
         entries = read_catalogue(file)
     except ValueError as error:
         raise ModelError(f"{str(error).rstrip('.')}.") from None
-    headings = ("profile", "width in mm", "thickness", "EA in N", "EI in N·m²", "kg/m", "groove")
+    headings = ("profile", "width mm", "thickness mm", "EA N", "EI N·m²", "kg/m", "groove")
     show_table("Catalogue", headings, [_row(name, entry) for name, entry in entries.items()])
     for name, entry in entries.items():
         generic = " Generic values." if entry.generic else ""
@@ -34,12 +34,12 @@ def catalogue(*, file: Path | None = None) -> None:
 def _row(name: str, entry: "Entry") -> tuple[str, ...]:
     from math import degrees
 
-    of = "a rib" if entry.sold_by == "ribs" else "the belt"
+    of = " each" if entry.sold_by == "ribs" else ""
     return (
         name,
-        f"{1e3 * entry.width:.3g}, {of}",
+        f"{1e3 * entry.width:.3g}{of}",
         f"{1e3 * entry.thickness:.3g}",
-        f"{entry.axial_stiffness:.5g}",
+        f"{entry.axial_stiffness:.6g}",
         f"{entry.bending_stiffness:.3g}",
         f"{entry.mass_per_length:.3g}",
         "flat" if entry.wedge_angle is None else f"{degrees(entry.wedge_angle):.3g}°",

@@ -54,7 +54,15 @@ def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
         ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
         ("tension at rest", f"about {installation.tension:.4g} N{_lost(installation)}"),
+        *_taken_up(drive),
     ]
+
+
+def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
+    """Where fixed tensioners have put their pulleys: what a user asked for who gave length and tension."""
+    fixed = [tensioner for tensioner in drive.tensioners if tensioner.kind == "fixed"]
+    places = [(one.pulley, drive.pulleys[drive.carried(one)].center) for one in fixed]
+    return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
 
 
 def _lost(installation: "Installation") -> str:

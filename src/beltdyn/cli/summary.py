@@ -34,7 +34,7 @@ def show_summary(run: "Run") -> None:
         [_span(span) for span in summary.spans],
     )
     show()
-    show_facts([*_power(summary), *_solver(summary)])
+    show_facts([*_power(summary), *_tensioners(summary), *_solver(summary)])
     show_warnings(summary.warnings)
 
 
@@ -84,6 +84,17 @@ def _power(summary: "Summary") -> list[tuple[str, str]]:
         ("efficiency", efficiency),
         ("losses", f"{_number(balance.lost, 3)} W: {losses}" if losses else "none"),
     ]
+
+
+def _tensioners(summary: "Summary") -> list[tuple[str, str]]:
+    """Where tensioners stand, and how far they move while they do."""
+    facts = []
+    for one in summary.tensioners:
+        size, unit = (math.degrees, "°") if one.rotary else (lambda value: 1e3 * value, " mm")
+        place, lowest, highest = (f"{size(value):.4g}{unit}" for value in (one.position, one.lowest, one.highest))
+        travel = f", from {lowest} to {highest}" if one.highest > one.lowest else ""
+        facts.append((f"tensioner of {one.name}", f"at {place}{travel}"))
+    return facts
 
 
 def _solver(summary: "Summary") -> list[tuple[str, str]]:

@@ -1,5 +1,6 @@
 """`beltdyn sweep`."""
 
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -106,6 +107,8 @@ def _numbers(start: str, end: str, duration: str) -> tuple[float, float, float]:
         try:
             plain = _plain(text)
             numbers.append(to_si(text, unit) if plain is None else plain)
+            if not isfinite(numbers[-1]):
+                raise ValueError("must be a finite number")
         except ValueError as error:
             raise ModelError(f'{option} "{text}" {error}.') from error
     return numbers[0], numbers[1], numbers[2]

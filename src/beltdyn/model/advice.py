@@ -13,6 +13,8 @@ from beltdyn.theory.stretch import stretch
 _MOST_TENSION_LOST = 0.02
 _DEEPEST_PENETRATION = 0.1
 _LARGEST_STRAIN = 0.1
+_SLOWEST_CREEP = 1e-4
+"""Least slip velocity for full friction that does not make time steps much shorter, m/s."""
 
 
 def advise(drive: Drive, installation: Installation) -> list[str]:
@@ -34,6 +36,7 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
         *_tension_warnings(drive, installation),
         *_tensioner_warnings(drive, installation),
         *_penetration_warnings(drive, installation),
+        *_creep_warnings(drive, installation),
         *_mesh_warnings(drive, installation),
     ]
 
@@ -74,10 +77,14 @@ def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:
     moving = [tensioner for tensioner in drive.tensioners if isinstance(tensioner, MovingTensioner)]
     for tensioner, position in zip(moving, installation.tensioner_positions, strict=True):
         if tensioner.stops is not None and not tensioner.stops[0] < position < tensioner.stops[1]:
-            which, remedy = ("upper", "shorten") if position > 0 else ("lower", "lengthen")
+            which, remedy = (
+                ("upper", "shorten the belt or raise its installed tension, or lower the preload")
+                if position > 0
+                else ("lower", "lengthen the belt or lower its installed tension, or raise the preload")
+            )
             warnings.append(
                 f'the tensioner of "{tensioner.pulley}" rests on its {which} stop, where its spring does not set the '
-                f"tension: {remedy} the belt, or move the stops."
+                f"tension: {remedy}, or move the stops."
             )
     return warnings
 
@@ -91,6 +98,22 @@ def _penetration_warnings(drive: Drive, installation: Installation) -> list[str]
                 f"more than {_DEEPEST_PENETRATION:.0%}: raise contact.stiffness."
             )
     return warnings
+
+
+def _creep_warnings(drive: Drive, installation: Installation) -> list[str]:
+    """Compare the slip velocity at which friction is fully used with one that time steps can follow."""
+    fastest, slope = drive.contact.creep_velocity, drive.contact.creep_rate_factor
+    remedy = f"raise contact.creep_velocity to {_SLOWEST_CREEP:g} m/s"
+    if slope is not None:
+        strongest = float(np.max(drive.frictions * installation.tension / drive.radii))
+        most = strongest / _SLOWEST_CREEP
+        fastest, remedy = strongest / slope, f"lower contact.creep_rate_factor below {most:.2g}"
+    if fastest is None or not 0 < fastest < _SLOWEST_CREEP:
+        return []
+    return [
+        f"friction is fully used at a slip velocity of {fastest:.1e} m/s, less than {_SLOWEST_CREEP:g} m/s: time steps "
+        f"follow it, and a run takes long. For a fast one, {remedy}."
+    ]
 
 
 def _mesh_warnings(drive: Drive, installation: Installation) -> list[str]:

@@ -7,7 +7,7 @@ from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
 from beltdyn.model.belt_form import describe_forms, to_material
 from beltdyn.model.part import Part, computed
-from beltdyn.model.quantity import Angle, Count, Density, Force, Length, Ratio, Stress, Time
+from beltdyn.model.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
 
 _LINKS = {"truss": 1, "three-node-beam": 2}
 _GROUP = 3
@@ -46,7 +46,7 @@ class Belt(Part):
     back_offset: Length = Field(
         0.0, ge=0, description="the distance from the back surface to the line that carries the tension, in m"
     )
-    crossed: bool = Field(False, description="whether spans of the belt cross each other")
+    crossed: Flag = Field(False, description="whether spans of the belt cross each other")
     wedge_angle: Angle | None = Field(
         None,
         gt=0,

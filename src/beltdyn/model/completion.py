@@ -10,7 +10,14 @@ from beltdyn.model.layout import lay_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.rest import Carrier, Rest, carriers_of, come_to_rest
-from beltdyn.model.tensioner import AnyTensioner, FixedTensioner, MovingTensioner, check_tensioners, path_gradient
+from beltdyn.model.tensioner import (
+    LEAST_LEVERAGE,
+    AnyTensioner,
+    FixedTensioner,
+    MovingTensioner,
+    check_tensioners,
+    path_gradient,
+)
 
 _LARGEST_STRAIN = 0.5
 _MOST_STEPS = 60
@@ -67,6 +74,7 @@ def complete(
     path = lay_path(given.pulleys, belt)
     check_tensioners(tensioners, given.pulleys, path)
     if belt.length is not None and belt.installed_tension is not None:
+        _check_take_up_is_open(tensioners)
         given = _tightened(given, path)
         path = lay_path(given.pulleys, belt)
     carriers = given.carriers(path)
@@ -107,32 +115,44 @@ def _shifted(given: _Open, tensioner: FixedTensioner, distance: float) -> _Open:
     )
 
 
-def _tightened(given: _Open, path: Path) -> _Open:
-    """The same with the pulley of the one fixed tensioner where the belt of given length has the given tension."""
-    from scipy.optimize import brentq
-
-    fixed = [tensioner for tensioner in given.tensioners if isinstance(tensioner, FixedTensioner)]
+def _check_take_up_is_open(tensioners: tuple[AnyTensioner, ...]) -> None:
+    """Refuse a belt of given length and tension without the one fixed tensioner whose take-up is to be computed."""
+    fixed = [tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner)]
     if len(fixed) != 1:
         raise ValueError(
             f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners: one of them "
             'takes up what is missing. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
         )
+    if fixed[0].take_up != 0:
+        raise ValueError(
+            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, which belt.length and '
+            "belt.installed_tension determine. Remove one of the three"
+        )
+
+
+def _tightened(given: _Open, path: Path) -> _Open:
+    """The same with the pulley of the one fixed tensioner where the belt of given length has the given tension."""
+    from scipy.optimize import brentq
+
+    fixed = next(tensioner for tensioner in given.tensioners if isinstance(tensioner, FixedTensioner))
 
     def excess(distance: float) -> float:
-        return _shifted(given, fixed[0], distance).rest().length - given.belt.length
+        return _shifted(given, fixed, distance).rest().length - given.belt.length
 
-    leverage = float(path_gradient(path, given.names.index(fixed[0].pulley))[1] @ np.array(fixed[0].direction))
+    leverage = float(path_gradient(path, given.names.index(fixed.pulley))[1] @ np.array(fixed.direction))
+    if abs(leverage) < LEAST_LEVERAGE:
+        raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
     here, first = 0.0, excess(0.0)
     step = -float(np.sign(leverage * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
     for _ in range(_MOST_STEPS):
         try:
             if excess(here + step) * first <= 0:
                 found = float(brentq(excess, here, here + step, xtol=1e-15))
-                return _shifted(given, fixed[0], found)
+                return _shifted(given, fixed, found)
         except ValueError as error:
-            raise _no_take_up(given, fixed[0], str(error)) from error
+            raise _no_take_up(given, fixed, str(error)) from error
         here, step = here + step, 1.3 * step
-    raise _no_take_up(given, fixed[0], f"not within {abs(here):.3g} m")
+    raise _no_take_up(given, fixed, f"not within {abs(here):.3g} m")
 
 
 def _no_take_up(given: _Open, tensioner: FixedTensioner, reason: str) -> ValueError:
@@ -151,7 +171,7 @@ def _check_rest(given: _Open, rest: Rest) -> None:
             f"than {_LARGEST_STRAIN:.0%} of its length. Lower it, or make belt and contact stiffer"
         )
     moving = any(isinstance(tensioner, MovingTensioner) for tensioner in given.tensioners)
-    _check_length(length, path, relaxed=moving)
+    _check_length(length, path, tensioned=moving)
     if moving:
         _check_place(given, rest.path)
     if not rest.tension > 0:
@@ -176,16 +196,17 @@ def _check_place(given: _Open, path: Path) -> None:
         ) from error
 
 
-def _check_length(length: float, path: float, relaxed: bool = False) -> None:
+def _check_length(length: float, path: float, tensioned: bool = False) -> None:
+    """Refuse a belt that is too long or too short for its path, with moving tensioners where they stand."""
+    where = "the path around the pulleys" + ", where its tensioners put them" * tensioned
     if length >= path:
-        where = "the path around the pulleys" + " with its tensioners relaxed" * relaxed
         raise ValueError(
-            f"belt.length = {length:.5g} m is longer than {where} ({path:.5g} m): "
-            "the belt would hang slack. Shorten it, or move the pulleys apart."
+            f"belt.length = {length:.5g} m is longer than {where} ({path:.5g} m): the belt would hang slack. "
+            f"Shorten it, or {'raise the preload' if tensioned else 'move the pulleys apart'}."
         )
     if path / length - 1 > _LARGEST_STRAIN:
         raise ValueError(
-            f"belt.length = {length:.5g} m is too short for the path around the pulleys ({path:.5g} m): "
+            f"belt.length = {length:.5g} m is too short for {where} ({path:.5g} m): "
             f"it would be stretched by {path / length - 1:.0%}, and {_LARGEST_STRAIN:.0%} is the limit. "
-            "Lengthen it, or move the pulleys together."
+            f"Lengthen it, or {'lower the preload' if tensioned else 'move the pulleys together'}."
         )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Strict
 
 if TYPE_CHECKING:
     import pint
@@ -142,3 +142,4 @@ LineDamping = Annotated[float, quantity("N*s/m^2")]
 CreepRate = Annotated[float, quantity("kg/(m*s)")]
 Ratio = Annotated[float, quantity("")]
 Count = Annotated[int, BeforeValidator(_read_count, json_schema_input_type=int)]
+Flag = Annotated[bool, Strict()]

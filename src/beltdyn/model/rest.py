@@ -226,23 +226,32 @@ def _balance(
         there = moved(path, carriers, changed)
         if abs(there.total_turning - path.total_turning) > 1.0:
             raise ValueError("the belt leaves a pulley")
+        if _covers_another(there, one.pulley):
+            raise ValueError("the pulley meets another one")
         leverage = path_gradient(there, one.pulley)[1] @ one.place(position)[1]
         return one.force(position) - settle(there, belt, contact).tension * float(leverage)
 
     start = float(positions[number])
-    reach = float(np.linalg.norm(one.place(start)[1]))
+    longest = float(np.abs(path.radii).min() / np.linalg.norm(one.place(start)[1]))
     first = excess(start)
     if first == 0.0:
         return start
-    step, here = float(np.copysign(1e-3 * np.abs(path.radii).min() / reach, first)), start
+    step, here = float(np.copysign(1e-3 * longest, first)), start
     for _ in range(_MOST_STEPS):
         try:
             if excess(here + step) * first <= 0:
                 return float(brentq(excess, here, here + step, xtol=1e-15, rtol=4 * np.finfo(float).eps))
         except ValueError:
             break
-        here, step = here + step, _GROWTH * step
+        here, step = here + step, float(np.clip(_GROWTH * step, -longest, longest))
     raise ValueError(_no_balance(one, first))
+
+
+def _covers_another(path: Path, pulley: int) -> bool:
+    """Tell whether a pulley and another one cover the center of one of them: neither can pass the other."""
+    distances = np.linalg.norm(np.delete(path.centers, pulley, axis=0) - path.centers[pulley], axis=1)
+    radii = np.abs(path.radii)
+    return bool(np.any(distances < np.maximum(np.delete(radii, pulley), radii[pulley])))
 
 
 def _no_balance(one: Carrier, excess: float) -> str:

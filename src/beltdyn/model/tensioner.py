@@ -29,7 +29,7 @@ from beltdyn.model.quantity import (
 
 FloatArray = NDArray[np.float64]
 _ROUNDING = 4 * np.finfo(float).eps
-_LEAST_LEVERAGE = 1e-3
+LEAST_LEVERAGE = 1e-3
 """Smallest part of a unit motion of the pulley's center that must lengthen the path."""
 
 
@@ -44,6 +44,7 @@ def _unit(vector: tuple[float, float]) -> tuple[float, float]:
 
 
 Direction = Annotated[tuple[Ratio, Ratio], AfterValidator(_unit)]
+ArmAngle = Annotated[Angle, Field(ge=-np.pi, le=np.pi)]
 
 
 class _Carrier(Part):
@@ -75,6 +76,10 @@ class MovingTensioner(_Carrier):
     @model_validator(mode="after")
     def _stops_hold_the_nominal_place(self) -> Self:
         if self.stops is None:
+            if self.stop_stiffness is not None or self.stop_damping != 0:
+                raise ValueError(
+                    "stops is missing: stop_stiffness and stop_damping belong to stops. Give stops = [lower, upper]"
+                )
             return self
         lower, upper = self.stops
         if not lower <= 0 <= upper or lower == upper:
@@ -142,7 +147,7 @@ class SlidingTensioner(MovingTensioner):
     def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
         """As in the base, along `direction`."""
         found = float(gradient @ np.array(self.direction))
-        if found < _LEAST_LEVERAGE:
+        if found < LEAST_LEVERAGE:
             raise ValueError(
                 f'the tensioner of "{self.pulley}" cannot tension the belt: a metre along its direction lengthens the '
                 f"path by {found:.3g} m. Choose a direction in which the path gets longer"
@@ -174,7 +179,7 @@ class RotaryTensioner(MovingTensioner):
     creep_speed: AngularSpeed = Field(
         0.01, gt=0, description="the speed at which dry friction has reached 76 %, in rad/s"
     )
-    stops: tuple[Angle, Angle] | None = Field(
+    stops: tuple[ArmAngle, ArmAngle] | None = Field(
         None, description="the lower and the upper stop, from the pulley's center the way the path gets longer, in rad"
     )
     stop_stiffness: TorsionalStiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N*m/rad")
@@ -193,7 +198,7 @@ class RotaryTensioner(MovingTensioner):
                 f'the pivot of the tensioner of "{self.pulley}" is the center of the pulley. Move one of them'
             )
         found = float(gradient @ np.array([-arm[1], arm[0]])) / length
-        if abs(found) < _LEAST_LEVERAGE:
+        if abs(found) < LEAST_LEVERAGE:
             raise ValueError(
                 f'the arm of the tensioner of "{self.pulley}" cannot tension the belt: turning it hardly changes the '
                 "length of the path. Move its pivot"

@@ -99,8 +99,9 @@ def save_all(
     if unknown:
         raise ModelError(f"figure {unknown[0]!r} is not known. Choose out of {', '.join(FIGURES)}.")
     number = None if pulley is None else derived.pulley_number(run, pulley)
+    drawn = {name: _figure(run, name, number, variable) for name in chosen}
     folder = make_folder(Path(folder))
-    return [_save(_figure(run, name, number, variable), folder / f"{name}.png") for name in chosen]
+    return [_save(figure, folder / f"{name}.png") for name, figure in drawn.items()]
 
 
 def _essential(run: Run) -> tuple[str, ...]:

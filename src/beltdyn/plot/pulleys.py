@@ -40,16 +40,18 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
         If the run holds no output.
     """
     parts = derived.slips(run)
-    ax = axes_or_new(ax)
+    ax, notes = axes_or_new(ax), list[str]()
     if vibrates(parts["slip"]).any():
         parts = parts.map(lambda part: derived.turn_means(run, part), keep_attrs=True)
-        ax.set_title(f"means over a turn of {run.drive.pulleys[0].name}")
+        notes.append(f"means over a turn of {run.drive.pulleys[0].name}")
     lines(parts["slip"], ax)
     if bool((np.abs(parts["sliding"]) > 0.0).any()):
         for number in range(parts.sizes["pulley"]):
             creep = parts["creep"][:, number]
             ax.plot(creep["time"], creep, color=color(number), linewidth=0.8, linestyle=":")
-        ax.set_title("dotted: creep; the rest is sliding of the whole arc", loc="right", fontsize=9)
+        notes.append("dotted: creep; the rest is sliding of the whole arc")
+    if notes:
+        ax.annotate("\n".join(notes), (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
     _limit(ax, parts["slip"].values)
     return ax
 

@@ -2,7 +2,7 @@
 
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.layout import Layout
-from beltdyn.results.means import PulleySummary, SpanSummary
+from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
 from beltdyn.results.resolution import Resolution
@@ -27,6 +27,7 @@ __all__ = [
     "SpanSummary",
     "Status",
     "Summary",
+    "TensionerSummary",
     "Variable",
     "open_run",
     "power_balance",

@@ -98,7 +98,9 @@ def _gross_slip(dataset: Recorded, drive: Drive) -> Iterator[str]:
     for pulley in pulleys:
         sliding = abs(pulley.sliding_speed)
         if sliding > SLIDING_LIMIT * rims[0]:
-            share = f", {sliding / rims[0]:.0%} of the rim's speed of {pulleys[0].name}" if rims[0] > 0.0 else ""
+            part = sliding / rims[0] if rims[0] > 0.0 else np.inf
+            share = f", {part:.{0 if part > 0.1 else 1}%} of the rim's speed of {pulleys[0].name}"
+            share = share if np.isfinite(part) else ""
             yield f"{pulley.name} slides through: the whole arc slides, at {sliding:.3g} m/s{share}. {remedy}"
         elif 0.0 < pulley.margin < MARGIN_LIMIT and rims[0] > 0.0:
             slips = f" slips {pulley.slip:.1%}," if pulley.slip != 0.0 else ":"
@@ -132,9 +134,10 @@ def _stopped_tensioners(dataset: Recorded, drive: Drive) -> Iterator[str]:
         position, (lower, upper) = np.asarray(dataset["tensioner_position"])[:, number], tensioner.stops
         for name, on in (("lower", position <= lower), ("upper", position >= upper)):
             if on[-1]:
-                since = float(dataset["time"][len(on) - int(np.argmin(on[::-1])) if not on.all() else 0])
+                first = float(dataset["time"][len(on) - int(np.argmin(on[::-1])) if not on.all() else 0])
+                since = f" since t = {first:.4g} s" if len(on) > 1 else ""
                 yield (
-                    f"the tensioner of {tensioner.pulley} is on its {name} stop since t = {since:.4g} s. "
+                    f"the tensioner of {tensioner.pulley} is on its {name} stop{since}. "
                     "It no longer keeps the tension: change the length of the belt, or the stops."
                 )
 
@@ -146,7 +149,7 @@ def _unresolved(resolution: Resolution, drive: Drive) -> Iterator[str]:
     said = []
     if unresolved:
         ripple = f" (they ripple by {worst:.0%} of their mean)" if worst > FORCE_LIMIT else ""
-        said.append(f"the contact forces along {' and '.join(unresolved)}{ripple}")
+        said.append(f"the contact forces along {_enumerate(unresolved)}{ripple}")
     if not resolution.resolves_tension:
         said.append(f"the tension (up to {resolution.tension_error:.0%} too high)")
     if said:
@@ -154,3 +157,8 @@ def _unresolved(resolution: Resolution, drive: Drive) -> Iterator[str]:
             f"the mesh does not resolve {', and '.join(said)}. Speeds converge earlier. "
             f"Set belt.elements = {resolution.elements} or more, in place of {drive.belt.elements}."
         )
+
+
+def _enumerate(words: list[str]) -> str:
+    """Write "a", "a and b", or "a, b and c"."""
+    return " and ".join([*([", ".join(words[:-1])] if words[1:] else []), words[-1]])

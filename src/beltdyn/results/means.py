@@ -77,6 +77,27 @@ class PulleySummary:
 
 
 @dataclass(frozen=True, slots=True)
+class TensionerSummary:
+    """Where a tensioner stands over the end of a run.
+
+    Attributes
+    ----------
+    name : str
+        Name of the pulley that it carries.
+    rotary : bool
+        Whether it turns, so that its positions are angles.
+    position, lowest, highest : float
+        Mean, least and largest position, m or rad.
+    """
+
+    name: str
+    rotary: bool
+    position: float
+    lowest: float
+    highest: float
+
+
+@dataclass(frozen=True, slots=True)
 class SpanSummary:
     """One span over the end of a run.
 
@@ -143,6 +164,32 @@ def pulley_means(recorded: Recorded, drive: Drive) -> tuple[PulleySummary, ...]:
     )
     return tuple(
         PulleySummary(name, *map(float, row)) for name, *row in zip(names(recorded, "pulley"), *columns, strict=True)
+    )
+
+
+def tensioner_means(recorded: Recorded, drive: Drive) -> tuple[TensionerSummary, ...]:
+    """Sum up the tensioners that move over the end of a run.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded, with at least one output.
+    drive : Drive
+        The drive.
+
+    Returns
+    -------
+    tuple of TensionerSummary
+        One for each tensioner that moves.
+    """
+    moving = [one for one in drive.tensioners if one.kind != "fixed"]
+    if not moving:
+        return ()
+    place = np.asarray(recorded["tensioner_position"][first_of_window(np.asarray(recorded["time"])) :])
+    columns = (place.mean(axis=0), place.min(axis=0), place.max(axis=0))
+    return tuple(
+        TensionerSummary(one.pulley, one.kind == "rotary", *map(float, row))
+        for one, *row in zip(moving, *columns, strict=True)
     )
 
 

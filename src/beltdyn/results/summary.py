@@ -5,7 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.results.balance import Balance, power_balance
-from beltdyn.results.means import PulleySummary, SpanSummary, first_of_window, pulley_means, span_means
+from beltdyn.results.means import (
+    PulleySummary,
+    SpanSummary,
+    TensionerSummary,
+    first_of_window,
+    pulley_means,
+    span_means,
+    tensioner_means,
+)
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
@@ -30,6 +38,8 @@ class Summary:
         One for each pulley.
     spans : tuple of SpanSummary
         One for each span.
+    tensioners : tuple of TensionerSummary
+        One for each tensioner that moves.
     balance : Balance
         Mean powers of shafts and losses by cause, and with them the efficiency.
     resolution : Resolution
@@ -56,6 +66,7 @@ class Summary:
     outputs: int
     pulleys: tuple[PulleySummary, ...]
     spans: tuple[SpanSummary, ...]
+    tensioners: tuple[TensionerSummary, ...]
     balance: Balance
     resolution: Resolution
     energy_closure: float
@@ -107,6 +118,7 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         outputs=len(time),
         pulleys=pulley_means(recorded, run.drive),
         spans=span_means(recorded),
+        tensioners=tensioner_means(recorded, run.drive),
         balance=power_balance(recorded, first),
         resolution=run.resolution,
         energy_closure=float(recorded["energy_closure"][-1]),

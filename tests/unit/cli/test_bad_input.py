@@ -62,6 +62,19 @@ CASES = (
     Case(
         "crossed without crossing", BELT, f"{BELT}\ncrossed = true", ("no spans cross each other", 'side = "outside"')
     ),
+    Case(
+        "negative penetration",
+        "stiffness = 1e7",
+        'allowed_penetration = "-20 um"',
+        ("contact.allowed_penetration", "must be greater than 0"),
+    ),
+    Case(
+        "moment arm",
+        "damping = 10.0",
+        'moment_arm = "rims"',
+        ("contact.moment_arm", '"rims"', 'Did you mean "rim"?'),
+    ),
+    Case("crossed by a number", BELT, f"{BELT}\ncrossed = 1", ("belt.crossed = 1 must be true or false",)),
     Case("negative offset", BELT, f"{BELT}\npitch_offset = -1e-3", ("belt.pitch_offset = -0.001", "at least 0")),
     Case("tension in kg", BELT, 'installed_tension = "3 kg"', ("belt.installed_tension", "must be in units of N")),
     Case("missing radius", DRIVEN, "center = [0.191441, 0.0]", ("pulley[driven].radius is missing",)),
@@ -232,6 +245,18 @@ CASES = (
         'kind = "cosine_ramp", start = 0.05, end = 0.6',
         'kind = "cosine_ramp_published", start = -2, end = -1',
         ("pulley[driven].torque", "later than time zero"),
+    ),
+    Case(
+        "step without time",
+        TORQUE,
+        'torque = { kind = "step", value = 1.0 }',
+        ("pulley[driven].torque.time is missing", "the instant of the step"),
+    ),
+    Case(
+        "step from a speed",
+        TORQUE,
+        'torque = { kind = "step", time = 0.0, before = "1 rpm", value = 1.0 }',
+        ("pulley[driven].torque.before", 'units of N*m, not "rpm"', "Give the value before the step"),
     ),
     Case(
         "rare outputs",

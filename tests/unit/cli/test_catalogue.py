@@ -23,7 +23,7 @@ def test_lists_ones_own(run_main: RunMain, tmp_path: Path) -> None:
     assert code == 0
     assert "\nmine: Measured belt.\n  our rig" in output
     (row,) = [line for line in output.splitlines() if line.startswith("mine ")]
-    assert row.split() == ["mine", "4,", "a", "rib", "5", "21000", "0.001", "0.02", "36°"]
+    assert row.split() == ["mine", "4", "each", "5", "21000", "0.001", "0.02", "36°"]
 
 
 def test_a_bad_file_is_bad_input(run_main: RunMain, tmp_path: Path) -> None:

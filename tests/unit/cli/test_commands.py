@@ -100,6 +100,18 @@ def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path,
     assert picture.stat().st_size > 5_000
 
 
+def test_check_tells_where_a_take_up_puts_its_pulley(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
+    fixed = '\n[[tensioner]]\nkind = "fixed"\npulley = "driven"\ndirection = [1, 0]\n'
+    text = drive_text.replace("length = 1.2727", "length = 1.2727\ninstalled_tension = 50") + fixed
+    drive_file.write_text(text, encoding="utf-8")
+    code, output, _ = run_main(["check", str(drive_file)])
+    assert code == 0
+    x, y = load(drive_file).pulleys[1].center
+    assert x > 0.1920
+    assert f"center of driven [{x:.5g}, {y:.5g}] m, after its take-up" in " ".join(output.split())
+    assert "tension at rest about 50 N" in " ".join(output.split())
+
+
 def test_new_writes_a_drive_whose_only_warning_is_the_tension_lost(run_main: RunMain, tmp_path: Path) -> None:
     file = tmp_path / "folder" / "mine.toml"
     code, output, _ = run_main(["new", str(file)])

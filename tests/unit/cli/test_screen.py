@@ -10,7 +10,7 @@ import pytest
 from beltdyn.cli.console import show_table
 from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.cli.summary import show_summary
-from beltdyn.results import Run, summarize
+from beltdyn.results import Run, TensionerSummary, summarize
 from beltdyn.solve.progress import BatchProgress, Progress
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
@@ -32,6 +32,17 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     ):
         assert part in output
     assert "2 s of computing for each simulated second" in output
+
+
+def test_tensioners_stand_in_degrees_or_millimetres(
+    run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    tensioners = (TensionerSummary("idler", True, 0.2, 0.1, 0.3), TensionerSummary("driven", False, *3 * (2e-3,)))
+    summary = replace(summarize(run), tensioners=tensioners)
+    monkeypatch.setattr("beltdyn.results.summarize", lambda _: summary)
+    show_summary(run)
+    output = " ".join(capsys.readouterr().out.split())
+    assert "tensioner of idler at 11.46°, from 5.73° to 17.19° tensioner of driven at 2 mm mesh" in output
 
 
 def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:

@@ -52,6 +52,7 @@ def test_a_sweep_says_which_figures_to_draw(
         ({"--pulley": "driven"}, "pulley = 'driven' turns freely: a sweep prescribes its speed. Choose one of driver."),
         ({"--from": "700 mm"}, '--from "700 mm" must be in units of rad/s, not "mm".'),
         ({"--to": "fast"}, '--to "fast" must be a number in rad/s.'),
+        ({"--from": "nan"}, '--from "nan" must be a finite number.'),
         ({"--duration": "0"}, "duration = 0 s must be above zero"),
         ({"--to": "-600"}, "no run-up: the speeds must differ and have one sign"),
         ({"--to": "700 rpm"}, "no run-up: the speeds must differ and have one sign"),

@@ -178,7 +178,7 @@ def test_span_frequency_of_a_string_and_of_a_beam(make_drive: MakeDrive) -> None
             "serpentine",
             {"length": 3.0},
             [ROTARY],
-            ("length = 3 m is longer", "with its tensioners relaxed", "Shorten it"),
+            ("length = 3 m is longer", "where its tensioners put them", "Shorten it, or raise the preload"),
         ),
         (
             "flat",
@@ -187,6 +187,7 @@ def test_span_frequency_of_a_string_and_of_a_beam(make_drive: MakeDrive) -> None
             ("only where no belt can run", '"fan" to "motor"', "give stops"),
         ),
         ("flat", {"length": 2.5}, [SLIDING | {"preload": 1e-3, "rate": 0.0}], ("pushes the tensioner", "preload")),
+        ("flat", {"length": 2.5}, [SLIDING | {"preload": -50.0, "rate": 0.0}], ("pushes the tensioner", "preload")),
         ("flat", {}, [SLIDING | {"pulley": "idle"}], ('pulley = "idle" is not the name', "motor, idler, fan")),
     ],
 )

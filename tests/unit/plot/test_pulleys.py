@@ -30,7 +30,7 @@ def test_slip_that_slides_shows_its_creep(make_run: MakeRun, run: Run, ax: Axes)
     slipping = make_run(slip_velocity=np.where(touched == 1, 0.4, 0.0))
     plot.slip(slipping, ax)
     np.testing.assert_array_equal(ax.lines[3].get_ydata(), slips(slipping)["creep"][:, 1])
-    assert "dotted: creep" in ax.get_title(loc="right")
+    assert "dotted: creep" in ax.texts[0].get_text()
 
 
 def test_margins_are_cut_off_and_gross_slip_is_marked(run: Run, ax: Axes) -> None:

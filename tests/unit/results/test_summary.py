@@ -1,11 +1,13 @@
 import math
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run, summarize
+from beltdyn.results.means import tensioner_means
 
 
 def test_means_are_taken_over_the_last_tenth(make_run: Callable[..., Run]) -> None:
@@ -67,6 +69,20 @@ def test_spans_and_solver(run: Run) -> None:
     assert (summary.steps, summary.newton_iterations, summary.real_time_factor) == (1200, 4900, 2.0)
     assert summary.energy_closure == 1e-4
     assert summary.warnings == tuple(run.warnings)
+
+
+def test_tensioners_that_move() -> None:
+    """Over the last tenth of the time; one that is fixed has no place."""
+    kinds = [("fixed", "driver"), ("rotary", "idler"), ("sliding", "driven")]
+    drive = SimpleNamespace(tensioners=[SimpleNamespace(kind=kind, pulley=pulley) for kind, pulley in kinds])
+    position = np.zeros((11, 2))
+    position[-2:] = [[0.1, 0.004], [0.3, 0.002]]
+    dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": position}
+    arm, slide = tensioner_means(dataset, drive)  # type: ignore[arg-type]
+    assert (arm.name, arm.rotary, slide.name, slide.rotary) == ("idler", True, "driven", False)
+    assert (arm.position, arm.lowest, arm.highest) == pytest.approx((0.2, 0.1, 0.3))
+    assert (slide.position, slide.lowest, slide.highest) == pytest.approx((0.003, 0.002, 0.004))
+    assert tensioner_means(dataset, SimpleNamespace(tensioners=[])) == ()  # type: ignore[arg-type]
 
 
 def test_single_output_at_rest(make_run: Callable[..., Run]) -> None:
