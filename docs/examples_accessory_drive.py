@@ -1,21 +1,16 @@
-"""Make the pictures and numbers of docs/examples/accessory_drive.md: `python docs/examples_accessory_drive.py`.
+"""What docs/examples/accessory_drive.md says in numbers, as `docs/example_numbers.py` has it of the other examples."""
 
-It takes about a minute: the drive itself, without its decoupler, without its tensioner, and run up to 2400 rpm.
-"""
-
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
+from example_numbers import Number
 from numpy.typing import NDArray
-from PIL import Image
 from scipy.linalg import eigh
+from scipy.optimize import curve_fit
 
 import beltdyn as bd
-from beltdyn.cli.summary import show_summary
 from beltdyn.cli.sweep import run_up
 from beltdyn.model import install
 from beltdyn.plot.style import new_figure, styled
@@ -23,16 +18,11 @@ from beltdyn.plot.sweep import orders
 
 FloatArray = NDArray[np.float64]
 
-NAME = "accessory_drive"
-PICTURES = Path(__file__).parent / "_static" / "examples"
-FIGURES = ("speeds", "span_tensions", "tensioners", "slip", "hub_loads")
 TURN = 0.075
 """A turn of the crank at idle, s."""
 OFF, ON = (1.2 - 3 * TURN, 1.2), (2.0 - 4 * TURN, 2.0)
 """Whole turns before and after the compressor is switched on, s."""
 RPM = np.pi / 30.0
-COLORS = 64
-"""Colors of a picture, which keep it small."""
 
 
 def chain_frequencies(drive: bd.Drive) -> FloatArray:
@@ -91,26 +81,66 @@ def slack(run: bd.Run, window: tuple[float, float]) -> float:
     return float(run.dataset["span_tension"].sel(time=slice(*window))[:, 0].mean())
 
 
-def numbers(run: bd.Run) -> Iterator[tuple[str, float, float]]:
-    """What it is, by hand, and of the run."""
+def rotor_swing(run: bd.Run) -> tuple[float, float]:
+    """Frequency, Hz, and decay, 1/s, of the rotor on its spring when the clutch grips again.
+
+    They are fitted to its speed together with the crank's harmonics.
+    """
+
+    def model(time: FloatArray, frequency: float, decay: float, *amplitudes: float) -> FloatArray:
+        a, b, c, p2, q2, p4, q4 = amplitudes
+        own, fired = 2.0 * np.pi * frequency * time, 2.0 * np.pi * 2.0 / TURN * time
+        swing = np.exp(-decay * time) * (a * np.cos(own) + b * np.sin(own)) + c
+        second = p2 * np.cos(fired) + q2 * np.sin(fired)
+        return np.asarray(swing + second + p4 * np.cos(2.0 * fired) + q4 * np.sin(2.0 * fired))
+
+    swinging = run.dataset["shaft_speed"].sel(time=slice(0.75, 1.2), pulley="alternator")
+    start = (chain_frequencies(run.drive)[0], 3.0, 1.0, 1.0, 230.0, 0.1, 0.1, 0.1, 0.1)
+    found = curve_fit(model, swinging["time"].values - 0.75, swinging.values, start)[0]
+    return float(found[0]), float(found[1])
+
+
+def numbers(run: bd.Run) -> Iterator[Number]:
+    """Statics of the belt at idle, and the rotor of the alternator on its own."""
     drive, dataset = run.drive, run.dataset
     compressor, alternator = number(drive, "compressor"), number(drive, "alternator")
     on = dataset[["span_tension", "pulley_center", "hub_force"]].sel(time=slice(*ON)).mean("time")
     tension = on["span_tension"].values
-    step = drive.pulleys[compressor].load[0].constant / drive.radii[compressor]
-    yield "compressor: tension before less behind it, N", step, tension[compressor] - tension[compressor - 1]
+    step = float(drive.pulleys[compressor].load[0].constant / drive.radii[compressor])
+    found = float(tension[compressor] - tension[compressor - 1])
+    yield Number("compressor: tension before less behind it, N", step, found, 0.01 * step)
     cleared = tension - drive.belt.mass_per_length * float(dataset["belt_speed"][-1].mean()) ** 2
     wraps = replace(drive.path, centers=on["pulley_center"].values).wrap_angles
     for pulley in (alternator, 0):
         behind, before = cleared[pulley], cleared[pulley - 1]
-        load = np.sqrt(behind**2 + before**2 - 2.0 * behind * before * np.cos(wraps[pulley]))
-        yield f"{drive.pulleys[pulley].name}: hub load, N", load, float(np.hypot(*on["hub_force"].values[pulley]))
+        load = float(np.sqrt(behind**2 + before**2 - 2.0 * behind * before * np.cos(wraps[pulley])))
+        found = float(np.hypot(*on["hub_force"].values[pulley]))
+        yield Number(f"{drive.pulleys[pulley].name}: hub load, N", load, found, 0.015 * load)
     falling = dataset.sel(time=slice(0.5, 0.58), pulley="alternator")
     clutch, isolator = drive.pulleys[alternator].hub
-    braking = float(falling["shaft_torque"].mean()) - clutch.drag_torque
-    slowing = float(np.polyfit(falling["time"], falling["shaft_speed"], 1)[0])
-    yield "alternator overruns: its rotor slows down by, rad/s²", braking / (clutch.inertia + isolator.inertia), slowing
-    yield "slack span: compressor on less off, N", 0.0, slack(run, ON) - slack(run, OFF)
+    braking = clutch.drag_torque - float(falling["shaft_torque"].mean())
+    slows, found = (
+        braking / (clutch.inertia + isolator.inertia),
+        -float(np.polyfit(falling["time"], falling["shaft_speed"], 1)[0]),
+    )
+    yield Number("alternator overruns: its rotor slows down by, rad/s²", slows, found, 0.01 * slows)
+    lowest = float(chain_frequencies(drive)[0])
+    yield Number("lowest eigenfrequency with the spring, Hz", lowest, rotor_swing(run)[0], 0.02 * lowest)
+
+
+def study(run: bd.Run, folder: Path) -> Iterator[str]:
+    """Say what decoupler and tensioner are worth, and draw the orders of a run-up."""
+    drive = run.drive
+    yield f"chain of inertias and spans: {', '.join(f'{one:.3g}' for one in chain_frequencies(drive)[:3])} Hz"
+    rigid, fixed = bd.simulate(without_decoupler(drive)), bd.simulate(without_tensioner(drive))
+    for span in ("compressor-crank", "water_pump-alternator"):
+        yield f"{span} swings by {swing(run, span):.4g} N, {swing(rigid, span):.4g} N without decoupler"
+    for name, one in (("with", run), ("without decoupler", rigid), ("without tensioner", fixed)):
+        least = float(one.dataset["span_tension"].min())
+        yield f"{name}: slack span {slack(one, OFF):.4g} N, {slack(one, ON):.4g} N; least tension {least:.4g} N"
+        yield from (f"  {warning}" for warning in one.warnings)
+    raised = bd.simulate(run_up(drive, "crank", 700.0 * RPM, 2400.0 * RPM, 3.0))
+    draw_orders(raised, folder / "orders.png")
 
 
 @styled
@@ -119,36 +149,3 @@ def draw_orders(run: bd.Run, path: Path) -> None:
     figure = new_figure()
     orders(run, "span_tension", "compressor-crank", "crank", figure.add_subplot())
     figure.savefig(path)
-
-
-def main() -> None:
-    """Run, draw and print."""
-    drive = bd.load(str(files("beltdyn").joinpath("examples", f"{NAME}.toml")))
-    PICTURES.mkdir(parents=True, exist_ok=True)
-    bd.plot.save_layout(drive, PICTURES / f"{NAME}_layout.png")
-    run = bd.simulate(drive)
-    for path in bd.plot.save_all(run, PICTURES / NAME, FIGURES):
-        path.rename(PICTURES / f"{NAME}_{path.name}")
-    (PICTURES / NAME).rmdir()
-    show_summary(run)
-    write = sys.stdout.write
-    for what, hand, found in numbers(run):
-        write(f"| {what} | {hand:.4g} | {found:.4g} |\n")
-    write(f"chain of inertias and spans: {', '.join(f'{one:.3g}' for one in chain_frequencies(drive)[:3])} Hz\n")
-    rigid, fixed = bd.simulate(without_decoupler(drive)), bd.simulate(without_tensioner(drive))
-    for span in ("compressor-crank", "water_pump-alternator"):
-        write(f"{span} swings by {swing(run, span):.4g} N, {swing(rigid, span):.4g} N without decoupler\n")
-    for name, one in (("with", run), ("without decoupler", rigid), ("without tensioner", fixed)):
-        least = float(one.dataset["span_tension"].min())
-        write(f"{name}: slack span {slack(one, OFF):.4g} N, {slack(one, ON):.4g} N; least tension {least:.4g} N\n")
-        write("".join(f"  {warning}\n" for warning in one.warnings))
-    raised = bd.simulate(run_up(drive, "crank", 700.0 * RPM, 2400.0 * RPM, 3.0))
-    draw_orders(raised, PICTURES / f"{NAME}_orders.png")
-    for path in PICTURES.glob(f"{NAME}_*.png"):
-        with Image.open(path) as picture:
-            small = picture.convert("RGB").quantize(COLORS)
-        small.save(path, optimize=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,39 +1,74 @@
 """Run the examples, draw the pictures of their pages, and print the numbers: `python docs/make_examples.py [NAME...]`.
 
-Without a name all are run, one after another, in about two minutes.  Pictures go to docs/_static/examples, results into
-a folder that is removed at the end.
+Without a name all are run, one after another, in about four minutes.  Pictures go to docs/_static/examples.
 """
 
 import argparse
-import shutil
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import MappingProxyType
+from typing import NamedTuple
 
-from example_numbers import NUMBERS
+import example_numbers as by_hand
+import examples_accessory_drive as accessory
 from PIL import Image
 
 import beltdyn as bd
 from beltdyn.cli.summary import show_summary
 
 PICTURES = Path(__file__).parent / "_static" / "examples"
-FIGURES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+
+
+class Example(NamedTuple):
+    """What a page shows.
+
+    Attributes
+    ----------
+    figures : tuple of str
+        Those of the run beside the layout, which stands for the example in the gallery.
+    numbers : callable
+        What the page's table says, from the run.
+    study : callable, optional
+        What is run besides: given the run and a folder for figures, it yields lines of numbers.
+    """
+
+    figures: tuple[str, ...]
+    numbers: Callable[[bd.Run], Iterator[by_hand.Number]]
+    study: Callable[[bd.Run, Path], Iterator[str]] = lambda run, folder: iter(())
+
+
+EXAMPLES: Mapping[str, Example] = MappingProxyType(
     {
-        "two_pulley": ("speeds", "span_tensions", "contact_forces"),
-        "unequal_radii": ("speeds", "torques", "slip", "capstan_margins"),
-        "crossed_belt": ("configuration", "speeds", "slip"),
-        "washing_machine": ("speeds", "span_tensions", "capstan_margins"),
-        "flat_belt_idler": ("span_tensions", "contact_pressure", "capstan_margins", "tensioners"),
-        "slip_through": ("speeds", "torques", "capstan_margins", "slip"),
+        "two_pulley": Example(("speeds", "span_tensions", "contact_forces"), by_hand.two_pulley),
+        "unequal_radii": Example(("speeds", "torques", "slip", "capstan_margins"), by_hand.unequal_radii),
+        "crossed_belt": Example(("configuration", "speeds", "slip"), by_hand.crossed_belt_drive),
+        "washing_machine": Example(
+            ("speeds", "span_tensions", "capstan_margins"), by_hand.washing_machine, by_hand.slip_on_a_small_pulley
+        ),
+        "flat_belt_idler": Example(
+            ("span_tensions", "contact_pressure", "capstan_margins", "tensioners"),
+            by_hand.flat_belt_idler,
+            by_hand.worth_of_the_idler,
+        ),
+        "slip_through": Example(("speeds", "torques", "capstan_margins", "slip"), by_hand.slip_through),
+        "accessory_drive": Example(
+            ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study
+        ),
     }
 )
-"""What each page shows beside the layout, which stands for it in the gallery."""
 
-COLORS = 64
-"""Colors of a picture, which keep it small."""
+COLORS = 256
+"""Colors of a picture, which keep it small; Pillow's maximum coverage keeps those of thin lines."""
+
+
+@cache
+def simulated(name: str) -> bd.Run:
+    """Give the run of an example, which is made once."""
+    return bd.simulate(bd.load(str(files("beltdyn").joinpath("examples", f"{name}.toml"))))
 
 
 def make(name: str, folder: Path) -> None:
@@ -46,34 +81,32 @@ def make(name: str, folder: Path) -> None:
     folder
         Where pictures are drawn first.
     """
-    drive = bd.load(str(files("beltdyn").joinpath("examples", f"{name}.toml")))
-    bd.plot.save_layout(drive, folder / "layout.png")
-    run = bd.simulate(drive)
-    bd.plot.save_all(run, folder, FIGURES[name])
-    for figure in ("layout", *FIGURES[name]):
-        with Image.open(folder / f"{figure}.png") as picture:
-            small = picture.convert("RGB").quantize(COLORS)
-        small.save(PICTURES / f"{name}_{figure}.png", optimize=True)
+    example, run = EXAMPLES[name], simulated(name)
+    bd.plot.save_layout(run.drive, folder / "layout.png")
+    bd.plot.save_all(run, folder, example.figures)
     show_summary(run)
-    rows = [(number.what, f"{number.hand:.5g}", f"{number.found:.5g}") for number in NUMBERS[name](run)]
+    rows = [(number.what, f"{number.hand:.5g}", f"{number.found:.5g}") for number in example.numbers(run)]
     lines = [" | ".join(row) for row in (("", "by hand", "run"), ("---", "---", "---"), *rows)]
     sys.stdout.write("".join(f"| {line} |\n" for line in lines))
+    for line in example.study(run, folder):
+        sys.stdout.write(f"{line}\n")
+    for drawn in folder.glob("*.png"):
+        with Image.open(drawn) as picture:
+            small = picture.convert("RGB").quantize(COLORS, Image.Quantize.MAXCOVERAGE, kmeans=1)
+        small.save(PICTURES / f"{name}_{drawn.name}", optimize=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Make the examples that are named, or all."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="examples, by default all")
-    names = parser.parse_args(arguments).names or list(FIGURES)
+    names = parser.parse_args(arguments).names or list(EXAMPLES)
     PICTURES.mkdir(parents=True, exist_ok=True)
-    with TemporaryDirectory() as scratch:
-        for name in names:
-            sys.stdout.write(f"\n{name}\n")
-            sys.stdout.flush()
-            folder = Path(scratch) / name
-            folder.mkdir()
-            make(name, folder)
-            shutil.rmtree(folder)
+    for name in names:
+        sys.stdout.write(f"\n{name}\n")
+        sys.stdout.flush()
+        with TemporaryDirectory() as folder:
+            make(name, Path(folder))
 
 
 if __name__ == "__main__":

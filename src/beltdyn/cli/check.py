@@ -53,7 +53,7 @@ def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]
         ("installed strain", f"{installation.strain:.4%}"),
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
         ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
-        ("tension at rest", f"about {installation.tension:.4g} N{_lost(installation)}"),
+        ("tension at rest", f"about {installation.tension:.4g} N{_lost(drive, installation)}"),
         *_taken_up(drive),
     ]
 
@@ -65,10 +65,11 @@ def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
     return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
 
 
-def _lost(installation: "Installation") -> str:
+def _lost(drive: "Drive", installation: "Installation") -> str:
     if installation.tensioner_positions.size:
         return ", which tensioners set"
-    return f": {1 - installation.tension / installation.laid_tension:.1%} is lost by sinking into the pulleys"
+    asked = ", as asked for" * drive.tension_given
+    return f"{asked}: {1 - installation.tension / installation.laid_tension:.1%} is lost by sinking into the pulleys"
 
 
 def _layers(drive: "Drive", installation: "Installation") -> str:

@@ -1,6 +1,7 @@
 """Warnings about a drive that is valid, but perhaps not meant."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -55,21 +56,42 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
     lost = 1 - installation.tension / installation.laid_tension
     if lost <= _MOST_TENSION_LOST or installation.tensioner_positions.size:
         return []
+    tension, laid = installation.tension, installation.laid_tension
+    if not drive.tension_given:
+        return [
+            f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
+            f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}, or count on {tension:.4g} N."
+        ]
+    shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt.length
     return [
-        f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
-        f"raise contact.stiffness to {_stiffness_needed(drive, installation):.1e} N/m^2 or more, or count on "
-        f"{installation.tension:.4g} N."
+        f"the belt is {shorter:.1e} m shorter than hard pulleys would need for {tension:.4g} N, since sinking in takes "
+        f"{lost:.1%} of what it is laid with, more than {_MOST_TENSION_LOST:.0%}: where its length matters, "
+        f"{_remedy(drive, installation, tension, tension / (1 - _MOST_TENSION_LOST))}."
     ]
 
 
-def _stiffness_needed(drive: Drive, installation: Installation) -> float:
-    """Stiffness of contact with which as much tension is lost as a drive may lose, rounded up to two digits, N/m^2."""
-    tension, path = (1 - _MOST_TENSION_LOST) * installation.laid_tension, installation.path
-    stretched = float(stretch(tension, drive.belt.axial_stiffness))
-    room = path.length - stretched * drive.belt.length
+def _remedy(drive: Drive, installation: Installation, tension: float, laid: float) -> str:
+    """Say which contact leaves a tension, N, of what the belt is laid with; rounded to two digits, to the safe side.
+
+    The stiffness is that with which the sinking in, T g / (R k_p) along each arc, shortens the path by as much as the
+    belt is stretched less.
+    """
+    path, axial = installation.path, drive.belt.axial_stiffness
+    stretched, most = float(stretch(tension, axial)), float(stretch(laid, axial))
+    less = 2 * (laid - tension) / (axial * (most**2 + most * stretched + stretched**2 - 1))  # most - stretched
+    room = path.length * less / most
     stiffness = tension * stretched * float(np.sum(path.wrap_angles / drive.radii)) / room
-    digit = 10.0 ** (math.floor(math.log10(stiffness)) - 1)
-    return math.ceil(stiffness / digit) * digit
+    depth = tension * stretched / (stiffness * float(drive.radii.min()))
+    return (
+        f"raise contact.stiffness to {_two_digits(stiffness, math.ceil):.1e} N/m^2 or more "
+        f"(contact.allowed_penetration = {_two_digits(depth, math.floor):.1e} m)"
+    )
+
+
+def _two_digits(value: float, rounded: Callable[[float], int]) -> float:
+    """Round up or down to two digits."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return rounded(value / digit) * digit
 
 
 def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:

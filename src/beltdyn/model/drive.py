@@ -42,6 +42,7 @@ class Drive(Part):
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
     )
     _source: str | None = PrivateAttr(None)
+    _tension_given: bool = PrivateAttr(False)
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file."""
@@ -51,6 +52,7 @@ class Drive(Part):
 
     @model_validator(mode="after")
     def _becomes_definite(self) -> Self:
+        self._tension_given = self.belt.installed_tension is not None
         self.__dict__.update(complete(self.belt, self.pulleys, self.contact, self.tensioners))
         return self
 
@@ -92,6 +94,11 @@ class Drive(Part):
     def frictions(self) -> FloatArray:
         """Coefficients of friction of the pulleys, with the wedge factor on those that touch the inside; shape (n,)."""
         return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])
+
+    @property
+    def tension_given(self) -> bool:
+        """Whether the length of the belt, or a take-up, was computed from the tension at rest."""
+        return self._tension_given
 
     @property
     def text(self) -> str:

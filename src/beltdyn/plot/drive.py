@@ -26,6 +26,8 @@ _ROOMY = 0.13
 _STEEP = 0.4
 _SIZE = 8.0
 _NARROW, _WIDE = 0.55, 1.1
+_MARGIN = 0.04
+_ROUNDS = 8
 
 
 class DrivePicture:
@@ -53,8 +55,8 @@ class DrivePicture:
         self._belt.set_snap(False)
         ax.add_collection(self._belt)
         self._title = ax.set_title("")
-        _frame(ax, run)
         _draw_scale(ax, self._belt, run.dataset["belt_tension"])
+        _frame(ax, run)
 
     def show(self, instant: xr.Dataset) -> None:
         """Move everything to an instant.
@@ -112,6 +114,29 @@ def extent_of(drive: Drive, path: Path) -> FloatArray:
     return np.array([np.min(points, axis=0), np.max(points, axis=0)])
 
 
+def make_room(ax: Axes, extent: FloatArray) -> None:
+    """Set limits and equal scales such that a rectangle and all that is written fit.
+
+    Parameters
+    ----------
+    ax : Axes
+        Axes with their labels, title and texts.
+    extent : ndarray, shape (2, 2), m
+        Lower left and upper right corner of what is drawn.
+    """
+    ax.set_aspect("equal")
+    held = extent
+    for _ in range(_ROUNDS):  # letters keep their size, so that they cover more metres when the limits grow
+        margin = _MARGIN * float(np.ptp(held, axis=0).max())
+        low, high = held.min(axis=0) - margin, held.max(axis=0) + margin
+        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        ax.figure.canvas.figure.draw_without_rendering()
+        boxes = [ax.transData.inverted().transform(text.get_window_extent().get_points()) for text in ax.texts]
+        held = np.concatenate([extent, *boxes])
+        if np.all(held > low) and np.all(held < high):
+            return
+
+
 def arc(path: Path, number: int) -> FloatArray:
     """Angles along the arc on a pulley, in the direction of motion, rad."""
     enters = path.span_points[number - 1, 1] - path.centers[number]
@@ -166,10 +191,8 @@ def _frame(ax: Axes, run: Run) -> None:
     radii = np.array([[pulley.radius] for pulley in run.drive.pulleys])
     low = np.min([positions.min(("time", "node")), *(centers - radii)], axis=0)
     high = np.max([positions.max(("time", "node")), *(centers + radii)], axis=0)
-    beside, above = np.array([0.15, 0.06]) * float((high - low).max())
-    ax.set(xlim=(low[0] - beside, high[0] + beside), ylim=(low[1] - above, high[1] + above))
-    ax.set_aspect("equal")
     ax.set(xlabel=f"x [{positions.attrs['units']}]", ylabel=f"y [{positions.attrs['units']}]")
+    make_room(ax, np.array([low, high]))
 
 
 def _draw_scale(ax: Axes, belt: LineCollection, tension: xr.DataArray) -> None:

@@ -14,7 +14,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
 from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner
-from beltdyn.plot.drive import arc, draw_rotation, extent_of, size_of, write_pulley
+from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 from beltdyn.results.atomic import atomic_path
 
@@ -44,7 +44,6 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     installation = installation or install(drive)
     path = installation.path
     extent = extent_of(drive, path)
-    width, height = np.ptp(extent, axis=0)
     ax = axes_or_new(ax, size_of(drive))
     for number in range(path.count):
         _draw_pulley(ax, drive, path, number)
@@ -55,15 +54,13 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
         _draw_tensioner(ax, tensioner, path, drive.carried(tensioner), position)
     for number, pulley in enumerate(drive.pulleys):
         text = f"{number + 1} {pulley.name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
-        write_pulley(ax, path, number, text, float(max(width, height)))
+        write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
     _write_spans(ax, path)
-    beside, above = np.array([0.17, 0.1]) * float(max(width, height))
-    ax.set(xlim=extent[:, 0] + [-beside, beside], ylim=extent[:, 1] + [-above, above])
     ax.set(xlabel="x [m]", ylabel="y [m]")
-    ax.set_aspect("equal")
     ax.set_title(
         f"belt {drive.belt.length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
     )
+    make_room(ax, extent)
     return ax
 
 

@@ -70,6 +70,16 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     assert f"beltdyn check {drive_file} --figure layout.png" in output
 
 
+def test_check_of_a_belt_of_given_tension(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
+    """The tension that was asked for is there; what sinking in costs is length."""
+    drive_file.write_text(drive_text.replace("length = 1.2727 ", 'installed_tension = "250 N" '), encoding="utf-8")
+    code, output, _ = run_main(["check", str(drive_file)])
+    assert code == 0
+    assert "about 250 N, as asked for: " in output
+    assert "shorter than hard pulleys would need for 250 N" in output
+    assert "count on" not in output
+
+
 def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
     """An idler on the back under a spring: sense, speed ratio, hub loads, frequencies, and the picture."""
     idler = (

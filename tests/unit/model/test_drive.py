@@ -74,12 +74,32 @@ def test_advice_on_the_tension_lost(drive: Drive) -> None:
     warning = advise(drive, install(drive))[0]
     assert warning == (
         "sinking into the pulleys takes 5.8% of the belt's tension, more than 2%: raise contact.stiffness to "
-        "3.1e+07 N/m^2 or more, or count on 26.56 N."
+        "3.1e+07 N/m^2 or more (contact.allowed_penetration = 1.1e-05 m), or count on 26.56 N."
     )
     stiff = drive.replace(contact=drive.contact.replace(stiffness=3.1e7))
     installation = install(stiff)
     assert not any("sinking" in warning for warning in advise(stiff, installation))
     assert installation.tension / installation.laid_tension == pytest.approx(0.98, abs=1e-3)
+
+
+def test_advice_on_a_belt_of_given_tension_is_about_its_length(drive: Drive) -> None:
+    """It has the tension that was asked for; what sinking in costs is length, which other contact gives back."""
+    soft = {key: value for key, value in drive.belt.arguments.items() if key != "length"} | {"installed_tension": 26.56}
+    other = {key: value for key, value in drive.contact.arguments.items() if key != "stiffness"}
+    given = drive.replace(belt=soft)
+    hard = drive.replace(belt=soft, contact=drive.contact.replace(stiffness=1e14))
+    (warning,) = (text for text in advise(given, install(given)) if "hard pulleys" in text)
+    assert warning == (
+        f"the belt is {hard.belt.length - given.belt.length:.1e} m shorter than hard pulleys would need for 26.56 N, "
+        "since sinking in takes 5.8% of what it is laid with, more than 2%: where its length matters, raise "
+        "contact.stiffness to 3.1e+07 N/m^2 or more (contact.allowed_penetration = 1.0e-05 m)."
+    )
+    for remedy in ({"stiffness": 3.1e7}, {"allowed_penetration": 1.0e-5}):
+        better = drive.replace(belt=soft, contact=other | remedy)
+        installation = install(better)
+        assert not any("hard pulleys" in text for text in advise(better, installation))
+        assert installation.tension == pytest.approx(26.56)
+        assert 0.975 < installation.tension / installation.laid_tension < 0.985
 
 
 def test_advice_on_the_tension_lost_in_case_2() -> None:

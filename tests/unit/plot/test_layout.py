@@ -92,6 +92,19 @@ def test_crossing_spans_have_a_gap(drive: Drive, ax: Axes) -> None:
     assert not [line for line in plain.lines if line.get_color() == "white"]
 
 
+def test_long_names_fit(drive: Drive, ax: Axes) -> None:
+    """Beside a small pulley, on the left here, a name takes its own room."""
+    first, last = drive.pulleys
+    small = first.replace(name="a pulley with a name as long as the drive", radius=0.03)
+    plot.layout(drive.replace(pulley=[small, last], belt=drive.belt.replace(length=1.115)), ax=ax)
+    ax.figure.canvas.figure.draw_without_rendering()
+    frame = ax.get_window_extent()
+    for text in ax.texts:
+        low, high = text.get_window_extent().get_points()
+        assert np.all(low >= frame.p0)
+        assert np.all(high <= frame.p1)
+
+
 @pytest.mark.parametrize("kind", ["png", "svg"])
 def test_file(drive: Drive, tmp_path: Path, kind: str) -> None:
     file = plot.save_layout(drive, tmp_path / f"layout.{kind}")
