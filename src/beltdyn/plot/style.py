@@ -176,8 +176,10 @@ def reserve(ax: Axes, text: str) -> None:
 
 
 def name_lines(ax: Axes) -> None:
-    """Write the legend above the axes, or beside them where the names are many."""
+    """Write the legend above the axes, or beside them where the names are many; none without a line."""
     names = ax.get_legend_handles_labels()[1]
+    if not names:
+        return
     if len(names) <= _IN_A_ROW and sum(map(len, names)) < _ROW:
         ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=_IN_A_ROW, borderaxespad=0.2)
     else:

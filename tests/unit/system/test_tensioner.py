@@ -122,7 +122,7 @@ def test_what_is_not_stored_is_lost(tensioners: Records, q: float, rate: float) 
 @pytest.mark.parametrize("q", [-0.25, 0.34])
 @pytest.mark.parametrize("rate", [-50.0, 0.0, 50.0])
 def test_stops_never_pull(q: float, rate: float) -> None:
-    without = TENSIONERS["sliding"].replace(stops=None)
+    without = TENSIONERS["sliding"].replace(stops=None, stop_stiffness=None, stop_damping=0.0)
     free = machine_arrays(PULLEYS, [without], lay_path(PULLEYS, BELT)).tensioners
     assert (free.lower[0], free.upper[0]) == (-inf, inf)
     stop = tensioner_force(arrays("sliding"), 0, q, rate)[0] - tensioner_force(free, 0, q, rate)[0]
