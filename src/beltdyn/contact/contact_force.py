@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.contact.bezier import Four, bernstein, bernstein_rates, combine, shape_functions
-from beltdyn.contact.contact_zone import MAX_INTERVALS, touching_intervals
+from beltdyn.contact.contact_zone import MAX_INTERVALS, PIECES, touching_intervals
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import approach
 from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent
@@ -31,7 +31,7 @@ CONTACT_WORKSPACE = record(
     by_speed="8f8",  # derivative of `force` with respect to the pulley's speed, N s
     moment="8f8",  # derivative of the moment on the pulley with respect to the four vectors, N
     intervals=f"({MAX_INTERVALS},2)f8",
-    pieces="(13,8)f8",  # scratch of `touching_intervals`
+    pieces=f"{PIECES}f8",  # scratch of `touching_intervals`
     by_end="(2,9)f8",  # derivative of force and moment with respect to start and end of an interval
 )
 """Results and scratch arrays of `contact_force`, made once for many elements by `contact_workspace`."""

@@ -21,6 +21,8 @@ MAX_INTERVALS = 6
 _HALVINGS = 12
 """A dip of an element over less than 2^-12 of its length is not seen; it is below a millionth of the radius deep."""
 _END = 7
+PIECES = (_HALVINGS + 1, _END + 1)
+"""Shape of the scratch array of `touching_intervals`."""
 _STEPS = 60
 _RESOLUTION = 1e-13
 
@@ -103,7 +105,7 @@ def zone_scratch() -> FloatArray:
         A stack of pieces of the element that are not yet searched, the leftmost last: the Bernstein coefficients of the
         overlap, and where the piece ends.
     """
-    return np.zeros((_HALVINGS + 1, _END + 1))
+    return np.zeros(PIECES)
 
 
 @kernel
