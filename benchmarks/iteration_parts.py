@@ -22,7 +22,7 @@ from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.build import drive_system
 from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.observe import observe
-from beltdyn.system.ring_matrix import solve_ring
+from beltdyn.system.ring_matrix import factorise_ring, substitute
 from beltdyn.system.state import laid
 from beltdyn.system.wheels import wheel_of
 
@@ -37,10 +37,24 @@ def repeat_assembly(system: System, state: FloatArray, rates: FloatArray, work: 
 
 
 @kernel
-def repeat_solve(system: System, _state: FloatArray, _rates: FloatArray, work: Equations, _none: FloatArray) -> None:
-    """Linear solve."""
+def repeat_residual(system: System, state: FloatArray, rates: FloatArray, work: Equations, none: FloatArray) -> None:
+    """Residual alone."""
     for _ in range(REPEATS):
-        solve_ring(work.matrix, system.closed, work.node_part, work.border_part)
+        assemble(system, 0.0, state, rates, rates, none, 0.0, 0.0, 0.0, work.work, work.matrix, work.loads)
+
+
+@kernel
+def repeat_factors(system: System, _state: FloatArray, _rates: FloatArray, work: Equations, _none: FloatArray) -> None:
+    """Factorise the tangent."""
+    for _ in range(REPEATS):
+        factorise_ring(work.matrix, system.closed)
+
+
+@kernel
+def repeat_substitution(system: System, _s: FloatArray, _rates: FloatArray, work: Equations, _none: FloatArray) -> None:
+    """Solve with factors."""
+    for _ in range(REPEATS):
+        substitute(work.matrix, system.closed, work.node_part, work.border_part)
 
 
 @kernel
@@ -58,6 +72,7 @@ def repeat_elasticity(system: System, state: FloatArray, _r: FloatArray, work: E
                 system.length[element],
                 points.points,
                 points.weights,
+                True,
                 scratch.elastic,
                 scratch.gradient,
                 scratch.tangent,
@@ -117,7 +132,9 @@ def main() -> None:
         "assembly": repeat_assembly,
         "  of it elasticity": repeat_elasticity,
         "  of it contact": repeat_contact,
-        "linear solve": repeat_solve,
+        "factors": repeat_factors,
+        "substitution": repeat_substitution,
+        "residual alone": repeat_residual,
     }
     for name, part in parts.items():
         seconds = smallest(lambda part=part: part(*arguments))  # type: ignore[misc]

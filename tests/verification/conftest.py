@@ -56,7 +56,7 @@ def evaluate() -> Callable[[Belt, FloatArray], tuple[float, FloatArray, FloatArr
         section, length = belt_section(belt), belt.length / belt.elements
         points, weights = gauss_points(belt.quadrature_points)
         gradient, tangent = np.empty(12), np.empty((12, 12))
-        element_force(e, section, length, points, weights, work, gradient, tangent)
+        element_force(e, section, length, points, weights, True, work, gradient, tangent)
         return element_energy(e, section, length, points, weights), gradient, tangent
 
     return values

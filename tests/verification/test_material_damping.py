@@ -46,7 +46,7 @@ def straight_matrices(belt: Belt) -> tuple[FloatArray, FloatArray, FloatArray]:
     section, length, rule = belt_section(belt), belt.length / belt.elements, gauss_points(4)
     unloaded = np.array([0, 0, 1, 0, 0, 1, length, 0, 1, 0, 0, 1], dtype=float)
     stiffness, damping = np.zeros((12, 12)), np.zeros((12, 12))
-    element_force(unloaded, section, length, *rule, elastic_workspace(), np.zeros(12), stiffness)
+    element_force(unloaded, section, length, *rule, True, elastic_workspace(), np.zeros(12), stiffness)
     damping_force(unloaded, np.zeros(12), section, length, *rule, 0.0, 1.0, damping_workspace(), np.zeros(12), damping)
     size = 6 * (belt.elements + 1)
     whole = np.zeros((3, size, size))
@@ -98,7 +98,7 @@ def test_energy_of_a_free_flight_is_lost_to_damping_alone(measured: Callable[...
 
     def rates(_time: float, state: FloatArray) -> FloatArray:
         e, rate = np.ascontiguousarray(state[:12]), np.ascontiguousarray(state[12:24])
-        element_force(e, section, length, *rule, elastic, gradient, tangent)
+        element_force(e, section, length, *rule, True, elastic, gradient, tangent)
         lost = damping_force(e, rate, section, length, *rule, 0.0, 0.0, damping, gradient, tangent)
         return np.concatenate([rate, -np.linalg.solve(mass, gradient), [lost]])
 

@@ -103,6 +103,7 @@ def element_force(
     length: float,
     points: FloatArray,
     weights: FloatArray,
+    wanted: bool,
     work: np.record,
     gradient: FloatArray,
     tangent: FloatArray,
@@ -113,28 +114,35 @@ def element_force(
     ----------
     e, section, length, points, weights
         As for `element_energy`.
+    wanted
+        Whether the tangent is.
     work
         Scratch arrays.
     gradient : ndarray, shape (12,)
         Overwritten by dU/de; N for the rows of r, N m for those of the gradients.
     tangent : ndarray, shape (12, 12)
-        Overwritten by d2U/de2.
+        Overwritten by d2U/de2, or left alone.
     """
     shear_i = nodal_shear(e[2], e[3], e[4], e[5])
     shear_j = nodal_shear(e[8], e[9], e[10], e[11])
     gradient[:] = 0.0
-    work.xx[:] = 0.0
-    work.xy[:] = 0.0
-    work.yy[:] = 0.0
-    work.by_shear[:] = 0.0
+    if wanted:
+        work.xx[:] = 0.0
+        work.xy[:] = 0.0
+        work.yy[:] = 0.0
+        work.by_shear[:] = 0.0
     sums = ShearSums(0.0, 0.0, 0.0, 0.0, 0.0)
     for point in range(points.size):
-        sums = _add_point(
-            e, shear_i.sine, shear_j.sine, points[point], weights[point] * length, section, length, work, gradient, sums
-        )
-    _fill_centreline(work, tangent)
-    _carry_shear(shear_i, shear_j, sums, work, gradient, tangent)
-    _add_thickness(e, section, length, gradient, tangent)
+        xi, weight = points[point], weights[point] * length
+        sums = _add_point(e, shear_i.sine, shear_j.sine, xi, weight, section, length, wanted, work, gradient, sums)
+    hi, hj = shear_gradient(shear_i), shear_gradient(shear_j)
+    for c in range(4):
+        gradient[2 + c] += sums.i * hi[c]
+        gradient[8 + c] += sums.j * hj[c]
+    if wanted:
+        _fill_centreline(work, tangent)
+        _carry_shear(shear_i, shear_j, hi, hj, sums, work, tangent)
+    _add_thickness(e, section, length, wanted, gradient, tangent)
 
 
 @kernel
@@ -146,6 +154,7 @@ def _add_point(
     weight: float,
     section: Section,
     length: float,
+    wanted: bool,
     work: np.record,
     gradient: FloatArray,
     sums: ShearSums,
@@ -164,8 +173,6 @@ def _add_point(
     turning = (qx * wy - qy * wx) * inverse
     sine, rate = (1.0 - xi) * sine_i + xi * sine_j, (sine_j - sine_i) / length
     first = energy_gradient(metric, turning, sine, rate, section)
-    second = energy_curvature(metric, turning, sine, rate, section)
-
     gx, gy = 2.0 * qx, 2.0 * qy
     ax, ay = (wy - turning * gx) * inverse, -(wx + turning * gy) * inverse
     bx, by = -qy * inverse, qx * inverse
@@ -179,7 +186,13 @@ def _add_point(
     gradient[7] += slope[2] * fy + bend[2] * my
     gradient[8] += slope[3] * fx + bend[3] * mx
     gradient[9] += slope[3] * fy + bend[3] * my
+    at_i, at_j, by_rate = 1.0 - xi, xi, 1.0 / length
+    by_sine, by_sine_rate = weight * first.sine, weight * first.sine_rate * by_rate
+    by_i, by_j = sums.i + at_i * by_sine - by_sine_rate, sums.j + at_j * by_sine + by_sine_rate
+    if not wanted:
+        return ShearSums(by_i, by_j, 0.0, 0.0, 0.0)
 
+    second = energy_curvature(metric, turning, sine, rate, section)
     gg, tt = weight * second.gg, weight * second.tt
     gt = weight * (second.gt - first.turning * inverse)
     direct = 2.0 * weight * (first.metric - first.turning * turning * inverse)
@@ -190,16 +203,14 @@ def _add_point(
     _add_block(work.xy, slope, bend, ux * gy + vx * ay, vx * by + cross, vy * bx - cross, tt * bx * by)
     _add_block(work.yy, slope, bend, uy * gy + vy * ay + direct, vy * by, vy * by, tt * by * by)
 
-    at_i, at_j, by_rate = 1.0 - xi, xi, 1.0 / length
     gs, gp = weight * second.gs, weight * second.gp
     ts, tp = weight * second.ts, weight * second.tp
     _add_shear_row(work.by_shear, 0, slope, bend, at_i, -by_rate, gs, ts, gp, tp, gx, gy, ax, ay, bx, by)
     _add_shear_row(work.by_shear, 1, slope, bend, at_j, by_rate, gs, ts, gp, tp, gx, gy, ax, ay, bx, by)
     ss, sp, pp = weight * second.ss, weight * second.sp * by_rate, weight * second.pp * by_rate * by_rate
-    by_sine, by_sine_rate = weight * first.sine, weight * first.sine_rate * by_rate
     return ShearSums(
-        sums.i + at_i * by_sine - by_sine_rate,
-        sums.j + at_j * by_sine + by_sine_rate,
+        by_i,
+        by_j,
         sums.ii + at_i * at_i * ss - 2.0 * at_i * sp + pp,
         sums.ij + at_i * at_j * ss + (at_i - at_j) * sp - pp,
         sums.jj + at_j * at_j * ss + 2.0 * at_j * sp + pp,
@@ -274,9 +285,10 @@ def _fill_centreline(work: np.record, tangent: FloatArray) -> None:
 def _carry_shear(
     shear_i: NodalShear,
     shear_j: NodalShear,
+    hi: Four,
+    hj: Four,
     sums: ShearSums,
     work: np.record,
-    gradient: FloatArray,
     tangent: FloatArray,
 ) -> None:
     """Chain rule from the nodal shears to r_x and r_y of their nodes.
@@ -285,25 +297,18 @@ def _carry_shear(
     tangent gains sum_k (m_k h_k^T + h_k m_k^T) + sum_kl c_kl h_k h_l^T + sum_k dU/ds_k d2s_k/de2; the second sum is
     folded into the m_k.
     """
-    hi, hj = shear_gradient(shear_i), shear_gradient(shear_j)
     _add_four(work.by_shear, 0, 2, 0.5 * sums.ii, hi)
     _add_four(work.by_shear, 0, 8, sums.ij, hj)
     _add_four(work.by_shear, 1, 8, 0.5 * sums.jj, hj)
-    _add_shear(0, 2, sums.i, hi, work.by_shear, gradient, tangent)
-    _add_shear(1, 8, sums.j, hj, work.by_shear, gradient, tangent)
+    _add_shear(0, 2, hi, work.by_shear, tangent)
+    _add_shear(1, 8, hj, work.by_shear, tangent)
     add_shear_curvature(shear_i, sums.i, tangent, 2)
     add_shear_curvature(shear_j, sums.j, tangent, 8)
 
 
 @kernel
-def _add_shear(
-    k: int, first: int, force: float, h: Four, mixed: FloatArray, gradient: FloatArray, tangent: FloatArray
-) -> None:
-    """Add force h to the gradient and m_k h^T + h m_k^T to the tangent, h in the four columns that begin at first."""
-    gradient[first] += force * h[0]
-    gradient[first + 1] += force * h[1]
-    gradient[first + 2] += force * h[2]
-    gradient[first + 3] += force * h[3]
+def _add_shear(k: int, first: int, h: Four, mixed: FloatArray, tangent: FloatArray) -> None:
+    """Add m_k h^T + h m_k^T to the tangent, h in the four columns that begin at first."""
     for row in range(12):
         m = mixed[k, row]
         _add_four(tangent, row, first, m, h)
@@ -329,7 +334,9 @@ def _thickness_strain(section_x: float, section_y: float) -> float:
 
 
 @kernel
-def _add_thickness(e: FloatArray, section: Section, length: float, gradient: FloatArray, tangent: FloatArray) -> None:
+def _add_thickness(
+    e: FloatArray, section: Section, length: float, wanted: bool, gradient: FloatArray, tangent: FloatArray
+) -> None:
     """Add force and tangent of the thickness energy to the rows of r_y."""
     stiffness = section.thickness * length / 6.0
     strain_i, strain_j = _thickness_strain(e[4], e[5]), _thickness_strain(e[10], e[11])
@@ -337,6 +344,8 @@ def _add_thickness(e: FloatArray, section: Section, length: float, gradient: Flo
     for row in range(2):
         gradient[4 + row] += pressure_i * e[4 + row]
         gradient[10 + row] += pressure_j * e[10 + row]
+        if not wanted:
+            continue
         tangent[4 + row, 4 + row] += pressure_i
         tangent[10 + row, 10 + row] += pressure_j
         for column in range(2):

@@ -86,7 +86,8 @@ def damping_force(
     points, weights : ndarray, shape (k,)
         Quadrature on [0, 1] along the element: that of the elastic force.
     by_position, by_velocity
-        The tangent is the sum of these times the derivatives with respect to e and to its rate.
+        The tangent is the sum of these times the derivatives with respect to e and to its rate; with both zero there
+        is none.
     work
         Scratch arrays.
     gradient : ndarray, shape (12,)
@@ -99,6 +100,7 @@ def damping_force(
     float
         Power lost, 2 R, W; never negative.
     """
+    wanted = by_position != 0.0 or by_velocity != 0.0
     work.pull[:] = 0.0
     shear, shear_rate = _shear_rates(e, velocity, length, work)
     power, twist = 0.0, 0.0
@@ -110,12 +112,17 @@ def damping_force(
         force, moment = axial * point.strain_rate, bending * point.curvature_rate
         power += force * point.strain_rate + moment * point.curvature_rate
         twist += moment * point.stretch
-        _add_products(axial, bending, point, by_position, by_velocity, work, gradient, tangent)
+        for column in range(12):
+            gradient[column] += force * work.slope[0, column] + moment * work.slope[1, column]
+        if not wanted:
+            continue
+        _add_products(axial, bending, by_position, by_velocity, work, tangent)
         _add_curvature(point, slope, bend, by_position * force, by_position * moment, tangent)
         for a in range(4):
             work.pull[_first(a)] += moment * slope[a] * point.tangent_x
             work.pull[_first(a) + 1] += moment * slope[a] * point.tangent_y
-    _add_shear_products(by_position, twist, work, tangent)
+    if wanted:
+        _add_shear_products(by_position, twist, work, tangent)
     return power
 
 
@@ -209,19 +216,10 @@ def _strain_rates(
 
 @kernel
 def _add_products(
-    axial: float,
-    bending: float,
-    point: _Point,
-    by_position: float,
-    by_velocity: float,
-    work: np.record,
-    gradient: FloatArray,
-    tangent: FloatArray,
+    axial: float, bending: float, by_position: float, by_velocity: float, work: np.record, tangent: FloatArray
 ) -> None:
-    """Add the force at a point, and what the rates of the strains contribute to the tangent."""
-    force, moment = axial * point.strain_rate, bending * point.curvature_rate
+    """Add what the rates of the strains at a point contribute to the tangent."""
     for column in range(12):
-        gradient[column] += force * work.slope[0, column] + moment * work.slope[1, column]
         for k, stiffness in ((0, axial), (1, bending)):
             work.change[k, column] = stiffness * (
                 by_position * work.change[k, column] + by_velocity * work.slope[k, column]

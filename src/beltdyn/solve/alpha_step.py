@@ -14,12 +14,12 @@ from math import inf, isfinite, sqrt
 from typing import Final, NamedTuple
 
 from beltdyn.kernel import kernel
-from beltdyn.solve.march import ITERATIONS, March, Settings
+from beltdyn.solve.march import ITERATIONS, SLOWEST, March, Settings
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
-from beltdyn.system.ring_matrix import solve_ring
+from beltdyn.system.ring_matrix import factorise_ring, substitute
 
 _MAX_ITERATIONS: Final = 10
 _OVERSHOOT: Final = 0.5
@@ -28,6 +28,8 @@ _CUTS: Final = 2
 _SHORTEST: Final = 0.1
 _DAMPED_FROM: Final = 4
 _STAGNATION: Final = 0.8
+_QUICK: Final = 0.3
+"""A tangent serves for several iterations of a step as long as each change is below this part of the one before."""
 _NEAR: Final = 3.0
 """The loads are those before the last change, which must be below this many times what Newton's method may leave."""
 
@@ -71,7 +73,8 @@ def try_step(
 
     The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
     along it turns against it; then only the part up to the balance is kept.  If the changes still do not shrink,
-    half steps end a cycle.
+    half steps end a cycle.  The tangent of the first guess serves as long as changes shrink quickly, where they did so
+    in the step before too.
 
     Parameters
     ----------
@@ -95,23 +98,30 @@ def try_step(
     """
     step = _predict(system, method, march, length)
     allowed = settings.newton_fraction * allowed_error(settings, length)
-    before, slope, factor = inf, 0.0, 1.0
+    before, slope, factor, renewed = inf, 0.0, 1.0, True
+    quick, slowest = march.clock[SLOWEST] <= _QUICK, 0.0
+    march.clock[SLOWEST] = 1.0
     for iteration in range(_MAX_ITERATIONS):
         march.counts[ITERATIONS] += 1
-        _linearise(system, march, step, equations)
+        _assemble(system, march, step, equations, renewed)
         if slope > 0.0:
-            factor = _cut_back(system, march, step, equations, slope, factor)
-        solved = solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
+            factor = _cut_back(system, march, step, equations, slope, factor, renewed)
+        if renewed and not factorise_ring(equations.matrix, system.closed):
+            return 0
+        substitute(equations.matrix, system.closed, equations.node_part, equations.border_part)
         change = _size(system, equations)
-        if not solved or not isfinite(change):
+        if not isfinite(change):
             return 0
         slope = _imbalance(equations)
+        slowest = max(slowest, change / before)
         contraction = min(1.0, change / before) if factor == 1.0 else 1.0
         factor = 0.5 if iteration >= _DAMPED_FROM and change > _STAGNATION * before else 1.0
         _move(system, march, step, equations, factor)
         if change <= _NEAR * allowed and contraction * change <= allowed:
             _finish(method, march)
+            march.clock[SLOWEST] = slowest
             return iteration + 1
+        renewed = not quick or slowest > _QUICK
         before = change
     return 0
 
@@ -140,8 +150,9 @@ def _predict(system: System, method: Method, march: March, length: float) -> Ste
 
 
 @kernel
-def _linearise(system: System, march: March, step: Step, equations: Equations) -> None:
-    """Assemble the equations at the trial state."""
+def _assemble(system: System, march: March, step: Step, equations: Equations, renewed: bool) -> None:
+    """Assemble the residual at the trial state, and the tangent if it is renewed."""
+    share = 1.0 if renewed else 0.0
     assemble(
         system,
         step.time,
@@ -149,9 +160,9 @@ def _linearise(system: System, march: March, step: Step, equations: Equations) -
         march.trial[1],
         march.trial[2],
         march.multipliers,
-        1.0,
-        step.by_velocity,
-        step.by_acceleration,
+        share,
+        share * step.by_velocity,
+        share * step.by_acceleration,
         equations.work,
         equations.matrix,
         equations.loads,
@@ -159,7 +170,9 @@ def _linearise(system: System, march: March, step: Step, equations: Equations) -
 
 
 @kernel
-def _cut_back(system: System, march: March, step: Step, equations: Equations, slope: float, factor: float) -> float:
+def _cut_back(
+    system: System, march: March, step: Step, equations: Equations, slope: float, factor: float, renewed: bool
+) -> float:
     """Take back what the last change went too far, by secants; returns the factor of the change that is left."""
     for _ in range(_CUTS):
         now = _imbalance(equations)
@@ -168,7 +181,7 @@ def _cut_back(system: System, march: March, step: Step, equations: Equations, sl
         kept = max(_SHORTEST, slope / (slope - now))
         _move(system, march, step, equations, (kept - 1.0) * factor)
         factor *= kept
-        _linearise(system, march, step, equations)
+        _assemble(system, march, step, equations, renewed)
     return factor
 
 

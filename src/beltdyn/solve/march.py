@@ -14,6 +14,9 @@ REJECTED: Final = 1
 FAILED: Final = 2
 ITERATIONS: Final = 3
 
+SLOWEST: Final = 2
+"""Place in `March.clock`."""
+
 
 class Settings(NamedTuple):
     """Choices of the user, as numbers."""
@@ -34,7 +37,7 @@ class March(NamedTuple):
     """The moving state of an integration, and what it tries next; everything is changed in place."""
 
     clock: FloatArray
-    """Time and next step, s, shape (2,)."""
+    """Time and next step, s, and the largest Newton change of the last step over the one before it; shape (3,)."""
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
@@ -113,7 +116,7 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
     """
     size = position.size
     return March(
-        clock=np.array((time, step)),
+        clock=np.array((time, step, 1.0)),
         position=position.copy(),
         velocity=velocity.copy(),
         acceleration=np.zeros(size),

@@ -100,18 +100,28 @@ class System(NamedTuple):
     supports: Supports
 
 
-class RingScratch(NamedTuple):
-    """Arrays in which `solve_ring` works; b is the border with the node that a closed ring moves there."""
+class RingFactors(NamedTuple):
+    """Factors of a `RingMatrix`; b is the border with the node that a closed ring moves there."""
 
     rows: FloatArray
     """Rows of the node in hand, shape (6, width)."""
     panels: FloatArray
-    """Eliminated rows of every node: block towards the next node, columns of the border, right-hand side, padding;
+    """What the chain without border answers to each column of the border, after six columns that are worked in; padded,
     shape (N, 6, width)."""
+    squares: FloatArray
+    """Triangular factors of the nodes' blocks, shape (N, 6, 6)."""
+    pivots: IntArray
+    """Rows exchanged in them, shape (N, 6)."""
+    links: FloatArray
+    """Part of the next node's unknowns in those of a node, shape (N, 6, 6)."""
     dense: FloatArray
-    """What elimination leaves of the border, shape (b, b)."""
+    """Triangular factors of what elimination leaves of the border, shape (b, b)."""
+    dense_pivots: IntArray
+    """Shape (b,)."""
+    no_columns: FloatArray
+    """Shape (b, 0): nothing is solved for along with the border."""
     answer: FloatArray
-    """Its right-hand side, then its solution, shape (b, 1)."""
+    """Right-hand side, then solution of the border, shape (b,)."""
 
 
 class RingMatrix(NamedTuple):
@@ -133,7 +143,7 @@ class RingMatrix(NamedTuple):
     """Right-hand side of the nodes, shape (N, 6)."""
     border_side: FloatArray
     """Right-hand side of the border, shape (m,)."""
-    scratch: RingScratch
+    factors: RingFactors
 
 
 class Loads(NamedTuple):

@@ -79,21 +79,22 @@ def assemble(
         Lagrange multipliers of the joint; ignored without joint.
     by_position, by_velocity, by_acceleration : float
         The tangent is the sum of these times the derivatives with respect to position, velocity and acceleration,
-        which is what an integrator needs whose unknown moves all three.
+        which is what an integrator needs whose unknown moves all three; with all three zero it is kept as it is.
     work
         Scratch arrays.
     matrix
-        Overwritten: the tangent, and the residual as right-hand side.
+        Overwritten: the residual as right-hand side, and the tangent if it is wanted.
     loads
         Overwritten: moments, hub forces, powers.
     """
-    clear(matrix)
+    wanted = by_position != 0.0 or by_velocity != 0.0 or by_acceleration != 0.0
+    clear(matrix, wanted)
     clear_loads(loads)
     damped = system.section.axial_damping > 0.0 or system.section.bending_damping > 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
         _gather(element, node_j, position, velocity, acceleration, work)
-        _elastic_and_inertia(system, element, by_position, by_acceleration, work)
+        _elastic_and_inertia(system, element, by_position, by_acceleration, wanted, work)
         if damped:
             loads.power[4] += damping_force(
                 work.coordinates[0],
@@ -110,11 +111,11 @@ def assemble(
             )
         for curve in range(system.control.shape[1]):
             _contact(system, element, curve, node_j, position, velocity, by_position, by_velocity, work, matrix, loads)
-        _scatter(element, node_j, work, matrix)
+        _scatter(element, node_j, wanted, work, matrix)
     add_machines(system, time, position, velocity, acceleration, by_position, by_velocity, matrix.corner, loads)
     _bodies(system, acceleration, by_acceleration, matrix, loads)
     if system.joint:
-        _joint(system, acceleration, multipliers, by_acceleration, matrix)
+        _joint(system, acceleration, multipliers, by_acceleration, wanted, matrix)
     add_nodal_loads(system, position, by_position, matrix)
     if system.supports.any_fixed:
         hold_fixed(system, matrix)
@@ -136,7 +137,7 @@ def _gather(
 
 @kernel
 def _elastic_and_inertia(
-    system: System, element: int, by_position: float, by_acceleration: float, work: np.record
+    system: System, element: int, by_position: float, by_acceleration: float, wanted: bool, work: np.record
 ) -> None:
     """Overwrite residual and tangent of the element by those of elasticity and inertia."""
     section, length = system.section, system.length[element]
@@ -149,6 +150,7 @@ def _elastic_and_inertia(
             length,
             system.elastic.points,
             system.elastic.weights,
+            wanted,
             work.elastic,
             work.gradient,
             work.tangent,
@@ -158,8 +160,11 @@ def _elastic_and_inertia(
         total = 0.0
         for column in range(2 * NODE):
             total += mass[row, column] * acceleration[column]
-            work.tangent[row, column] = by_position * work.tangent[row, column] + by_acceleration * mass[row, column]
         work.gradient[row] += total
+        if wanted:
+            for column in range(2 * NODE):
+                tangent = by_position * work.tangent[row, column]
+                work.tangent[row, column] = tangent + by_acceleration * mass[row, column]
 
 
 @kernel
@@ -205,7 +210,7 @@ def _contact(
     """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
     fill_control(system, element, curve, work.coordinates[0], work.control)
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
-    bodies = system.bodies
+    bodies, wanted = system.bodies, by_position != 0.0 or by_velocity != 0.0
     for p in range(system.pulleys.size):
         wheel = wheel_of(system, p, position, velocity)
         if out_of_reach(work.control, wheel):
@@ -228,12 +233,12 @@ def _contact(
             )
             if last == 0:
                 keep_drift(system, carriage, work.contact, work.drift)
-        _take_contact(system, work)
+        _take_contact(system, wanted, work)
         add_contact(loads, p, totals)
-        if bodies[p].unknown >= 0:
+        if bodies[p].unknown >= 0 and wanted:
             matrix.corner[bodies[p].unknown, bodies[p].unknown] -= by_velocity * totals.moment_by_speed
             _couple(system, element, node_j, bodies[p].unknown, by_velocity, work.contact, matrix)
-        if carriage.unknown >= 0 and (by_position != 0.0 or by_velocity != 0.0):
+        if carriage.unknown >= 0 and wanted:
             drift = by_position if rounds == 2 else 0.0
             couple_carriage(
                 system,
@@ -250,13 +255,15 @@ def _contact(
 
 
 @kernel
-def _take_contact(system: System, work: np.record) -> None:
+def _take_contact(system: System, wanted: bool, work: np.record) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
     contact, tangent = work.contact, work.tangent
     for a in range(4):
         row = system.vectors[a]
         work.gradient[row] -= contact.force[2 * a]
         work.gradient[row + 1] -= contact.force[2 * a + 1]
+        if not wanted:
+            continue
         for b in range(4):
             column = system.vectors[b]
             tangent[row, column] -= contact.xx[a, b]
@@ -285,11 +292,13 @@ def _couple(
 
 
 @kernel
-def _scatter(i: int, j: int, work: np.record, matrix: RingMatrix) -> None:
+def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
     """Add residual and tangent of the element between nodes i and j."""
     for row in range(NODE):
         matrix.node_side[i, row] += work.gradient[row]
         matrix.node_side[j, row] += work.gradient[NODE + row]
+        if not wanted:
+            continue
         for column in range(NODE):
             matrix.diagonal[i, row, column] += work.tangent[row, column]
             matrix.upper[i, row, column] += work.tangent[row, NODE + column]
@@ -310,7 +319,12 @@ def _bodies(system: System, acceleration: FloatArray, by_acceleration: float, ma
 
 @kernel
 def _joint(
-    system: System, acceleration: FloatArray, multipliers: FloatArray, by_acceleration: float, matrix: RingMatrix
+    system: System,
+    acceleration: FloatArray,
+    multipliers: FloatArray,
+    by_acceleration: float,
+    wanted: bool,
+    matrix: RingMatrix,
 ) -> None:
     """Tie the last node to the first (Eq. 25): forces +-lambda on them, equal accelerations; at rest, equal steps."""
     last = system.nodes - 1
@@ -320,6 +334,8 @@ def _joint(
         matrix.node_side[0, c] += multipliers[c]
         matrix.node_side[last, c] -= multipliers[c]
         matrix.border_side[first_unknown + c] = acceleration[c] - acceleration[NODE * last + c]
+        if not wanted:
+            continue
         matrix.column[0, c, first_unknown + c] = 1.0
         matrix.column[last, c, first_unknown + c] = -1.0
         matrix.row[0, first_unknown + c, c] = tie

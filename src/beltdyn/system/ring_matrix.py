@@ -1,15 +1,16 @@
 """Linear algebra of the belt: a block-tridiagonal matrix, cyclic or open, with a border, solved in O(n).
 
-A closed ring is cut open by moving its last node to the border.  The chain that remains is solved for the right-hand
-side and for all columns of the border at once; what the border's own equations leave of these solutions is a small
-dense system.  An equation of the border touches few nodes, so that the cost is linear in nodes times border.
+A closed ring is cut open by moving its last node to the border.  The chain that remains is factorised, and solved for
+all columns of the border at once; what the border's own equations leave of these solutions is a small dense matrix.
+An equation of the border touches few nodes, so that the cost is linear in nodes times border.  Another right-hand side
+costs a tenth of a factorisation.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, RingMatrix, RingScratch
+from beltdyn.system.arrays import NODE, IntArray, RingFactors, RingMatrix
 
 FloatArray = NDArray[np.float64]
 
@@ -33,7 +34,7 @@ def ring_matrix(nodes: int, border: int) -> RingMatrix:
         With room to solve it.
     """
     size = NODE + border
-    width = (NODE + size + _LANES) // _LANES * _LANES
+    width = (NODE + size + _LANES - 1) // _LANES * _LANES
     return RingMatrix(
         diagonal=np.zeros((nodes, NODE, NODE)),
         upper=np.zeros((nodes, NODE, NODE)),
@@ -43,88 +44,144 @@ def ring_matrix(nodes: int, border: int) -> RingMatrix:
         corner=np.zeros((border, border)),
         node_side=np.zeros((nodes, NODE)),
         border_side=np.zeros(border),
-        scratch=RingScratch(
+        factors=RingFactors(
             rows=np.zeros((NODE, width)),
             panels=np.zeros((nodes, NODE, width)),
+            squares=np.zeros((nodes, NODE, NODE)),
+            pivots=np.zeros((nodes, NODE), dtype=np.int64),
+            links=np.zeros((nodes, NODE, NODE)),
             dense=np.zeros((size, size)),
-            answer=np.zeros((size, 1)),
+            dense_pivots=np.zeros(size, dtype=np.int64),
+            no_columns=np.zeros((size, 0)),
+            answer=np.zeros(size),
         ),
     )
 
 
 @kernel
-def clear(matrix: RingMatrix) -> None:
-    """Set matrix and right-hand side to zero."""
-    matrix.diagonal[:] = 0.0
-    matrix.upper[:] = 0.0
-    matrix.lower[:] = 0.0
-    matrix.column[:] = 0.0
-    matrix.row[:] = 0.0
-    matrix.corner[:] = 0.0
+def clear(matrix: RingMatrix, whole: bool) -> None:
+    """Set the right-hand side to zero, and the whole matrix if asked for."""
     matrix.node_side[:] = 0.0
     matrix.border_side[:] = 0.0
+    if whole:
+        matrix.diagonal[:] = 0.0
+        matrix.upper[:] = 0.0
+        matrix.lower[:] = 0.0
+        matrix.column[:] = 0.0
+        matrix.row[:] = 0.0
+        matrix.corner[:] = 0.0
 
 
 @kernel
 def solve_ring(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_part: FloatArray) -> bool:
-    """Solve for the unknowns of the nodes and of the border.
-
-    Parameters
-    ----------
-    matrix
-        Kept as it is.
-    closed
-        Whether `upper` and `lower` of the last node couple it to the first.
-    node_part : ndarray, shape (N, 6)
-        Overwritten by the solution.
-    border_part : ndarray, shape (m,)
-        Overwritten by the solution.
+    """Factorise a matrix and solve for its right-hand side; see `factorise_ring` and `substitute`.
 
     Returns
     -------
     bool
-        False if a pivot vanished (singular to working precision); the solution is then meaningless.
+        False if the matrix is singular to working precision; there is no solution then.
     """
-    nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
-    cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
-    border = cut + extra
-    rows, panels, dense, answer = matrix.scratch
-    for k in range(chain):
-        _load_node(matrix, k, closed, chain, rows)
-        if k > 0:
-            _subtract_product(matrix.lower[k - 1], panels[k - 1], rows)
-        _split(rows, matrix.upper[k], k < chain - 1, panels[k])
-        if not _eliminate(rows, panels[k], rows.shape[0]):
-            return False
-    for k in range(chain - 2, -1, -1):
-        _subtract_product(panels[k, :, :NODE], panels[k + 1], panels[k])
-        panels[k, :, :NODE] = 0.0  # so that the next product, over whole rows, leaves its left factor alone
-    _load_border(matrix, closed, dense, answer)
-    if closed:
-        for i in range(NODE):
-            _reduce(matrix.upper[chain, i], panels[0], border, i, dense, answer)
-            _reduce(matrix.lower[chain - 1, i], panels[chain - 1], border, i, dense, answer)
-    for k in range(chain):
-        for i in range(extra):
-            _reduce(matrix.row[k, i], panels[k], border, cut + i, dense, answer)
-    if not _eliminate(dense, answer, border):
+    if not factorise_ring(matrix, closed):
         return False
-    for i in range(extra):
-        border_part[i] = answer[cut + i, 0]
-    for i in range(cut):
-        node_part[chain, i] = answer[i, 0]
-    for k in range(chain):
-        for i in range(NODE):
-            total = panels[k, i, NODE + border]
-            for j in range(border):
-                total -= panels[k, i, NODE + j] * answer[j, 0]
-            node_part[k, i] = total
+    substitute(matrix, closed, node_part, border_part)
     return True
 
 
 @kernel
+def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
+    """Factorise a matrix, whose entries are kept as they are.
+
+    Parameters
+    ----------
+    matrix
+        Its factors are overwritten.
+    closed
+        Whether `upper` and `lower` of the last node couple it to the first.
+
+    Returns
+    -------
+    bool
+        False if a pivot vanished (singular to working precision); the factors are then meaningless.
+    """
+    nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
+    cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
+    rows, panels, squares, pivots, links, dense, dense_pivots, no_columns, _ = matrix.factors
+    for k in range(chain):
+        _load_node(matrix, k, closed, chain, rows)
+        if k > 0:
+            _subtract_product(matrix.lower[k - 1], panels[k - 1], rows)
+        _split(rows, matrix.upper[k], k < chain - 1, squares[k], panels[k])
+        if not _eliminate(squares[k], pivots[k], panels[k], NODE):
+            return False
+    for k in range(chain - 2, -1, -1):
+        for i in range(NODE):
+            for j in range(NODE):
+                links[k, i, j] = panels[k, i, j]
+        _subtract_product(links[k], panels[k + 1], panels[k])
+        panels[k, :, :NODE] = 0.0  # so that the next product, over whole rows, leaves these columns alone
+    _load_border(matrix, closed, dense)
+    if closed:
+        for i in range(NODE):
+            _reduce(matrix.upper[chain, i], panels[0], cut + extra, dense[i])
+            _reduce(matrix.lower[chain - 1, i], panels[chain - 1], cut + extra, dense[i])
+    for k in range(chain):
+        for i in range(extra):
+            _reduce(matrix.row[k, i], panels[k], cut + extra, dense[cut + i])
+    return _eliminate(dense, dense_pivots, no_columns, cut + extra)
+
+
+@kernel
+def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_part: FloatArray) -> None:
+    """Solve for the right-hand side with the factors that are there.
+
+    Parameters
+    ----------
+    matrix
+        Factorised by `factorise_ring`, since when its blocks between nodes and in the border's rows are the same.
+    closed
+        As there.
+    node_part : ndarray, shape (N, 6)
+        Overwritten by the solution.
+    border_part : ndarray, shape (m,)
+        Overwritten by the solution.
+    """
+    nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
+    cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
+    _, panels, squares, pivots, links, dense, dense_pivots, _, answer = matrix.factors
+    for k in range(chain):
+        for i in range(NODE):
+            node_part[k, i] = matrix.node_side[k, i]
+        if k > 0:
+            _subtract_image(matrix.lower[k - 1], node_part[k - 1], node_part[k])
+        _solve_factorised(squares[k], pivots[k], NODE, node_part[k])
+    for k in range(chain - 2, -1, -1):
+        _subtract_image(links[k], node_part[k + 1], node_part[k])
+    if closed:
+        for i in range(NODE):
+            answer[i] = matrix.node_side[chain, i]
+        _subtract_image(matrix.upper[chain], node_part[0], answer)
+        _subtract_image(matrix.lower[chain - 1], node_part[chain - 1], answer)
+    for i in range(extra):
+        answer[cut + i] = matrix.border_side[i]
+        for k in range(chain):
+            for j in range(NODE):
+                answer[cut + i] -= matrix.row[k, i, j] * node_part[k, j]
+    _solve_factorised(dense, dense_pivots, cut + extra, answer)
+    for i in range(extra):
+        border_part[i] = answer[cut + i]
+    for i in range(cut):
+        node_part[chain, i] = answer[i]
+    for k in range(chain):
+        for i in range(NODE):
+            total = node_part[k, i]
+            for j in range(cut + extra):
+                total -= panels[k, i, NODE + j] * answer[j]
+            node_part[k, i] = total
+
+
+@kernel
 def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: FloatArray) -> None:
-    """Rows of node k: [diagonal block | columns of the border | right-hand side]."""
+    """Rows of node k: [diagonal block | columns of the border]."""
     extra = matrix.corner.shape[0]
     start = 2 * NODE if closed else NODE
     for i in range(NODE):
@@ -132,7 +189,6 @@ def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: Float
             rows[i, j] = matrix.diagonal[k, i, j]
         for j in range(extra):
             rows[i, start + j] = matrix.column[k, i, j]
-        rows[i, start + extra] = matrix.node_side[k, i]
         if closed:
             for j in range(NODE):
                 rows[i, NODE + j] = 0.0
@@ -143,14 +199,13 @@ def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: Float
 
 
 @kernel
-def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray, answer: FloatArray) -> None:
+def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray) -> None:
     """The border with itself: the last node of a closed ring, then the given border."""
     extra = matrix.corner.shape[0]
     cut = NODE if closed else 0
     for i in range(extra):
         for j in range(extra):
             dense[cut + i, cut + j] = matrix.corner[i, j]
-        answer[cut + i, 0] = matrix.border_side[i]
     if closed:
         last = matrix.diagonal.shape[0] - 1
         for i in range(NODE):
@@ -159,28 +214,32 @@ def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray, answer: Fl
             for j in range(extra):
                 dense[i, NODE + j] = matrix.column[last, i, j]
                 dense[NODE + j, i] = matrix.row[last, j, i]
-            answer[i, 0] = matrix.node_side[last, i]
 
 
 @kernel
-def _split(rows: FloatArray, upper: FloatArray, coupled: bool, panel: FloatArray) -> None:
-    """Panel of a node: [block towards the next node | columns of the border | right-hand side]."""
+def _split(rows: FloatArray, upper: FloatArray, coupled: bool, square: FloatArray, panel: FloatArray) -> None:
+    """Block of a node, and its panel: [block towards the next node | columns of the border]."""
     for i in range(NODE):
         for j in range(panel.shape[1]):
             panel[i, j] = rows[i, j]
         for j in range(NODE):
+            square[i, j] = rows[i, j]
             panel[i, j] = upper[i, j] if coupled else 0.0
 
 
 @kernel
-def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
-    """Overwrite panel by square^-1 panel, with partial pivoting; square is destroyed.  False if a pivot vanishes."""
+def _eliminate(square: FloatArray, pivots: IntArray, panel: FloatArray, size: int) -> bool:
+    """Overwrite panel by square^-1 panel, with partial pivoting, and square by its factors; False if a pivot vanishes.
+
+    The factors are P^-1 L U with ones on the diagonal of U, and the inverse of L's diagonal in its place.
+    """
     width = panel.shape[1]
     for k in range(size):
         pivot = k
         for i in range(k + 1, size):
             if abs(square[i, k]) > abs(square[pivot, k]):
                 pivot = i
+        pivots[k] = pivot
         if not abs(square[pivot, k]) > 0.0:
             return False
         if pivot != k:
@@ -189,6 +248,7 @@ def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
             for j in range(width):
                 panel[k, j], panel[pivot, j] = panel[pivot, j], panel[k, j]
         inverse = 1.0 / square[k, k]
+        square[k, k] = inverse
         for j in range(width):
             panel[k, j] *= inverse
         for j in range(k + 1, size):
@@ -208,6 +268,23 @@ def _eliminate(square: FloatArray, panel: FloatArray, size: int) -> bool:
 
 
 @kernel
+def _solve_factorised(square: FloatArray, pivots: IntArray, size: int, vector: FloatArray) -> None:
+    """Overwrite a vector by square^-1 vector, from the factors that `_eliminate` leaves."""
+    for k in range(size):
+        pivot = pivots[k]
+        vector[k], vector[pivot] = vector[pivot], vector[k]
+    for k in range(size):
+        value = vector[k] * square[k, k]
+        vector[k] = value
+        for i in range(k + 1, size):
+            vector[i] -= square[i, k] * value
+    for k in range(size - 1, 0, -1):
+        value = vector[k]
+        for i in range(k):
+            vector[i] -= square[i, k] * value
+
+
+@kernel
 def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -> None:
     """Target -= left right, for factors of six columns and of six rows."""
     for i in range(NODE):
@@ -219,13 +296,18 @@ def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -
 
 
 @kernel
-def _reduce(
-    coupling: FloatArray, panel: FloatArray, border: int, row: int, dense: FloatArray, answer: FloatArray
-) -> None:
-    """Put the solutions of a node into an equation of the border that couples to it."""
+def _subtract_image(block: FloatArray, vector: FloatArray, target: FloatArray) -> None:
+    """Take block times vector, six numbers, off the first six of target."""
+    for i in range(NODE):
+        first = block[i, 0] * vector[0] + block[i, 1] * vector[1] + block[i, 2] * vector[2]
+        target[i] -= first + (block[i, 3] * vector[3] + block[i, 4] * vector[4] + block[i, 5] * vector[5])
+
+
+@kernel
+def _reduce(coupling: FloatArray, panel: FloatArray, border: int, row: FloatArray) -> None:
+    """Put the chain's answers into an equation of the border that couples to a node."""
     for k in range(NODE):
         factor = coupling[k]
         if factor != 0.0:
             for j in range(border):
-                dense[row, j] -= factor * panel[k, NODE + j]
-            answer[row, 0] -= factor * panel[k, NODE + border]
+                row[j] -= factor * panel[k, NODE + j]

@@ -24,12 +24,21 @@ def test_nothing_but_the_coordinates_matters(
     work, results = elastic_workspace(), []
     for before in (unloaded, deformed, -deformed):
         gradient, tangent = np.full(12, np.nan), np.full((12, 12), np.nan)
-        element_force(before, section, length, *gauss_points(4), work, gradient, tangent)
-        element_force(deformed, section, length, *gauss_points(4), work, gradient, tangent)
+        element_force(before, section, length, *gauss_points(4), True, work, gradient, tangent)
+        element_force(deformed, section, length, *gauss_points(4), True, work, gradient, tangent)
         results.append((gradient, tangent))
     for gradient, tangent in results[1:]:
         np.testing.assert_array_equal(gradient, results[0][0])
         np.testing.assert_array_equal(tangent, results[0][1])
+
+
+def test_force_without_tangent(deformed: FloatArray, section: Section, length: float) -> None:
+    """The same force; the tangent is left alone."""
+    force, alone, tangent, kept = np.empty(12), np.empty(12), np.empty((12, 12)), np.ones((12, 12))
+    element_force(deformed, section, length, *gauss_points(4), True, elastic_workspace(), force, tangent)
+    element_force(deformed, section, length, *gauss_points(4), False, elastic_workspace(), alone, kept)
+    np.testing.assert_allclose(alone, force, rtol=1e-13, atol=1e-13 * np.abs(force).max())
+    np.testing.assert_array_equal(kept, 1.0)
 
 
 @pytest.mark.parametrize("points", [2, 3, 4, 10])
@@ -38,7 +47,7 @@ def test_uniform_strain_needs_few_points(unloaded: FloatArray, section: Section,
     unloaded = unloaded.copy()
     unloaded[[2, 6, 8]] *= 1.1
     gradient, tangent = np.empty(12), np.empty((12, 12))
-    element_force(unloaded, section, length, *gauss_points(points), elastic_workspace(), gradient, tangent)
+    element_force(unloaded, section, length, *gauss_points(points), True, elastic_workspace(), gradient, tangent)
     pull = section.axial * 0.5 * (1.1**2 - 1.0) * 1.1
     expected = np.zeros(12)
     expected[[0, 6]] = -pull, pull
@@ -52,7 +61,7 @@ def test_thickness_carries_its_own_stiffness(unloaded: FloatArray, section: Sect
     thick = unloaded.copy()
     thick[[5, 11]] = 1.2
     gradient, tangent = np.empty(12), np.empty((12, 12))
-    element_force(thick, section, length, *gauss_points(4), elastic_workspace(), gradient, tangent)
+    element_force(thick, section, length, *gauss_points(4), True, elastic_workspace(), gradient, tangent)
     expected = np.zeros(12)
     expected[[5, 11]] = 0.5 * section.thickness * length * 0.5 * (1.2**2 - 1.0) * 1.2
     np.testing.assert_allclose(gradient, expected, atol=1e-12 * section.thickness)

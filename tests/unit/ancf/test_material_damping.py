@@ -134,9 +134,18 @@ def test_straight_belt_damps_as_it_resists(
     for part, time in (("axial", STRETCH), ("bending", BENDING)):
         alone = Section(*(0.0 for _ in section))._replace(**{part: getattr(section, part)})
         stiffness = np.empty((12, 12))
-        element_force(unloaded, alone, length, *gauss_points(4), elastic_workspace(), np.empty(12), stiffness)
+        element_force(unloaded, alone, length, *gauss_points(4), True, elastic_workspace(), np.empty(12), stiffness)
         matrix = damping(unloaded, np.zeros(12), damped(alone, time, time), 0.0, 1.0)[2]
         np.testing.assert_allclose(matrix, time * stiffness, atol=1e-14 * time * np.abs(stiffness).max())
+
+
+def test_force_without_tangent(state: tuple[FloatArray, FloatArray], damping: Damping, section: Section) -> None:
+    """The same power and force; no tangent."""
+    power, force, _ = damping(*state, damped(section), 0.5, 2.0)
+    power_alone, force_alone, tangent = damping(*state, damped(section), 0.0, 0.0)
+    assert power_alone == power
+    np.testing.assert_array_equal(force_alone, force)
+    assert not tangent.any()
 
 
 def test_adds_to_what_is_there(

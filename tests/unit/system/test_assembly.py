@@ -79,6 +79,15 @@ def test_residual_is_linear_in_the_multipliers(
     np.testing.assert_allclose(with_them - without, columns @ MULTIPLIERS, atol=1e-9)  # rounding of 1e5 N
 
 
+def test_residual_alone_keeps_the_tangent(
+    system: System, moving: State, linear: Callable[..., tuple[FloatArray, FloatArray]]
+) -> None:
+    tangent, residual = linear(moving, MULTIPLIERS, (1.0, 2e3, 1e6))
+    kept, alone = linear(moving, MULTIPLIERS)
+    np.testing.assert_array_equal(kept, tangent)
+    np.testing.assert_allclose(alone, residual, rtol=1e-12, atol=1e-12 * np.abs(residual).max())
+
+
 def test_border(system: System) -> None:
     assert border_size(system) == (7 if system.joint else 1)
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from beltdyn.system.arrays import NODE, RingMatrix
-from beltdyn.system.ring_matrix import clear, ring_matrix, solve_ring
+from beltdyn.system.ring_matrix import clear, ring_matrix, solve_ring, substitute
 
 FloatArray = NDArray[np.float64]
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
@@ -53,6 +53,17 @@ def test_keeps_the_matrix() -> None:
         np.testing.assert_array_equal(getattr(ring, name), getattr(same, name))
 
 
+@pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
+def test_factors_serve_other_right_hand_sides(dense: Dense, closed: bool) -> None:
+    ring, other = random_ring(7, 3, 9), random_ring(7, 3, 10)
+    solution(ring, closed)
+    ring.node_side[:], ring.border_side[:] = other.node_side, other.border_side
+    node_part, border_part = np.empty_like(ring.node_side), np.empty_like(ring.border_side)
+    substitute(ring, closed, node_part, border_part)
+    found = np.concatenate([node_part.ravel(), border_part])
+    np.testing.assert_allclose(found, np.linalg.solve(*dense(ring, closed)), atol=1e-12)
+
+
 def test_pivots_within_blocks(dense: Dense) -> None:
     ring = random_ring(4, 1, 5)
     ring.diagonal[:] = ring.diagonal[:, ::-1]
@@ -79,5 +90,7 @@ def test_nan_is_refused() -> None:
 
 def test_clear() -> None:
     ring = random_ring(3, 2, 8)
-    clear(ring)
+    clear(ring, False)
+    assert [name for name in PARTS if not np.any(getattr(ring, name))] == ["node_side", "border_side"]
+    clear(ring, True)
     assert not any(np.any(getattr(ring, name)) for name in PARTS)
