@@ -12,11 +12,11 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
 from beltdyn.solve import generalized_alpha
 from beltdyn.solve.march import March, Outputs, Settings, empty_outputs, new_march
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import FloatArray, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
-from beltdyn.system.ring_matrix import solve_ring
+from beltdyn.system.ring_matrix import solve_ring, substitute
 
 ADVANCE: Final = 0
 """Step through time."""
@@ -24,8 +24,8 @@ LINEARISE: Final = 1
 """Assemble at the trial state of the march, and solve."""
 ACCELERATE: Final = 2
 """Prescribe the motion of what is driven, linearise, and put the solution into the trial acceleration."""
-SOLVE: Final = 3
-"""Solve what is assembled."""
+CORRECT: Final = 3
+"""Assemble the residual alone at the trial state of the march, and solve with the factors that are there."""
 MOVE: Final = 4
 """Take a part of the solution off the trial position."""
 
@@ -79,21 +79,23 @@ def serve(
         return 1, 0
     if kind == ACCELERATE:
         prescribe(system, request.time, trial[0], trial[1], trial[2])
-    if kind != SOLVE:
-        assemble(
-            system,
-            request.time,
-            trial[0],
-            trial[1],
-            trial[2],
-            march.multipliers,
-            request.by_position,
-            request.by_velocity,
-            request.by_acceleration,
-            equations.work,
-            equations.matrix,
-            equations.loads,
-        )
+    assemble(
+        system,
+        request.time,
+        trial[0],
+        trial[1],
+        trial[2],
+        march.multipliers,
+        request.by_position,
+        request.by_velocity,
+        request.by_acceleration,
+        equations.work,
+        equations.matrix,
+        equations.loads,
+    )
+    if kind == CORRECT:
+        substitute(equations.matrix, system.closed, equations.node_part, equations.border_part)
+        return 1, 0
     if not solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part):
         return 0, 0
     if kind == ACCELERATE:
@@ -132,10 +134,17 @@ def linearise(
     return _serve(system, request, (position, velocity, acceleration), multipliers, equations)
 
 
-def solve(system: System, equations: Equations) -> bool:
-    """Solve equations that are assembled; False if their matrix is singular."""
-    nothing = np.zeros(0)
-    return _serve(system, Request(SOLVE), (nothing, nothing, nothing), np.zeros(NODE), equations)
+def correct(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    multipliers: FloatArray,
+    equations: Equations,
+) -> None:
+    """Solve tangent x = residual at a state with the tangent of another, which `linearise` left in the equations."""
+    _serve(system, Request(CORRECT, time), (position, velocity, acceleration), multipliers, equations)
 
 
 def move(system: System, equations: Equations, factor: float, position: FloatArray, multipliers: FloatArray) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
-from beltdyn.solve.engine import linearise, move, solve
+from beltdyn.solve.engine import correct, linearise, move
 from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.state import State
@@ -118,7 +118,7 @@ class _Search:
         self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = np.zeros(NODE)
         self._here: Equations = new_equations(self._system)
-        self._ahead: Equations = new_equations(self._system)
+        self._ahead: Equations = _with_sides_of_its_own(self._here)
         self._length = float(np.sum(system.length))
         self._time_scale = self._length**2 * system.section.mass / system.section.axial
         self._scale = system.scale
@@ -137,9 +137,14 @@ class _Search:
         return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.section.axial
 
     def linearise(self, shift: float) -> float:
-        """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step."""
-        self._solve(self._here, shift)
+        """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step.
+
+        It is nan where the stiffness is singular.
+        """
         matrix, here = self._here.matrix, self._here
+        shift /= self._time_scale
+        if not linearise(self._system, 0.0, *self._motion, self._multipliers, 1.0, 0.0, shift, here):
+            here.node_part[:] = np.nan
         energy = abs(float(np.sum(matrix.node_side * here.node_part) + matrix.border_side @ here.border_part))
         return float(np.sqrt(energy / (self._system.section.axial * self._length)))
 
@@ -152,31 +157,33 @@ class _Search:
         size, length = self._size(self._here), 1.0
         while np.isfinite(size) and length >= _SMALLEST_LENGTH:
             self.step(length)
-            self._solve(self._ahead, 0.0)
-            here, ahead = self._here.matrix, self._ahead.matrix
-            mixed = here._replace(node_side=ahead.node_side, border_side=ahead.border_side)
-            solve(self._system, self._ahead._replace(matrix=mixed))
+            correct(self._system, 0.0, *self._motion, self._multipliers, self._ahead)
             if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:
                 return True
             self.step(-length)
             length *= 0.5
         return False
 
-    def _solve(self, equations: Equations, shift: float) -> None:
-        """Linearise and solve; a singular stiffness leaves nan."""
-        at_rest = np.zeros_like(self.position)
-        shift /= self._time_scale
-        solved = linearise(
-            self._system, 0.0, self.position, self._velocity, at_rest, self._multipliers, 1.0, 0.0, shift, equations
-        )
-        if not solved:
-            equations.node_part[:] = np.nan
+    @property
+    def _motion(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Where the belt stands, the speeds of pulleys that rub it, and no acceleration."""
+        return self.position, self._velocity, np.zeros_like(self.position)
 
     def _size(self, equations: Equations) -> float:
         """Root mean square of a step of the nodes, or the largest step of a tensioner, m."""
         nodes = float(np.sqrt(np.mean((equations.node_part * self._scale) ** 2)))
         tensioners = np.abs(equations.border_part[: self._reach.size] * self._reach)
         return float(np.max(tensioners, initial=nodes))
+
+
+def _with_sides_of_its_own(equations: Equations) -> Equations:
+    """Equations with the same tangent, but another right-hand side and solution."""
+    matrix, node_part, border_part = equations.matrix, equations.node_part, equations.border_part
+    return equations._replace(
+        matrix=matrix._replace(node_side=np.zeros_like(node_part), border_side=np.zeros_like(border_part)),
+        node_part=np.zeros_like(node_part),
+        border_part=np.zeros_like(border_part),
+    )
 
 
 def _only_tensioners(system: System) -> Records:
