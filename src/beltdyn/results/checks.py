@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.model import Drive
 from beltdyn.results.means import first_of_window, pulley_means
 from beltdyn.results.mechanics import capstan_margin, rim_speeds
-from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.recorded import Recorded, attribute, names
 from beltdyn.results.resolution import FORCE_LIMIT, Resolution
 
 CLOSURE_LIMIT = 0.01
@@ -17,8 +17,14 @@ CLOSURE_LIMIT = 0.01
 MARGIN_LIMIT = 1.5
 """Smallest capstan margin that passes without a warning."""
 
+GROWTH_LIMIT = math.log(100.0)
+"""Largest growth of vibrations where the belt slides, as the logarithm of a factor, that passes without a warning."""
+
 SLIDING_LIMIT = 1e-3
 """Largest velocity of sliding of a whole arc, over the speed of the belt, that passes without a warning."""
+
+_LARGEST = 700.0
+"""Logarithm of about the largest number there is."""
 
 
 def find_warnings(dataset: Recorded, drive: Drive, resolution: Resolution | None) -> list[str]:
@@ -47,6 +53,7 @@ def find_warnings(dataset: Recorded, drive: Drive, resolution: Resolution | None
         *_lost_contact(dataset, drive),
         *_gross_slip(dataset, drive),
         *_near_gross_slip_before(dataset, drive),
+        *_flutter(dataset, drive),
         *_stopped_tensioners(dataset, drive),
         *_unresolved(resolution, drive),
     ]
@@ -123,6 +130,21 @@ def _near_gross_slip_before(dataset: Recorded, drive: Drive) -> Iterator[str]:
                 f"{np.gradient(times)[when].sum():.2g} s in all. Raise the tension or the wrap angle, or load it more "
                 "gently."
             )
+
+
+def _flutter(dataset: Recorded, drive: Drive) -> Iterator[str]:
+    """Vibrations that could grow far while the belt slid."""
+    growth, start, end, frequency = (
+        attribute(dataset, f"flutter_{name}", 0.0) for name in ("growth", "start", "end", "frequency")
+    )
+    if growth > GROWTH_LIMIT:
+        critical = 2.0 * math.sqrt(drive.contact.stiffness * drive.belt.mass_per_length)
+        yield (
+            f"the belt may flutter where it slides: between t = {start:.4g} s and {end:.4g} s vibrations of "
+            f"{frequency:.0f} Hz can grow by up to a factor of {math.exp(min(growth, _LARGEST)):.1g}. Long time steps "
+            "damp them, short ones follow them, and speeds may differ: compare a run with a smaller simulation.rtol. "
+            f"Raise contact.damping = {drive.contact.damping:g} N s/m^2 (critical: {critical:.2g})."
+        )
 
 
 def _stopped_tensioners(dataset: Recorded, drive: Drive) -> Iterator[str]:

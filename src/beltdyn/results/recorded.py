@@ -36,3 +36,18 @@ def names(recorded: Recorded, dimension: str) -> list[str]:
         In order.
     """
     return [name.decode() if isinstance(name, bytes) else str(name) for name in np.asarray(recorded[dimension])]
+
+
+def attribute(recorded: Recorded, name: str, unknown: float) -> float:
+    """Give an attribute that is a number.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    name : str
+        Name of the attribute.
+    unknown : float
+        What to give where it is missing.
+    """
+    return float(np.squeeze(recorded.attrs.get(name, unknown)))  # a file holds arrays of one number

@@ -14,7 +14,7 @@ from beltdyn.results.means import (
     span_means,
     tensioner_means,
 )
-from beltdyn.results.recorded import Recorded
+from beltdyn.results.recorded import Recorded, attribute
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
 
@@ -106,11 +106,6 @@ def summarize(run: Run) -> Summary:
 def _summarize(run: Run, recorded: Recorded) -> Summary:
     time = np.asarray(recorded["time"])
     first = first_of_window(time)
-    attributes = recorded.attrs
-
-    def number(name: str, unknown: float) -> float:
-        return float(np.squeeze(attributes.get(name, unknown)))  # a file holds arrays of one number
-
     return Summary(
         status=run.status,
         start=float(time[first]),
@@ -122,12 +117,12 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         balance=power_balance(recorded, first),
         resolution=run.resolution,
         energy_closure=float(recorded["energy_closure"][-1]),
-        integrator=str(attributes.get("integrator", "")),
-        steps=int(number("steps", 0)),
-        rejected_steps=int(number("rejected_steps", 0)),
-        newton_iterations=int(number("newton_iterations", 0)),
-        wall_time=number("wall_time", np.nan),
-        compile_time=number("compile_time", np.nan),
-        real_time_factor=number("real_time_factor", np.nan),
+        integrator=str(recorded.attrs.get("integrator", "")),
+        steps=int(attribute(recorded, "steps", 0)),
+        rejected_steps=int(attribute(recorded, "rejected_steps", 0)),
+        newton_iterations=int(attribute(recorded, "newton_iterations", 0)),
+        wall_time=attribute(recorded, "wall_time", np.nan),
+        compile_time=attribute(recorded, "compile_time", np.nan),
+        real_time_factor=attribute(recorded, "real_time_factor", np.nan),
         warnings=tuple(run.warnings),
     )

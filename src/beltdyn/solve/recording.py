@@ -12,6 +12,7 @@ from beltdyn.model import Drive
 from beltdyn.results import COORDINATE_NAMES, FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.energy import EnergyAccount
+from beltdyn.solve.flutter import FlutterWatch
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
 from beltdyn.system.arrays import NODE, POWERS, System
@@ -58,10 +59,13 @@ class Recording:
             FileRecorder(self._path, layout, attributes) if self._path else MemoryRecorder(layout, attributes)
         )
         self._energy = EnergyAccount()
+        self._flutter = FlutterWatch(system)
+        self._findings: dict[str, float] = {}
         self._waiting: list[Chunk] = []
         self._written = 0
         self._reached = self._step = 0.0
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
+        self._ended: float | None = None
 
     def __enter__(self) -> Self:
         """Begin; see the class."""
@@ -74,7 +78,7 @@ class Recording:
         interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
         self._write()
         status: Status = "interrupted" if interrupted else "completed" if kind is None else "failed"
-        self._recorder.close(status, self._attributes())
+        self._recorder.close(status, self._attributes() | self._findings)
         return interrupted
 
     def prepare(self) -> None:
@@ -104,6 +108,14 @@ class Recording:
             duration = self._drive.simulation.duration
             self._progress(Progress(reached, duration, self._step, self._written + waiting, phase))
 
+    def check(self) -> None:
+        """Look, when all is done, whether the belt may have fluttered."""
+        self._write()
+        self._ended = time.perf_counter()
+        flutter = self._flutter.find()
+        self._findings = flutter.attributes if flutter else {}
+        self._findings["check_time"] = time.perf_counter() - self._ended
+
     def run(self) -> Run:
         """The run that was recorded."""
         return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
@@ -122,6 +134,7 @@ class Recording:
         system, count = self._system, len(chunk.time)
         seen = observe_chunk(system, chunk)
         position, velocity = chunk.interpolate()
+        self._flutter.take(chunk.time, position, velocity, seen)
         nodes, pulleys = NODE * system.nodes, len(system.pulleys)
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
         coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
@@ -146,7 +159,7 @@ class Recording:
 
     def _attributes(self) -> dict[str, Any]:
         """Statistics of the solver, known at the end."""
-        wall = time.perf_counter() - self._compiled
+        wall = (self._ended or time.perf_counter()) - self._compiled
         return {
             "integrator": self._drive.simulation.integrator,
             "steps": self.statistics.steps,

@@ -56,6 +56,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in choose_integrator(drive)(task):
             recording.take(chunk)
+        recording.check()
     return recording.run()
 
 

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 from beltdyn.results import FileRecorder, Layout
-from beltdyn.results.recorded import names
+from beltdyn.results.recorded import attribute, names
 
 
 def test_names_are_text_in_a_file_and_in_a_dataset(
@@ -21,3 +21,16 @@ def test_names_are_text_in_a_file_and_in_a_dataset(
     with h5py.File(recorder.path) as file:
         assert names(file, "pulley") == ["Räder", "driven"]
         assert names(file, "span") == list(layout.spans)
+
+
+def test_attributes_are_numbers_in_a_file_and_in_a_dataset(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    """A file holds arrays of one."""
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    recorder.append(make_chunk(np.array([0.0])))
+    recorder.close("completed", {"flutter_growth": 7.5})
+    with recorder.dataset() as dataset, h5py.File(recorder.path) as file:
+        for recorded in (dataset, file):
+            assert attribute(recorded, "flutter_growth", 0.0) == 7.5
+            assert attribute(recorded, "flutter_rate", -1.0) == -1.0

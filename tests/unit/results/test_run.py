@@ -134,6 +134,23 @@ def test_pulley_that_slides_through_is_said(make_run: MakeRun, run: Run) -> None
     assert not any(warning.startswith("driver") for warning in found)
 
 
+def test_flutter_is_said(run: Run) -> None:
+    """Twice the root of 1e7 N/m^2 and 0.1036 kg/m is 2.0e3 N s/m^2."""
+
+    def warnings(growth: float) -> list[str]:
+        found = {"growth": growth, "rate": 700.0, "frequency": 1498.4, "start": 0.082, "end": 0.12}
+        attributes = {f"flutter_{name}": value for name, value in found.items()}
+        return Run(run.dataset.assign_attrs(attributes), run.drive).warnings
+
+    assert warnings(4.6) == []
+    assert warnings(18.6) == [
+        "the belt may flutter where it slides: between t = 0.082 s and 0.12 s vibrations of 1498 Hz can grow by up to "
+        "a factor of 1e+08. Long time steps damp them, short ones follow them, and speeds may differ: compare a run "
+        "with a smaller simulation.rtol. Raise contact.damping = 10 N s/m^2 (critical: 2e+03)."
+    ]
+    assert "by up to a factor of 1e+304." in warnings(1e4)[0]
+
+
 def test_gross_slip_that_has_passed_is_said(make_run: MakeRun) -> None:
     """Of 1 and 99 N less than the present load can be transmitted, from 0.2 to 0.3 s: two outputs of 0.1 s each."""
     tension = np.tile([30.0, 60.0], (11, 1))

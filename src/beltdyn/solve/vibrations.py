@@ -1,0 +1,164 @@
+"""Vibrations about a state in motion: eigenvalues of the equations of motion, linearised there.
+
+A deviation x exp(s t) from the motion obeys (K + s C + s^2 M) x = 0, with the tangents K by position, C by velocity and
+M by acceleration at the state.  They are taken as constant, which holds for vibrations much faster than the motion.
+"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.solve.engine import linearise
+from beltdyn.system.arrays import NODE, FloatArray, RingMatrix, System
+from beltdyn.system.motion import new_equations
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
+
+ComplexArray = NDArray[np.complex128]
+
+_BATCH, _BATCHES = 40, 2
+"""Steps of the Arnoldi method after which it looks what it has found, and how often it does at most."""
+_TOLERANCE = 1e-3
+"""Residual of an eigenvalue that counts as found, relative."""
+
+
+class Vibrations:
+    """Vibrations of a system about states in motion.
+
+    Parameters
+    ----------
+    system
+        The system.
+    """
+
+    def __init__(self, system: System) -> None:
+        self._system, self._equations = system, new_equations(system)
+        self._no_multipliers = np.zeros(NODE)
+        self._rows, self._columns = _places(self._equations.matrix)
+        self.size = NODE * system.nodes + len(self._equations.matrix.corner)
+        multipliers = self.size - NODE * system.joint
+        self._ties = np.maximum(self._rows, self._columns) >= multipliers
+
+    def tangents(
+        self, time: float, position: FloatArray, velocity: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Entries of K, C and M at a state, in the order in which `matrix` takes them.
+
+        Parameters
+        ----------
+        time
+            s.
+        position, velocity : ndarray, shape (6 N + D,)
+            The state.
+
+        Returns
+        -------
+        tuple of 3 ndarray
+            The ties of a joint, which are in any tangent, are left in K alone.
+        """
+        place, rate, still = position.copy(), velocity.copy(), np.zeros_like(position)
+
+        def tangent(by_place: float, by_rate: float, by_acceleration: float) -> FloatArray:
+            factors = by_place, by_rate, by_acceleration
+            linearise(self._system, time, place, rate, still, self._no_multipliers, *factors, self._equations)
+            return _entries(self._equations.matrix)
+
+        stiffness, damping, mass = tangent(1.0, 0.0, 0.0), tangent(0.0, 1.0, 0.0), tangent(0.0, 0.0, 1.0)
+        damping[self._ties] = 0.0
+        mass[self._ties] = 0.0
+        return stiffness, damping, mass
+
+    def matrix(self, entries: FloatArray | ComplexArray) -> "csc_array":
+        """Make a sparse matrix of entries."""
+        from scipy.sparse import csc_array
+
+        used = np.flatnonzero(entries)
+        places = self._rows[used], self._columns[used]
+        return csc_array((entries[used], places), shape=(self.size, self.size))
+
+    def fastest_growing(self, time: float, position: FloatArray, velocity: FloatArray, shift: complex) -> complex:
+        """Of the vibrations nearest to a shift the one that grows fastest.
+
+        Parameters
+        ----------
+        time, position, velocity
+            The state, as for `tangents`.
+        shift
+            Where to look, 1/s: growth, and i times the angular frequency.
+
+        Returns
+        -------
+        complex
+            Its eigenvalue s, 1/s; NaN where none is found.
+        """
+        solve = self._shifted_inverse(self.tangents(time, position, velocity), shift)
+        inverse = _largest_eigenvalues(solve, 2 * self.size) if solve else np.zeros(0)
+        return complex(max(shift + 1.0 / inverse, key=lambda value: value.real, default=np.nan))
+
+    def _shifted_inverse(
+        self, tangents: tuple[FloatArray, FloatArray, FloatArray], shift: complex
+    ) -> Callable[[ComplexArray], ComplexArray] | None:
+        """Solve (A - shift) z = y, where A has the eigenvectors (x, s x / |shift|); None if that is singular."""
+        from scipy.sparse.linalg import splu
+
+        stiffness, damping, mass = tangents
+        try:
+            factors = splu(self.matrix(stiffness + shift * damping + shift**2 * mass))
+        except RuntimeError:
+            return None
+        scale = abs(shift)
+        by_place, by_rate = self.matrix(damping + shift * mass), self.matrix(scale * mass)
+        massless = np.flatnonzero(np.diff(by_rate.indptr) == 0)
+
+        def solve(deviation: ComplexArray) -> ComplexArray:
+            place, rate = deviation[: self.size], deviation[self.size :]
+            moved = -factors.solve(np.asarray(by_place @ place + by_rate @ rate))
+            moved[massless] = 0.0  # multipliers, on which nothing depends but themselves
+            return np.concatenate([moved, (shift * moved + place) / scale])
+
+        return solve
+
+
+def _largest_eigenvalues(apply: Callable[[ComplexArray], ComplexArray], size: int) -> ComplexArray:
+    """Eigenvalues of largest magnitude of a linear map, those that the Arnoldi method finds first.
+
+    It works on one vector at a time: on the small matrices of whole bases (ARPACK) the threads of linear algebra wait
+    for each other longer than they compute.
+    """
+    vector = np.random.default_rng(0).standard_normal(size).astype(complex)
+    basis = [vector / np.linalg.norm(vector)]
+    projected = np.zeros((_BATCHES * _BATCH + 1, _BATCHES * _BATCH), complex)
+    for steps in range(1, _BATCHES * _BATCH + 1):
+        vector = apply(basis[-1])
+        for number, direction in enumerate(basis):
+            projected[number, steps - 1] = np.vdot(direction, vector)
+            vector -= projected[number, steps - 1] * direction
+        rest = np.linalg.norm(vector)
+        if steps % _BATCH == 0 and np.isfinite(rest):
+            values, vectors = np.linalg.eig(projected[:steps, :steps])
+            found = values[rest * abs(vectors[-1]) < _TOLERANCE * abs(values)]
+            if found.size:
+                return np.asarray(found)
+        projected[steps, steps - 1] = rest
+        basis.append(vector / rest if rest > 0.0 else vector)
+    return np.zeros(0, complex)
+
+
+def _entries(matrix: RingMatrix) -> FloatArray:
+    """Entries of a matrix, block after block."""
+    blocks = (matrix.diagonal, matrix.upper, matrix.lower, matrix.column, matrix.row, matrix.corner)
+    return np.concatenate([block.ravel() for block in blocks])
+
+
+def _places(matrix: RingMatrix) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of the entries of a matrix."""
+    nodes, border = len(matrix.diagonal), len(matrix.corner)
+    own = np.arange(NODE * nodes).reshape(nodes, NODE)
+    after, extra = np.roll(own, -1, axis=0), NODE * nodes + np.arange(border)
+    blocks = ((own, own), (own, after), (after, own), (own, extra), (extra, own), (extra, extra))
+    places = [np.broadcast_arrays(rows[..., :, None], columns[..., None, :]) for rows, columns in blocks]
+    rows, columns = (np.concatenate([place[axis].ravel() for place in places]) for axis in (0, 1))
+    return rows, columns
