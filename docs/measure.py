@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import beltdyn as bd
+from beltdyn.model import layer_lengths
 from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley, unequal_pulleys
 from beltdyn.report.distribution import distribution, find_peak, fit_line
-from beltdyn.report.hand_formulas import penalty_layer
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.simulate import choose_integrator
 from beltdyn.solve.trajectory import Statistics, drive_task
@@ -479,7 +479,7 @@ def friction_peaks() -> Iterator[Row]:
         forces = distribution(run, DRIVER)
         level = fit_line(forces, "friction").level
         rises = [find_peak(forces, at_exit).excess * level for at_exit in (False, True)]
-        layer = penalty_layer(drive, float(mean(run, "span_tension", 200).mean()))
+        _, layer = layer_lengths(drive, float(mean(run, "span_tension", 200).mean()))
         speed = float(mean(run, "belt_speed", 200).mean())
         by_hand = 0.5 * 1e4 * speed * (layer / drive.pulleys[DRIVER].radius) ** 2
         yield f"{stiffness:.0e}", *(f"{value:.0f} N/m" for value in (level, *rises, by_hand))
