@@ -49,9 +49,9 @@ for position, command in enumerate(_COMMANDS):
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit.
 
-    The exit code is 0 when all went well, 2 for bad input, 3 for a simulation that could not go on, and
-    130 for an interruption by the keyboard.  Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise:
-    matrices are so small that more would only wait for each other.
+    The exit code is 0 when all went well, 2 for bad input, 3 for a simulation that could not go on, 4 for doubtful
+    results where warnings are errors, and 130 for an interruption by the keyboard.  Linear algebra uses one thread
+    unless OMP_NUM_THREADS says otherwise: matrices are so small that more would only wait for each other.
 
     Parameters
     ----------

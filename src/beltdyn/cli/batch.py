@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from beltdyn.cli.console import show, show_error, show_table, show_warnings
 from beltdyn.cli.progress import runs_bar
-from beltdyn.cli.run import INTERRUPTED, refuse_overwriting, write_tables
+from beltdyn.cli.run import INTERRUPTED, doubt, refuse_overwriting, write_tables
 from beltdyn.errors import ConvergenceError, ModelError
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from beltdyn.solve import Ending
 
 
-def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, csv: bool) -> int:
+def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, csv: bool, strict: bool) -> int:
     """Simulate drives side by side, and show a table of them.
 
     Parameters
@@ -28,6 +28,8 @@ def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, cs
         How many at a time; by default as many as there are cores.
     csv
         Whether to write plain tables too.
+    strict
+        Whether warnings are errors.
 
     Returns
     -------
@@ -52,7 +54,9 @@ def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, cs
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
         show("Interrupted: what was computed is kept.")
         return INTERRUPTED
-    return ConvergenceError.exit_code if any(end.error for end in ends.values()) else 0
+    if any(end.error for end in ends.values()):
+        return ConvergenceError.exit_code
+    return doubt([warning for end in ends.values() if end.summary for warning in end.summary.warnings]) if strict else 0
 
 
 def _load_all(files: Sequence[Path]) -> dict[Path, "Drive"]:

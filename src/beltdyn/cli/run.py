@@ -1,13 +1,13 @@
 """`beltdyn run`."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 from cyclopts.validators import Number
 
-from beltdyn.cli.console import show
+from beltdyn.cli.console import show, show_error
 from beltdyn.cli.progress import progress_bar
 from beltdyn.cli.summary import show_summary
 from beltdyn.errors import ConvergenceError, ModelError
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from beltdyn.results import Run
 
 INTERRUPTED = 130
+DOUBTFUL = 4
 
 
 def run(
@@ -26,6 +27,7 @@ def run(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     jobs: Annotated[int | None, Parameter(alias="-j", validator=Number(gte=1))] = None,
     csv: Annotated[bool, Parameter(negative="")] = False,
+    strict: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Simulate a drive: a progress bar, then a summary, and the results in a NetCDF file.
 
@@ -43,11 +45,13 @@ def run(
         How many drives to simulate at a time; by default as many as there are cores.
     csv
         Write plain tables too, into a folder beside the result file, named after it with -tables.
+    strict
+        End with an error (exit code 4) where a warning makes results doubtful; they are kept.
     """
     if more:
         from beltdyn.cli.batch import run_several
 
-        return run_several((file, *more), output, jobs, csv)
+        return run_several((file, *more), output, jobs, csv, strict)
     from beltdyn.model import load
 
     drive = load(file)
@@ -56,7 +60,7 @@ def run(
     finished = simulate_to(drive, path)
     if csv and finished.outputs:
         write_tables(finished, path)
-    return exit_code(finished)
+    return exit_code(finished) or (doubt(finished.warnings) if strict else 0)
 
 
 def refuse_overwriting(path: Path, files: Iterable[Path]) -> None:
@@ -100,6 +104,15 @@ def simulate_to(drive: "Drive", path: Path) -> "Run":
         show("\nInterrupted: what was computed is kept.")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
     return finished
+
+
+def doubt(warnings: Sequence[str]) -> int:
+    """Exit code where warnings are errors, which are said; 0 without any."""
+    if not warnings:
+        return 0
+    count = f"{len(warnings)} warnings make" if warnings[1:] else "a warning makes"
+    show_error(f"{count} these results doubtful. They are kept; without --strict this is no error.")
+    return DOUBTFUL
 
 
 def exit_code(run: "Run") -> int:

@@ -1,6 +1,7 @@
 """`beltdyn run` of several drives: what it refuses beforehand, and what it says of every ending."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -131,6 +132,18 @@ def test_results_over_a_drive_file(refuse: Refuse, files: list[Path], simulated:
 
 def test_output_that_is_a_file(refuse: Refuse, files: list[Path]) -> None:
     assert "cannot be made" in refuse(words(files, "-o", str(files[0])))
+
+
+def test_warnings_are_errors_where_strict(
+    run_main: RunMain, files: list[Path], simulated: Callable[..., Any], summary: Summary
+) -> None:
+    sure, doubtful = (replace(summary, warnings=warnings) for warnings in ((), ("the belt is slack.",)))
+    simulated(*(Ending("completed", summary=one) for one in (sure, doubtful, sure)))
+    code, _, message = run_main(words(files, "--strict"))
+    assert code == 4
+    assert "a warning makes these results doubtful" in message
+    simulated(*[Ending("completed", summary=sure)] * 3)
+    assert run_main(words(files, "--strict"))[0] == 0
 
 
 @pytest.mark.parametrize("jobs", ["0", "-1", "many"])

@@ -134,6 +134,34 @@ def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypa
     }
 
 
+@pytest.mark.parametrize(
+    ("warnings", "words", "code", "error"),
+    [
+        (["the belt is slack."], ["--strict"], 4, "error: a warning makes these results doubtful."),
+        (["the belt is slack.", "it flutters."], ["--strict"], 4, "error: 2 warnings make these results doubtful."),
+        (["the belt is slack."], [], 0, ""),
+        ([], ["--strict"], 0, ""),
+    ],
+)
+def test_strict_run(
+    run_main: RunMain,
+    run: Run,
+    drive_file: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    warnings: list[str],
+    words: list[str],
+    code: int,
+    error: str,
+) -> None:
+    run.__dict__["warnings"] = warnings  # where a cached property keeps its value
+    monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
+    found, output, message = run_main(["run", str(drive_file), *words])
+    assert found == code
+    assert message.count("error: ") == (1 if error else 0)
+    assert error in message
+    assert "Results: " in output
+
+
 def test_a_wide_table_moves_together_before_it_cuts_names(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
