@@ -143,7 +143,7 @@ def draw_panel(ax: Axes, panel: Panel, curves: Curves) -> None:
         ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         ax.minorticks_off()
     if any(curve["label"] for curve in curves):
-        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "ncols": 2}
+        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "ncols": 2, "handlelength": 3.5}
         ax.legend(**below if panel.below else {})
 
 

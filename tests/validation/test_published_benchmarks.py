@@ -87,8 +87,8 @@ ARC = table("""
 MESH = 2.0 * FINEST.changed
 WEIGHT = GRAVITY * MASS * 2.0 * AXIS
 RTOL = 1e-4
-"""With friction as steep as this one's, and 1e-3, the torque at an instant is uncertain by 3 N over the radius, and takes
-four times as long to compute: Newton's method goes to and fro over the kinks of friction."""
+"""With friction as steep as this one's, and 1e-3, the torque at an instant is uncertain by 3 N over the radius, and
+takes four times as long to compute: Newton's method goes to and fro over the kinks of friction."""
 END = 2.35
 """s; means are taken from here to the end."""
 TURN = 0.026
