@@ -131,9 +131,13 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
         result.strain_energy[k] += chain_energy(e, section.axial, section.bending, length)
     else:
         result.strain_energy[k] += element_energy(e, section, length, system.elastic.points, system.elastic.weights)
+    kinetic, mass = 0.0, system.mass[element]
     for row in range(2 * NODE):
+        momentum = 0.0
         for column in range(2 * NODE):
-            result.kinetic_energy[k] += 0.5 * v[row] * system.mass[element, row, column] * v[column]
+            momentum += mass[row, column] * v[column]
+        kinetic += 0.5 * v[row] * momentum
+    result.kinetic_energy[k] += kinetic
 
 
 @kernel
