@@ -8,9 +8,11 @@ Numba also optimises a kernel and turns it into machine code before it links it 
 Here kernels take each other in as they were written; only those that Python calls are optimised, whole, and kept.
 """
 
+import atexit
 import gc
 import hashlib
 import os
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -163,7 +165,8 @@ def kernel_cache() -> Path:
     Returns
     -------
     Path
-        Below ``$BELTDYN_CACHE_DIR`` or the user's cache folder; a temporary folder where neither can be written.
+        Below ``$BELTDYN_CACHE_DIR`` or the user's cache folder; where neither can be written a temporary folder, which
+        is gone at the end.
     """
     chosen = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("beltdyn")
     folder = Path(chosen) / source_hash(PACKAGE)
@@ -172,7 +175,9 @@ def kernel_cache() -> Path:
         with tempfile.TemporaryFile(dir=folder):
             return folder
     except OSError:
-        return Path(tempfile.mkdtemp(prefix="beltdyn-"))
+        temporary = tempfile.mkdtemp(prefix="beltdyn-")
+        atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+        return Path(temporary)
 
 
 def source_hash(package: Path) -> str:

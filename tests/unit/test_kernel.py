@@ -62,6 +62,16 @@ def test_an_unwritable_cache_gives_way_to_a_temporary_one(tmp_path: Path, monkey
     assert kernel_cache().is_dir()
 
 
+def test_a_temporary_cache_is_gone_at_the_end(tmp_path: Path) -> None:
+    in_the_way = tmp_path / "file"
+    in_the_way.touch()
+    words = [sys.executable, "-c", "from beltdyn.kernel import kernel_cache; print(kernel_cache())"]
+    environment = os.environ | {CACHE_VARIABLE: str(in_the_way), "TMPDIR": str(tmp_path)}
+    folder = subprocess.run(words, env=environment, capture_output=True, text=True, check=True).stdout.strip()
+    assert Path(folder).parent == tmp_path
+    assert list(tmp_path.iterdir()) == [in_the_way]
+
+
 def test_machine_code_lands_in_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
 
