@@ -24,6 +24,7 @@ from beltdyn.results.checks import GROWTH_LIMIT
 from beltdyn.solve import simulate_all
 
 RTOLS = (1e-2, 1e-3, 1e-4)
+DEFAULT_RTOL = 1e-3
 REFERENCE = 1e-5
 RADII = (0.0, 0.6, 0.8, 1.0)
 DEFAULT = 0.6
@@ -51,6 +52,8 @@ BEGINNINGS = {"equilibrium": 0.1, "laid": 0.015}
 """Of a drive whose driver starts at once, s."""
 PROMISE_OF_ALL = 5.0
 """Largest error over rtol in every published case."""
+REJECTED = 0.02
+"""Largest part of the steps of a published case that may be rejected, at the default tolerance."""
 MANY_POINTS = 11
 """Fixed points of an element where there are less than 20 elements.  With 5 the drive does not know its own speed: a
 belt longer by a billionth changes it by 1e-4, since points touch or do not."""
@@ -125,6 +128,8 @@ class Runs(NamedTuple):
     """Of the pulleys, rad/s."""
     growth: dict[str, float]
     """Of vibrations where the belt slides, as the logarithm of a factor."""
+    rejected: dict[str, float]
+    """Part of the steps tried that was rejected."""
     failures: dict[str, str]
 
     def warns(self, key: Key) -> bool:
@@ -139,11 +144,13 @@ class Runs(NamedTuple):
 def run_all(drives: dict[str, Drive], folder: Path) -> Runs:
     paths = {name: folder / f"{name}.nc" for name in drives}
     endings = simulate_all({paths[name]: drive for name, drive in drives.items()})
-    runs = Runs({}, {}, {name: endings[path].error for name, path in paths.items() if endings[path].error})
+    runs = Runs({}, {}, {}, {name: endings[path].error for name, path in paths.items() if endings[path].error})
     for name in drives.keys() - runs.failures:
         with h5py.File(paths[name], "r") as file:
             runs.speeds[name] = file["pulley_speed"][...]
             runs.growth[name] = float(np.squeeze(file.attrs.get("flutter_growth", 0.0)))
+            steps, rejected = (int(np.squeeze(file.attrs[count])) for count in ("steps", "rejected_steps"))
+            runs.rejected[name] = rejected / max(1, steps + rejected)
     return runs
 
 
@@ -175,9 +182,10 @@ def standard(tmp_path_factory: pytest.TempPathFactory) -> Runs:
 
 @pytest.fixture(scope="session")
 def published(tmp_path_factory: pytest.TempPathFactory) -> Runs:
-    """All published cases over their whole duration, with the settings that serve better."""
+    """All published cases over their whole duration, with the settings that serve better, and as published."""
     kinds = product(PUBLISHED, (*RTOLS, REFERENCE))
     drives = {f"{name} {rtol:g}": better(PUBLISHED[name].build(), rtol=rtol) for name, rtol in kinds}
+    drives |= {name: case.build() for name, case in PUBLISHED.items()}
     return run_all(drives, tmp_path_factory.mktemp("published"))
 
 
@@ -277,3 +285,10 @@ def test_published_cases_land(published: Runs, measured: Callable[..., None], na
     growth = max(published.growth[f"{name} {rtol:g}"] for rtol in RTOLS)
     measured(**{f"rtol_{rtol:.0e}": ratio for rtol, ratio in ratios.items()}, growth=growth)
     assert max(ratios.values()) <= PROMISE_OF_ALL
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_hardly_a_step_is_rejected(published: Runs, measured: Callable[..., None], name: str) -> None:
+    shares = {"published": published.rejected[name], "better": published.rejected[f"{name} {DEFAULT_RTOL:g}"]}
+    measured(**shares)
+    assert max(shares.values()) < REJECTED
