@@ -21,6 +21,7 @@ from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
 from beltdyn.published import CASES as PUBLISHED
 from beltdyn.published import better, loaded_two_pulley, two_pulley
 from beltdyn.results.checks import GROWTH_LIMIT
+from beltdyn.results.recorded import attribute
 from beltdyn.solve import simulate_all
 
 RTOLS = (1e-2, 1e-3, 1e-4)
@@ -148,9 +149,9 @@ def run_all(drives: dict[str, Drive], folder: Path) -> Runs:
     for name in drives.keys() - runs.failures:
         with h5py.File(paths[name], "r") as file:
             runs.speeds[name] = file["pulley_speed"][...]
-            runs.growth[name] = float(np.squeeze(file.attrs.get("flutter_growth", 0.0)))
-            steps, rejected = (int(np.squeeze(file.attrs[count])) for count in ("steps", "rejected_steps"))
-            runs.rejected[name] = rejected / max(1, steps + rejected)
+            runs.growth[name] = attribute(file, "flutter_growth", 0.0)
+            steps, rejected = (attribute(file, count, np.nan) for count in ("steps", "rejected_steps"))
+            runs.rejected[name] = rejected / (steps + rejected)
     return runs
 
 

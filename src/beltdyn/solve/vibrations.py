@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.solve.engine import linearise
-from beltdyn.system.arrays import NODE, FloatArray, RingMatrix, System
+from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.motion import new_equations
+from beltdyn.system.ring_matrix import entries, places
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
@@ -37,7 +38,7 @@ class Vibrations:
     def __init__(self, system: System) -> None:
         self._system, self._equations = system, new_equations(system)
         self._no_multipliers = np.zeros(NODE)
-        self._rows, self._columns = _places(self._equations.matrix)
+        self._rows, self._columns = places(self._equations.matrix)
         self.size = NODE * system.nodes + len(self._equations.matrix.corner)
         multipliers = self.size - NODE * system.joint
         self._ties = np.maximum(self._rows, self._columns) >= multipliers
@@ -64,20 +65,19 @@ class Vibrations:
         def tangent(by_place: float, by_rate: float, by_acceleration: float) -> FloatArray:
             factors = by_place, by_rate, by_acceleration
             linearise(self._system, time, place, rate, still, self._no_multipliers, *factors, self._equations)
-            return _entries(self._equations.matrix)
+            return entries(self._equations.matrix)
 
         stiffness, damping, mass = tangent(1.0, 0.0, 0.0), tangent(0.0, 1.0, 0.0), tangent(0.0, 0.0, 1.0)
         damping[self._ties] = 0.0
         mass[self._ties] = 0.0
         return stiffness, damping, mass
 
-    def matrix(self, entries: FloatArray | ComplexArray) -> "csc_array":
+    def matrix(self, values: FloatArray | ComplexArray) -> "csc_array":
         """Make a sparse matrix of entries."""
         from scipy.sparse import csc_array
 
-        used = np.flatnonzero(entries)
-        places = self._rows[used], self._columns[used]
-        return csc_array((entries[used], places), shape=(self.size, self.size))
+        used = np.flatnonzero(values)
+        return csc_array((values[used], (self._rows[used], self._columns[used])), shape=(self.size, self.size))
 
     def fastest_growing(self, time: float, position: FloatArray, velocity: FloatArray, shift: complex) -> complex:
         """Of the vibrations nearest to a shift the one that grows fastest.
@@ -145,20 +145,3 @@ def _largest_eigenvalues(apply: Callable[[ComplexArray], ComplexArray], size: in
         projected[steps, steps - 1] = rest
         basis.append(vector / rest if rest > 0.0 else vector)
     return np.zeros(0, complex)
-
-
-def _entries(matrix: RingMatrix) -> FloatArray:
-    """Entries of a matrix, block after block."""
-    blocks = (matrix.diagonal, matrix.upper, matrix.lower, matrix.column, matrix.row, matrix.corner)
-    return np.concatenate([block.ravel() for block in blocks])
-
-
-def _places(matrix: RingMatrix) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Rows and columns of the entries of a matrix."""
-    nodes, border = len(matrix.diagonal), len(matrix.corner)
-    own = np.arange(NODE * nodes).reshape(nodes, NODE)
-    after, extra = np.roll(own, -1, axis=0), NODE * nodes + np.arange(border)
-    blocks = ((own, own), (own, after), (after, own), (own, extra), (extra, own), (extra, extra))
-    places = [np.broadcast_arrays(rows[..., :, None], columns[..., None, :]) for rows, columns in blocks]
-    rows, columns = (np.concatenate([place[axis].ravel() for place in places]) for axis in (0, 1))
-    return rows, columns

@@ -10,6 +10,7 @@ from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
 from beltdyn.system.motion import new_equations
+from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
 
 
@@ -131,15 +132,11 @@ class FirstOrder:
         """Minus the inverse mass times a tangent, dense, shape (6 N + D, 6 N + D)."""
         free = self._free
         nodes = NODE * self._system.nodes
-        tangent = np.zeros((self._half, self._half))
-        for k in range(self._system.nodes):
-            own, after = np.arange(NODE) + NODE * k, np.arange(NODE) + NODE * ((k + 1) % self._system.nodes)
-            tangent[np.ix_(own, own)] += matrix.diagonal[k]
-            tangent[np.ix_(own, after)] += matrix.upper[k]
-            tangent[np.ix_(after, own)] += matrix.lower[k]
-            tangent[np.ix_(own, nodes + free)] += matrix.column[k, :, : free.size]
-            tangent[np.ix_(nodes + free, own)] += matrix.row[k, : free.size]
-        tangent[np.ix_(nodes + free, nodes + free)] += matrix.corner[: free.size, : free.size]
+        size = nodes + len(matrix.corner)
+        whole, tangent = np.zeros((size, size)), np.zeros((self._half, self._half))
+        np.add.at(whole, places(matrix), entries(matrix))
+        moving = np.concatenate([np.arange(nodes), nodes + free])
+        tangent[np.ix_(moving, moving)] = whole[: moving.size, : moving.size]
         tangent[:nodes] = self._flexibility @ tangent[:nodes]
         tangent[nodes + free] /= self._system.bodies.inertia[free, None]
         return -tangent

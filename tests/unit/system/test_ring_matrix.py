@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from beltdyn.system.arrays import NODE, RingMatrix
-from beltdyn.system.ring_matrix import clear, ring_matrix, solve_ring, substitute
+from beltdyn.system.ring_matrix import clear, entries, places, ring_matrix, solve_ring, substitute
 
 FloatArray = NDArray[np.float64]
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
@@ -86,6 +86,16 @@ def test_nan_is_refused() -> None:
     ring = random_ring(4, 0, 7)
     ring.diagonal[0, 0, 0] = np.nan
     assert not solve_ring(ring, True, np.empty((4, NODE)), np.empty(0))
+
+
+@pytest.mark.parametrize("nodes", [3, 8])
+@pytest.mark.parametrize("border", [0, 3])
+def test_entries_and_their_places(dense: Dense, nodes: int, border: int) -> None:
+    ring = random_ring(nodes, border, 11)
+    expected = dense(ring, True)[0]
+    found = np.zeros_like(expected)
+    np.add.at(found, places(ring), entries(ring))
+    np.testing.assert_array_equal(found, expected)
 
 
 def test_clear() -> None:
