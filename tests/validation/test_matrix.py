@@ -20,7 +20,7 @@ from beltdyn import Drive, Pulley
 from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
 from beltdyn.published import CASES as PUBLISHED
 from beltdyn.published import better, loaded_two_pulley, two_pulley
-from beltdyn.results.checks import GROWTH_LIMIT
+from beltdyn.results.checks.flutter import GROWTH_LIMIT
 from beltdyn.results.recorded import attribute
 from beltdyn.solve import simulate_all
 

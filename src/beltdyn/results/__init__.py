@@ -2,6 +2,7 @@
 
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.layout import Layout
+from beltdyn.results.checks import Finding
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
@@ -18,6 +19,7 @@ __all__ = [
     "VARIABLES",
     "Balance",
     "FileRecorder",
+    "Finding",
     "Layout",
     "MemoryRecorder",
     "PulleySummary",

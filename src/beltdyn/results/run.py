@@ -10,7 +10,7 @@ import h5py
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
-from beltdyn.results.checks import find_warnings
+from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import open_dataset
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
@@ -76,11 +76,16 @@ class Run:
             return len(recorded["time"])
 
     @cached_property
-    def warnings(self) -> list[str]:
-        """What a reader of the results has to know; empty when all is well."""
+    def findings(self) -> list[Finding]:
+        """What makes the results doubtful, which numbers it spoils, and what to do; empty when all is well."""
         resolution = self.resolution if self.outputs else None
         with self.recorded() as recorded:
-            return find_warnings(recorded, self.drive, resolution)
+            return find(recorded, self.drive, resolution)
+
+    @property
+    def warnings(self) -> list[str]:
+        """The findings in words."""
+        return [str(finding) for finding in self.findings]
 
     @cached_property
     def resolution(self) -> Resolution:

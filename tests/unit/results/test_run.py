@@ -10,7 +10,8 @@ import xarray as xr
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
-from beltdyn.results.checks import _stopped_tensioners
+from beltdyn.results.checks import Evidence
+from beltdyn.results.checks.tensioners import stopped_tensioners
 
 MakeRun = Callable[..., Run]
 
@@ -178,5 +179,6 @@ def test_tensioner_on_its_stop_is_said(run: Run, position: np.ndarray, said: str
         SimpleNamespace(kind="sliding", pulley="idler", stops=None),
     ]
     dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": np.stack([position, 9.0 + position], axis=1)}
-    found = list(_stopped_tensioners(dataset, SimpleNamespace(tensioners=tensioners)))  # type: ignore[arg-type]
+    evidence = Evidence(dataset, SimpleNamespace(tensioners=tensioners), None)  # type: ignore[arg-type]
+    found = map(str, stopped_tensioners(evidence))
     assert [text.split(" is on its ")[1].split(". ")[0] for text in found] == ([said] if said else [])

@@ -1,0 +1,55 @@
+"""What makes a result doubtful, said with numbers and a remedy.
+
+A check takes the `Evidence` of a run and gives `Finding` objects, none when all is well. Each file holds a family of
+them; to add one, write it there and enter it in `CHECKS`.
+"""
+
+from beltdyn.model import Drive
+from beltdyn.results.checks.contact import leaves_pulley, slack_spans
+from beltdyn.results.checks.ending import unfinished
+from beltdyn.results.checks.energy import open_account
+from beltdyn.results.checks.finding import Check, Evidence, Finding
+from beltdyn.results.checks.flutter import flutter
+from beltdyn.results.checks.mesh import unresolved
+from beltdyn.results.checks.sliding import near_gross_slip, near_gross_slip_before
+from beltdyn.results.checks.tensioners import stopped_tensioners
+from beltdyn.results.recorded import Recorded
+from beltdyn.results.resolution import Resolution
+
+__all__ = ["CHECKS", "Check", "Evidence", "Finding", "find"]
+
+CHECKS: tuple[Check, ...] = (
+    unfinished,
+    open_account,
+    slack_spans,
+    leaves_pulley,
+    near_gross_slip,
+    near_gross_slip_before,
+    flutter,
+    stopped_tensioners,
+    unresolved,
+)
+"""Every check, in the order in which its findings are shown."""
+
+
+def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> list[Finding]:
+    """Look for what makes a result doubtful.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        The results.
+    drive : Drive
+        The drive.
+    resolution : Resolution or None
+        How well its mesh resolves tension and contact; None if there is no output.
+
+    Returns
+    -------
+    list of Finding
+        What was found.
+    """
+    if resolution is None:
+        return [Finding("nothing was recorded: the run ended before its first output.")]
+    evidence = Evidence(recorded, drive, resolution)
+    return [finding for check in CHECKS for finding in check(evidence)]
