@@ -1,8 +1,8 @@
 """The results of a run: one labelled dataset, its file, and what is derived from it."""
 
 from beltdyn.results.balance import Balance, power_balance
-from beltdyn.results.layout import Layout
 from beltdyn.results.checks import Finding
+from beltdyn.results.layout import Layout
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
