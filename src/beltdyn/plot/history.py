@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, styled, unit
 from beltdyn.results import Run
 from beltdyn.results.balance import LOSSES
+from beltdyn.results.closure import largest_closure
 
 _ENERGIES = (
     "driver_work",
@@ -117,9 +118,9 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
         variable = run.dataset[name]
         style = "-" if name.endswith("energy") else dash(1 if name.endswith("work") else 2)
         _line(ax, variable, str(variable.attrs["long_name"]), number, style)
-    closure = float(run.dataset["energy_closure"][-1])
+    closure = abs(largest_closure(run.dataset).error)
     ax.set(xlabel=label(run.dataset["time"]), ylabel=f"Energy [{unit(run.dataset[_ENERGIES[0]])}]")
-    ax.set_title(f"Closure error {closure:.1e} of the energy put in")
+    ax.set_title(f"Closure error up to {closure:.1e} of the energy put in")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
 

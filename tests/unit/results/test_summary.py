@@ -67,8 +67,14 @@ def test_spans_and_solver(run: Run) -> None:
     assert [span.tension for span in summary.spans] == pytest.approx([30.0, 60.0])
     assert summary.spans[0].belt_speed == pytest.approx(12.0 * 0.08125)
     assert (summary.steps, summary.newton_iterations, summary.real_time_factor) == (1200, 4900, 2.0)
-    assert summary.energy_closure == 1e-4
+    assert summary.energy_closure == pytest.approx(1e-4)
     assert summary.warnings == tuple(run.warnings)
+
+
+def test_closure_is_the_largest_over_time(make_run: Callable[..., Run]) -> None:
+    errors = np.zeros(11)
+    errors[3] = -0.04
+    assert summarize(make_run(outputs=11, energy_closure=errors)).energy_closure == -0.04
 
 
 def test_tensioners_that_move() -> None:

@@ -9,6 +9,7 @@ from beltdyn.published import better, two_pulley
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, Table, Value, verdict
 from beltdyn.results import Run
+from beltdyn.results.closure import largest_closure
 
 _LIMIT = 0.01
 _CASES: dict[str, Callable[[Drive], Drive]] = {"two_pulley_20": lambda drive: drive, "two_pulley_20_better": better}
@@ -45,9 +46,7 @@ def _published(run: Run) -> bool:
 def _closes(runs: Runs) -> Statement:
     def finding(settings: str, published: bool) -> Finding:
         errors = {
-            name: abs(float(run.dataset["energy_closure"][-1]))
-            for name, run in runs.items()
-            if _published(run) is published
+            name: abs(largest_closure(run.dataset).error) for name, run in runs.items() if _published(run) is published
         }
         worst = max(errors, key=lambda name: errors[name])
         numbers = [
@@ -63,7 +62,7 @@ def _closes(runs: Runs) -> Statement:
         title="The energy account closes",
         quote="",
         page=None,
-        criterion="The closure error of every run is below 1 % of the energy put in.",
+        criterion="The closure error of every run is at any time below 1 % of the energy put in.",
         findings=[finding("as published", True), finding("better settings", False)],
         remark="A check of our own; the paper gives no energies.",
     )
@@ -81,7 +80,7 @@ def _table(runs: Runs) -> Table:
                     name.replace("_", " "),
                     *ledger,
                     change,
-                    100.0 * float(end["energy_closure"]),
+                    100.0 * largest_closure(run.dataset).error,
                     int(run.dataset.attrs["steps"]),
                 ]
             )
@@ -92,7 +91,7 @@ def _table(runs: Runs) -> Table:
         "lost in friction [J]",
         "in damping [J]",
         "stored more [J]",
-        "closure [%]",
+        "largest closure error [%]",
         "steps",
     ]
     return Table("Energy at the end of each run with published settings", headings, rows)

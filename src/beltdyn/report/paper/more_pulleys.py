@@ -14,6 +14,7 @@ from beltdyn.report.picture import picture
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, verdict
 from beltdyn.results import Run
+from beltdyn.results.closure import largest_closure
 
 _FINE = 60
 _LIMIT = 0.01
@@ -98,7 +99,7 @@ def _several(runs: Runs) -> Statement:
     def finding(settings: str, name: str) -> Finding:
         run = runs[name]
         first = run.drive.pulleys[0]
-        closure = float(run.dataset["energy_closure"][-1])
+        closure = largest_closure(run.dataset).error
         numbers, met = (
             [Number("energy account open by", closure, "%")],
             run.status == "completed" and abs(closure) < _CLOSED,
