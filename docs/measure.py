@@ -20,7 +20,7 @@ from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley, unequ
 from beltdyn.report.distribution import distribution, find_peak, fit_line
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.simulate import choose_integrator
-from beltdyn.solve.trajectory import Statistics, drive_task
+from beltdyn.solve.trajectory import Chunk, Statistics, drive_task
 from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import at_rest
@@ -366,8 +366,10 @@ def from_shift(elements: int, part: float) -> tuple[float, FloatArray]:
     laid = at_rest(system, np.hstack([path.position(along), stretch * tangent, normal]))
     state = find_equilibrium(system, laid).state
     seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
-    chunks = choose_integrator(drive)(drive_task(drive, system, state, Statistics()))
-    return float(seen.span_tension[0, 0]), np.concatenate([chunk.interpolate()[1][:, -1] for chunk in chunks])
+    task = drive_task(drive, system, state, Statistics())
+    states = Chunk.join(list(choose_integrator(drive)(task)))
+    speed = states.at(task.instants[np.arange(task.instants.count)])[1][:, -1]
+    return float(seen.span_tension[0, 0]), speed
 
 
 @measurement("ripple")

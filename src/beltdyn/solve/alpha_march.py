@@ -7,24 +7,25 @@ import numpy as np
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.solve.engine import advance, restart
-from beltdyn.solve.generalized_alpha import REACHED, STRETCH
+from beltdyn.solve.generalized_alpha import REACHED
 from beltdyn.solve.march import (
     FAILED,
     ITERATIONS,
     REJECTED,
     STEPS,
     March,
-    Outputs,
     Settings,
-    empty_outputs,
+    Steps,
+    empty_steps,
     new_march,
 )
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import NODE, FloatArray
+from beltdyn.system.arrays import NODE
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
 
-_OUTPUTS = 64
+_ROOM = 64
+"""Steps handed out at once, at most."""
 _STEPS_AT_ONCE = 8000
 _FIRST_STEP = 1e-6
 _NEWTON_FRACTION = 0.01
@@ -58,39 +59,29 @@ class GeneralizedAlpha:
             spectral_radius=self.spectral_radius,
             velocity_tolerance=self.rtol * task.velocity_scale,
             newton_fraction=_NEWTON_FRACTION,
-            max_step=self.max_step or float(task.times[-1] - task.times[0]),
+            max_step=self.max_step or task.instants.end,
             long_step=_CROSSINGS * self.rtol**0.5 * crossing_time(system),
+            output_interval=task.instants.interval,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
-        march = new_march(float(task.times[0]), first_step, start.position, start.velocity)
+        march = new_march(0.0, first_step, start.position, start.velocity)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
-        yield Chunk.start(float(task.times[0]), start)
-        written = 1
+        yield Chunk.start(start)
         for stop in task.stops:
             restart(system, march, equations)
             while march.clock[0] < stop:
-                outputs = _room(task.times, written, march)
-                status, filled = advance(system, settings, march, equations, stop, budget, outputs)
+                steps = empty_steps(min(_ROOM, budget), march.position.size)
+                status, filled = advance(system, settings, march, equations, stop, budget, steps)
                 _count(task, march)
-                yield _chunk(outputs, filled, march)
-                written += filled
+                yield _chunk(steps, filled, march)
                 if status != REACHED:
                     raise ConvergenceError(_message(task, march, self))
 
 
-def _room(times: FloatArray, written: int, march: March) -> Outputs:
-    """Room for the next outputs, at least for all those that the next step can reach."""
-    farthest = march.clock[0] + STRETCH * march.clock[1]
-    end = max(written + _OUTPUTS, int(np.searchsorted(times, farthest, side="right")) + 1)
-    horizon = float(times[end]) if end < len(times) else np.inf
-    return empty_outputs(times[written:end], march.position.size)._replace(horizon=horizon)
-
-
-def _chunk(outputs: Outputs, filled: int, march: March) -> Chunk:
-    """The filled part of a buffer."""
-    arrays = {name: array[:filled] for name, array in outputs._asdict().items() if name != "horizon"}
-    return Chunk(**arrays, reached=float(march.clock[0]))
+def _chunk(steps: Steps, filled: int, march: March) -> Chunk:
+    """The filled part of the room for steps."""
+    return Chunk(**{name: array[:filled] for name, array in steps._asdict().items()}, reached=float(march.clock[0]))
 
 
 def _count(task: Task, march: March) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
 from beltdyn.solve import generalized_alpha
-from beltdyn.solve.march import March, Outputs, Settings, empty_outputs, new_march
+from beltdyn.solve.march import March, Settings, Steps, empty_steps, new_march
 from beltdyn.system.arrays import FloatArray, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
@@ -50,7 +50,7 @@ class Request(NamedTuple):
 
 @kernel
 def serve(
-    system: System, request: Request, settings: Settings, march: March, equations: Equations, outputs: Outputs
+    system: System, request: Request, settings: Settings, march: March, equations: Equations, steps: Steps
 ) -> tuple[int, int]:
     """Do what is asked for.
 
@@ -60,7 +60,7 @@ def serve(
         Belt, bodies, supports.
     request
         What to do.
-    settings, march, outputs
+    settings, march, steps
         As for `generalized_alpha.advance`.
     equations
         Arrays to work in.
@@ -72,7 +72,7 @@ def serve(
     """
     kind, trial = request.kind, march.trial
     if kind == ADVANCE:
-        return generalized_alpha.advance(system, settings, march, equations, request.time, request.budget, outputs)
+        return generalized_alpha.advance(system, settings, march, equations, request.time, request.budget, steps)
     if kind == MOVE:
         subtract_solution(system, equations, request.factor, trial[0])
         subtract_multipliers(system, equations, request.factor, march.multipliers)
@@ -105,10 +105,10 @@ def serve(
 
 
 def advance(
-    system: System, settings: Settings, march: March, equations: Equations, stop: float, budget: int, outputs: Outputs
+    system: System, settings: Settings, march: March, equations: Equations, stop: float, budget: int, steps: Steps
 ) -> tuple[int, int]:
     """Integrate; see `generalized_alpha.advance`."""
-    return serve(system, Request(ADVANCE, stop, budget), settings, march, equations, outputs)
+    return serve(system, Request(ADVANCE, stop, budget), settings, march, equations, steps)
 
 
 def linearise(
@@ -201,7 +201,7 @@ def _serve(
     size = motion[0].size
     march = new_march(request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
     march.trial[:3] = motion
-    solved = serve(system, request, _NO_SETTINGS, march, equations, empty_outputs(np.zeros(0), size))[0] == 1
+    solved = serve(system, request, _NO_SETTINGS, march, equations, empty_steps(0, size))[0] == 1
     for changed, vector in zip(motion, march.trial, strict=False):
         changed[:] = vector
     return solved

@@ -5,7 +5,7 @@ allowed in proportion to the length of the step; but not beyond a length at whic
 add up to what the tension of the belt feels.
 """
 
-from math import ceil, sqrt
+from math import ceil, floor, inf, sqrt
 from typing import Final
 
 import numpy as np
@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_step import Method, allowed_error, method_of, try_step
-from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Outputs, Settings
+from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.motion import Equations
 
 FloatArray = NDArray[np.float64]
 
 REACHED: Final = 0
-"""Status: the stop was reached, the buffer of outputs is full, or the budget is spent."""
+"""Status: the stop was reached, the room for steps is full, or the budget is spent."""
 STEP_TOO_SMALL: Final = 1
 """Status: no step was found that converges and is accurate."""
 STRETCH: Final = 1.2
@@ -44,9 +44,9 @@ def advance(
     equations: Equations,
     stop: float,
     budget: int,
-    outputs: Outputs,
+    steps: Steps,
 ) -> tuple[int, int]:
-    """Integrate until a stop, until all outputs are filled, or until a number of steps has been tried.
+    """Integrate until a stop, until there is no room for steps, or until a number of steps has been tried.
 
     Parameters
     ----------
@@ -62,25 +62,23 @@ def advance(
         Instant on which the last step ends, s: a kink or jump of what drives the system, or the end.
     budget
         Steps to try at most, so that the caller hears of progress.
-    outputs
-        Filled with the steps that hold the output instants.
+    steps
+        Filled with the steps that are accepted.
 
     Returns
     -------
     status : int
         `REACHED` or `STEP_TOO_SMALL`.
     filled : int
-        Number of outputs filled.
+        Number of steps filled.
     """
     filled = 0
     method = method_of(settings.spectral_radius)
     clock = march.clock
     for _ in range(budget):
-        if clock[0] >= stop or (filled == outputs.time.size and filled > 0):
+        if clock[0] >= stop or (filled == steps.time.size and filled > 0):
             break
-        step = _next_step(clock, settings.max_step, stop, outputs, filled)
-        if clock[0] + step + _SMALLEST_STEP >= outputs.horizon:
-            break
+        step = _next_step(clock, settings, stop)
         iterations = try_step(system, settings, method, march, step, equations)
         if iterations == 0:
             march.counts[FAILED] += 1
@@ -94,9 +92,8 @@ def advance(
                 factor /= STRETCH
             else:
                 march.counts[STEPS] += 1
-                filled = _accept(march, equations, step, outputs, filled)
-                if abs(stop - clock[0]) < _SMALLEST_STEP:
-                    clock[0] = stop
+                _accept(march, equations, step, stop)
+                filled = _keep(march, step, steps, filled)
             clock[1] = min(settings.max_step, factor * step)
         if clock[1] < _SMALLEST_STEP:
             return STEP_TOO_SMALL, filled
@@ -104,18 +101,14 @@ def advance(
 
 
 @kernel
-def _next_step(clock: FloatArray, longest: float, stop: float, outputs: Outputs, filled: int) -> float:
+def _next_step(clock: FloatArray, settings: Settings, stop: float) -> float:
     """One of the equal steps to the stop, or to the last output instant that one step reaches, or else to the next."""
-    wanted, end = clock[1], stop
-    longest = min(longest, STRETCH * wanted)
-    for k in range(filled, outputs.time.size):
-        if outputs.time[k] >= stop:
-            break
-        if outputs.time[k] - clock[0] > 0.5 * wanted:
-            end = outputs.time[k]
-            if k + 1 == outputs.time.size or outputs.time[k + 1] - clock[0] > longest:
-                break
-    left = end - clock[0]
+    wanted, interval = clock[1], settings.output_interval
+    longest = min(settings.max_step, STRETCH * wanted)
+    following = floor((clock[0] + 0.5 * wanted) / interval) + 1.0
+    reached = floor((clock[0] + longest) / interval)
+    end = max(following, reached) * interval if interval < inf else stop
+    left = min(stop, end) - clock[0]
     return left / ceil(left / longest * (1.0 - 1e-6))
 
 
@@ -136,26 +129,28 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
 
 
 @kernel
-def _accept(march: March, equations: Equations, step: float, outputs: Outputs, filled: int) -> int:
-    """Keep the step where it holds output instants, and move to its end; returns the number of outputs filled."""
-    start = march.clock[0]
-    position, velocity, power = march.trial[0], march.trial[1], equations.loads.power
-    while filled < outputs.time.size and outputs.time[filled] <= start + step + _SMALLEST_STEP:
-        x = min(1.0, (outputs.time[filled] - start) / step)
-        outputs.fraction[filled] = x
-        outputs.step[filled] = step
-        for i in range(position.size):
-            outputs.position[filled, 0, i], outputs.position[filled, 1, i] = march.position[i], position[i]
-            outputs.velocity[filled, 0, i], outputs.velocity[filled, 1, i] = march.velocity[i], velocity[i]
-        for k in range(power.size):
-            gain = (1.0 - 0.5 * x) * march.power[k] + 0.5 * x * power[k]
-            outputs.work[filled, k] = march.work[k] + x * step * gain
-        filled += 1
+def _accept(march: March, equations: Equations, step: float, stop: float) -> None:
+    """Move to the end of the step."""
+    power = equations.loads.power
     for k in range(power.size):
         march.work[k] += 0.5 * step * (march.power[k] + power[k])
         march.power[k] = power[k]
-    for i in range(position.size):
-        march.position[i], march.velocity[i] = position[i], velocity[i]
+    for i in range(march.position.size):
+        march.position[i], march.velocity[i] = march.trial[0, i], march.trial[1, i]
         march.acceleration[i], march.auxiliary[i] = march.trial[2, i], march.trial[3, i]
-    march.clock[0] = start + step
-    return filled
+    march.clock[0] += step
+    if abs(stop - march.clock[0]) < _SMALLEST_STEP:
+        march.clock[0] = stop
+
+
+@kernel
+def _keep(march: March, step: float, steps: Steps, filled: int) -> int:
+    """Keep the state that was reached, where there is room; returns the number of steps filled."""
+    if filled == steps.time.size:
+        return filled
+    steps.time[filled], steps.step[filled] = march.clock[0], step
+    for i in range(march.position.size):
+        steps.position[filled, i], steps.velocity[filled, i] = march.position[i], march.velocity[i]
+    for k in range(march.work.size):
+        steps.work[filled, k] = march.work[k]
+    return filled + 1

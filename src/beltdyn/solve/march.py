@@ -31,6 +31,8 @@ class Settings(NamedTuple):
     """s."""
     long_step: float = np.inf
     """Length from which on a step is allowed no more local error than one of this length, s."""
+    output_interval: float = np.inf
+    """Steps end on multiples of this where they can, s."""
 
 
 class March(NamedTuple):
@@ -54,47 +56,36 @@ class March(NamedTuple):
     """Steps, steps rejected for their error, steps that Newton failed, Newton iterations; shape (4,)."""
 
 
-class Outputs(NamedTuple):
-    """Steps around the output instants, filled by `advance`.
-
-    Most steps end on an output instant.  Where instants lie closer together than steps, both ends of the step are
-    kept: only there do the equations of motion hold, so that forces are interpolated, not taken from interpolated
-    states.
-    """
+class Steps(NamedTuple):
+    """Room for the ends of accepted steps, filled by `advance`: there the equations of motion hold."""
 
     time: FloatArray
-    """Instants, s, ascending, shape (k,)."""
-    fraction: FloatArray
-    """Where in its step each instant lies, 0 to 1, shape (k,)."""
+    """s, shape (k,)."""
     step: FloatArray
     """Length of the step, s, shape (k,)."""
     position: FloatArray
-    """At start and end of the step, shape (k, 2, 6 N + D)."""
+    """Shape (k, 6 N + D)."""
     velocity: FloatArray
     """Alike."""
     work: FloatArray
-    """Works at the instant, shape (k, 7)."""
-    horizon: float = np.inf
-    """First output instant for which there is no room, s: no step may reach it."""
+    """Shape (k, 7)."""
 
 
-def empty_outputs(times: FloatArray, size: int) -> Outputs:
-    """Make room for the steps around some output instants.
+def empty_steps(count: int, size: int) -> Steps:
+    """Make room for steps.
 
     Parameters
     ----------
-    times : ndarray, shape (k,)
-        Instants, s, ascending.
+    count
+        How many; without room for any, `advance` keeps none.
     size
         Size of a state, 6 N + D.
     """
-    count = len(times)
-    return Outputs(
-        time=times.copy(),
-        fraction=np.empty(count),
+    return Steps(
+        time=np.empty(count),
         step=np.empty(count),
-        position=np.empty((count, 2, size)),
-        velocity=np.empty((count, 2, size)),
+        position=np.empty((count, size)),
+        velocity=np.empty((count, size)),
         work=np.empty((count, len(POWERS))),
     )
 

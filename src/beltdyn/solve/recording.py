@@ -13,16 +13,21 @@ from beltdyn.results import COORDINATE_NAMES, FileRecorder, Layout, MemoryRecord
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.flutter import FlutterWatch
+from beltdyn.solve.instants import Instants
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
-from beltdyn.system.arrays import NODE, POWERS, System
+from beltdyn.system.arrays import NODE, POWERS, FloatArray, System
 from beltdyn.system.discretization import curve_lengths, point_coordinates
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
 
 _SECONDS_BETWEEN_WRITES = 0.25
-_DECIMALS = 12
-"""Of a time in s; ends of steps that agree in them are the same, and are observed once."""
+_MOST_WAITING = 512
+"""States that wait to be observed."""
+_BLOCK = 512
+"""Outputs that are made at a time."""
+
+Arrays = dict[str, NDArray[Any]]
 
 
 class Recording:
@@ -58,10 +63,12 @@ class Recording:
         self._recorder: Recorder = (
             FileRecorder(self._path, layout, attributes) if self._path else MemoryRecorder(layout, attributes)
         )
+        self._instants = Instants(drive.simulation.output_interval, drive.simulation.duration)
         self._energy = EnergyAccount()
         self._flutter = FlutterWatch(system)
         self._findings: dict[str, float] = {}
         self._waiting: list[Chunk] = []
+        self._before: tuple[Chunk, Arrays] | None = None
         self._written = 0
         self._reached = self._step = 0.0
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
@@ -98,15 +105,16 @@ class Recording:
             self._step = float(chunk.step[-1])
         self._reached = chunk.reached
         self.tell(chunk.reached, phase)
-        if time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
+        states = sum(len(chunk.time) for chunk in self._waiting)
+        if states > _MOST_WAITING or time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
             self._write()
 
     def tell(self, reached: float, phase: Phase) -> None:
         """Tell of progress."""
         if self._progress is not None:
-            waiting = sum(len(chunk.time) for chunk in self._waiting)
             duration = self._drive.simulation.duration
-            self._progress(Progress(reached, duration, self._step, self._written + waiting, phase))
+            outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
+            self._progress(Progress(reached, duration, self._step, outputs, phase))
 
     def check(self) -> None:
         """Look, when all is done, whether the belt may have fluttered."""
@@ -121,31 +129,44 @@ class Recording:
         return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
 
     def _write(self) -> None:
-        """Observe and record the states that wait."""
+        """Observe the states that wait, and record the outputs that lie in their steps."""
         if self._waiting:
-            chunk = Chunk.join(self._waiting)
-            self._recorder.append(self._variables(chunk))
-            self._written += len(chunk.time)
+            states = Chunk.join(self._waiting)
             self._waiting.clear()
+            seen = self._observe(states)
+            if self._before is not None:
+                states = Chunk.join([self._before[0], states])
+                seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
+            self._before = states.last(), {name: values[-1:] for name, values in seen.items()}
+            end = self._instants.until(float(states.time[-1]))
+            for first in range(self._written, end, _BLOCK):
+                numbers = np.arange(first, min(first + _BLOCK, end))
+                self._recorder.append(self._outputs(states, seen, self._instants[numbers]))
+                self._written += len(numbers)
         self._last_write = time.perf_counter()
 
-    def _variables(self, chunk: Chunk) -> dict[str, Any]:
-        """Every recorded variable at the instants of a chunk."""
-        system, count = self._system, len(chunk.time)
-        seen = observe_chunk(system, chunk)
-        position, velocity = chunk.interpolate()
-        self._flutter.take(chunk.time, position, velocity, seen)
-        nodes, pulleys = NODE * system.nodes, len(system.pulleys)
-        shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
-        coordinates = position[:, :nodes].reshape(count, -1, NODE // system.points)
+    def _observe(self, states: Chunk) -> Arrays:
+        """What is seen at successive states, and the energy account there."""
+        seen = observe(self._system, states.time, states.position, states.velocity)._asdict()
+        self._flutter.take(states.time, states.position, states.velocity, seen)
         stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
         potential = np.stack([seen["spring_energy"], seen["potential_energy"]], axis=1)
+        closure = self._energy.closure(stored, potential, states.work)
+        return {**seen, **dict(zip(POWERS, states.work.T, strict=True)), "energy_closure": closure}
+
+    def _outputs(self, states: Chunk, seen: Arrays, instants: FloatArray) -> Arrays:
+        """Every recorded variable at some instants."""
+        system = self._system
+        position, velocity = states.at(instants)
+        nodes, pulleys = NODE * system.nodes, len(system.pulleys)
+        shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
+        coordinates = position[:, :nodes].reshape(len(instants), -1, NODE // system.points)
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
+        end, part = states.locate(instants)
         return {
-            **seen,
+            **{name: interpolated(values, end, part) for name, values in seen.items()},
             **(carried if len(system.tensioners) else {}),
-            **dict(zip(POWERS, chunk.work.T, strict=True)),
-            "time": chunk.time,
+            "time": instants,
             "pulley_speed": velocity[:, nodes : nodes + pulleys],
             "pulley_angle": position[:, nodes : nodes + pulleys],
             "shaft_speed": velocity[:, shafts],
@@ -153,8 +174,7 @@ class Recording:
             "node_position": coordinates[..., :2],
             "nodal_coordinates": coordinates,
             "nodal_velocities": velocity[:, :nodes].reshape(coordinates.shape),
-            "energy_closure": self._energy.closure(stored, potential, chunk.work),
-            "step_size": chunk.step,
+            "step_size": states.step[end],
         }
 
     def _attributes(self) -> dict[str, Any]:
@@ -173,34 +193,26 @@ class Recording:
         }
 
 
-def observe_chunk(system: System, chunk: Chunk) -> dict[str, NDArray[Any]]:
-    """Derived quantities at the instants of a chunk.
+def interpolated(values: NDArray[Any], end: NDArray[np.intp], part: FloatArray) -> NDArray[Any]:
+    """Interpolate linearly within steps what is seen at their ends: only there do the equations of motion hold.
 
     Parameters
     ----------
-    system
-        What is simulated.
-    chunk
-        Solver steps.
+    values : ndarray, shape (k, ...)
+        At successive states; of whole numbers, that of the nearer end is taken.
+    end, part : ndarray, shape (m,)
+        Result of `Chunk.locate`.
 
     Returns
     -------
-    dict
-        The fields of `Observations`.  An instant inside a step gets the mean of what is seen at its ends, weighted by
-        its place; the pulley that a point touches is that of the nearer end.
+    ndarray, shape (m, ...)
     """
-    x, step = chunk.fraction, chunk.step
-    inside = np.flatnonzero(x < 1.0)
-    instants = np.concatenate([chunk.time + (1.0 - x) * step, chunk.time[inside] - x[inside] * step[inside]])
-    position = np.concatenate([chunk.position[:, 1], chunk.position[inside, 0]])
-    velocity = np.concatenate([chunk.velocity[:, 1], chunk.velocity[inside, 0]])
-    _, first, place = np.unique(np.round(instants, _DECIMALS), return_index=True, return_inverse=True)
-    seen = observe(system, instants[first], position[first], velocity[first])._asdict()
-    result = {name: values[place[: len(x)]] for name, values in seen.items()}
-    for name, values in result.items():
-        weight = x[inside].reshape(-1, *[1] * (values.ndim - 1))
-        weight = np.round(weight) if values.dtype.kind == "i" else weight
-        values[inside] = (1.0 - weight) * seen[name][place[len(x) :]] + weight * values[inside]
+    if values.dtype.kind == "i":
+        return np.asarray(values[np.where(part < 0.5, np.maximum(end - 1, 0), end)])
+    result = values[end]
+    inside = np.flatnonzero(part < 1.0)
+    weight = part[inside].reshape(-1, *[1] * (values.ndim - 1))
+    result[inside] = weight * result[inside] + (1.0 - weight) * values[end[inside] - 1]
     return result
 
 

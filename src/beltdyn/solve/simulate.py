@@ -85,7 +85,7 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
         recording.prepare()
         recording.tell(0.0, "equilibrium")
         state = _at_rest(drive, system)
-        recording.take(Chunk.start(0.0, state), "equilibrium")
+        recording.take(Chunk.start(state), "equilibrium")
     return recording.run()
 
 

@@ -5,12 +5,13 @@ multipliers, the accelerations come from Eq. 26 with its constant matrices; with
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.solve.instants import SAME
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import FloatArray
 from beltdyn.system.first_order import FirstOrder
@@ -18,6 +19,8 @@ from beltdyn.system.first_order import FirstOrder
 Name = Literal["cvode", "ida", "bdf", "radau"]
 
 _POSITION_TIME = 1e-3
+_ROOM = 64
+"""States between steps that are handed out at once, at most."""
 _RELATIVE = 1e-9
 _PART = 0.02
 """Error that one step may make, over that of the run: the errors of steps add up."""
@@ -49,8 +52,8 @@ class StandardIntegrator:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
         tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, _POSITION_TIME)
-        y, time = equations.pack(task.start), float(task.times[0])
-        yield Chunk.start(time, task.start)
+        y, time = equations.pack(task.start), 0.0
+        yield Chunk.start(task.start)
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy
@@ -63,10 +66,12 @@ class StandardIntegrator:
                     raise self._give_up(before, error) from error
                 task.statistics.steps += solver.time > before  # SUNDIALS returns once more where it has interpolated
                 task.statistics.evaluations = equations.evaluations
-                count = int(np.searchsorted(task.times, solver.time, side="right"))
-                instants = task.times[written:count]
-                states = [solver.at(float(instant)) for instant in instants]
-                yield _chunk(equations, instants, states, solver.time - before, solver.time)
+                count = task.instants.until(solver.time)
+                for first in range(written, count, _ROOM):
+                    instants = task.instants[np.arange(first, min(first + _ROOM, count))]
+                    yield _chunk(equations, solver, instants[instants < solver.time - SAME], before)
+                if solver.time > before:
+                    yield _chunk(equations, solver, np.array([solver.time]), before)
                 written = count
             time, y = stop, solver.at(stop)
 
@@ -211,9 +216,10 @@ def _import_sundials() -> Any:
     return sksundae
 
 
-def _chunk(equations: FirstOrder, time: FloatArray, states: list[FloatArray], step: float, reached: float) -> Chunk:
-    """Outputs from unknowns."""
-    y = np.array(states).reshape(len(states), equations.size)
+def _chunk(equations: FirstOrder, solver: _Solver, time: FloatArray, before: float) -> Chunk:
+    """States at some instants of the solver's last step, which began at a time, s."""
+    y = np.array([solver.at(float(instant)) for instant in time]).reshape(len(time), equations.size)
     position, velocity, work = equations.unpack(y)
     equations.prescribe(time, position, velocity)
-    return replace(Chunk.at(time, position, velocity, work, np.full(len(time), step)), reached=reached)
+    step = np.full(len(time), solver.time - before)
+    return Chunk(time, step, position, velocity, work, reached=solver.time)

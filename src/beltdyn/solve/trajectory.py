@@ -1,38 +1,39 @@
 """What every time integrator takes and gives, whatever its method."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Protocol, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.model import Drive, Motor, Pulley, install
+from beltdyn.solve.instants import SAME, Instants
 from beltdyn.system.arrays import POWERS, FloatArray, System
 from beltdyn.system.state import State
+
+IntArray = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
 class Chunk:
-    """Solver steps around some successive output instants; none in a chunk that only tells of progress.
+    """Successive states of a solver, at the ends of its steps; none in a chunk that only tells of progress.
 
     Attributes
     ----------
     time : ndarray, shape (k,)
-        Output instants, s.
-    fraction : ndarray, shape (k,)
-        Where in its step each instant lies, 0 to 1.
+        s, ascending.
     step : ndarray, shape (k,)
-        Length of the step, s.
-    position, velocity : ndarray, shape (k, 2, 6 N + D)
-        Nodal coordinates and coordinates of bodies, and their rates, at start and end of the step.
+        Length of the step that ends there, s; zero at the start.
+    position, velocity : ndarray, shape (k, 6 N + D)
+        Nodal coordinates and coordinates of bodies, and their rates.
     work : ndarray, shape (k, 7)
-        Time integrals of the powers in `system.arrays.POWERS` at the instants, J.
+        Time integrals of the powers in `system.arrays.POWERS`, J.
     reached : float
         Time that the solver has reached, s.
     """
 
     time: FloatArray
-    fraction: FloatArray
     step: FloatArray
     position: FloatArray
     velocity: FloatArray
@@ -40,31 +41,10 @@ class Chunk:
     reached: float
 
     @classmethod
-    def at(
-        cls, time: FloatArray, position: FloatArray, velocity: FloatArray, work: FloatArray, step: FloatArray
-    ) -> Self:
-        """States that a solver hands out at the output instants themselves.
-
-        Parameters
-        ----------
-        time, position, velocity, work, step : ndarray
-            As in a chunk, but position and velocity of shape (k, 6 N + D).
-        """
-        return cls(
-            time=time,
-            fraction=np.ones(len(time)),
-            step=step,
-            position=np.repeat(position[:, None], 2, axis=1),
-            velocity=np.repeat(velocity[:, None], 2, axis=1),
-            work=work,
-            reached=float(time[-1]) if len(time) else np.nan,
-        )
-
-    @classmethod
-    def start(cls, time: float, state: State) -> Self:
-        """A state before the first step, at a time (s)."""
+    def start(cls, state: State) -> Self:
+        """The state at time zero, before the first step."""
         zero = np.zeros(1)
-        return cls.at(np.array([time]), state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), zero)
+        return cls(zero, zero, state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), 0.0)
 
     @classmethod
     def join(cls, chunks: Sequence[Self]) -> Self:
@@ -73,22 +53,55 @@ class Chunk:
         arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in names}
         return cls(**arrays, reached=chunks[-1].reached)
 
-    def interpolate(self) -> tuple[FloatArray, FloatArray]:
-        """Position and velocity at the instants: cubic Hermite interpolation within the steps.
+    def last(self) -> Self:
+        """The last state alone."""
+        arrays = {item.name: getattr(self, item.name)[-1:] for item in fields(self)[:-1]}
+        return replace(self, **arrays)
+
+    def locate(self, instants: FloatArray) -> tuple[IntArray, FloatArray]:
+        """Find the states at which steps end that hold some instants.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (m,)
+            s, ascending, not before the first state nor after the last one.
 
         Returns
         -------
-        position, velocity : ndarray, shape (k, 6 N + D)
+        end : ndarray of int, shape (m,)
+            Numbers of states.
+        part : ndarray, shape (m,)
+            Where in its step each instant lies: 1 at its end.
         """
-        x, step = self.fraction[:, None], self.step[:, None]
-        before, after = self.position[:, 0], self.position[:, 1]
-        start, end = self.velocity[:, 0], self.velocity[:, 1]
+        end = np.minimum(np.searchsorted(self.time, instants - SAME), len(self.time) - 1)
+        before = self.time[np.maximum(end - 1, 0)]
+        length = self.time[end] - before
+        part = np.divide(instants - before, length, out=np.ones(len(end)), where=length > 0.0)
+        return end, np.where(instants >= self.time[end] - SAME, 1.0, part)
+
+    def at(self, instants: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Position and velocity at some instants: cubic Hermite interpolation within the steps.
+
+        Parameters
+        ----------
+        instants : ndarray, shape (m,)
+            As for `locate`.
+
+        Returns
+        -------
+        position, velocity : ndarray, shape (m, 6 N + D)
+        """
+        end, part = self.locate(instants)
+        first, x = np.maximum(end - 1, 0), part[:, None]
+        step = (self.time[end] - self.time[first])[:, None]
+        before, after = self.position[first], self.position[end]
+        start, stop = self.velocity[first], self.velocity[end]
         rest = 1.0 - x
         rise = np.divide(after - before, step, out=np.zeros_like(before), where=step > 0.0)
-        position = before + step * x * (x * (3.0 - 2.0 * x) * rise + rest * (rest * start - x * end))
-        velocity = 6.0 * x * rest * rise + rest * (1.0 - 3.0 * x) * start + x * (3.0 * x - 2.0) * end
+        position = before + step * x * (x * (3.0 - 2.0 * x) * rise + rest * (rest * start - x * stop))
+        velocity = 6.0 * x * rest * rise + rest * (1.0 - 3.0 * x) * start + x * (3.0 * x - 2.0) * stop
         inside = x < 1.0
-        return np.where(inside, position, after), np.where(inside, velocity, end)
+        return np.where(inside, position, after), np.where(inside, velocity, stop)
 
 
 @dataclass
@@ -122,9 +135,9 @@ class Task:
     system : System
         Belt, pulleys, supports.
     start : State
-        State at the first output instant.
-    times : ndarray, shape (k,)
-        Output instants, s, ascending; the solver ends at the last one.
+        State at time zero.
+    instants : Instants
+        Output instants, on which steps end where they can; the solver ends at the last one.
     breakpoints : sequence of float
         Instants between, s, on which a step must end because what drives the system has a kink or a jump there.
     velocity_scale : float
@@ -135,7 +148,7 @@ class Task:
 
     system: System
     start: State
-    times: FloatArray
+    instants: Instants
     breakpoints: Sequence[float]
     velocity_scale: float
     statistics: Statistics
@@ -143,8 +156,8 @@ class Task:
     @property
     def stops(self) -> list[float]:
         """Breakpoints after the start, and the end, s."""
-        first, last = float(self.times[0]), float(self.times[-1])
-        return [*sorted({float(t) for t in self.breakpoints if first < t < last}), last]
+        last = self.instants.end
+        return [*sorted({float(t) for t in self.breakpoints if 0.0 < t < last}), last]
 
 
 class Integrator(Protocol):
@@ -185,12 +198,8 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
         Outputs at multiples of the interval and at the end.
     """
     settings = drive.simulation
-    count = int(np.floor(settings.duration / settings.output_interval * (1 + 1e-12)))
-    times: FloatArray = settings.output_interval * np.arange(count + 1, dtype=np.float64)
-    if settings.duration - times[-1] > 1e-9 * settings.duration:
-        times = np.append(times, settings.duration)
-    times[-1] = settings.duration
-    return Task(system, start, times, drive.breakpoints, velocity_scale(drive), statistics)
+    instants = Instants(settings.output_interval, settings.duration)
+    return Task(system, start, instants, drive.breakpoints, velocity_scale(drive), statistics)
 
 
 def velocity_scale(drive: Drive) -> float:

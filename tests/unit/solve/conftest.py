@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
+from beltdyn.solve.instants import Instants
 from beltdyn.solve.trajectory import Statistics, Task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
@@ -49,9 +50,9 @@ def spinning(drive: Drive) -> System:
 
 @pytest.fixture
 def spin(spinning: System) -> Callable[..., Task]:
-    """The task of following it."""
+    """The task of following it for half a second."""
 
-    def task(times: Any, breakpoints: tuple[float, ...] = (), system: System = spinning) -> Task:
-        return Task(system, straight(system), np.asarray(times, dtype=float), breakpoints, 0.1, Statistics())
+    def task(interval: float, breakpoints: tuple[float, ...] = (), system: System = spinning) -> Task:
+        return Task(system, straight(system), Instants(interval, 0.5), breakpoints, 0.1, Statistics())
 
     return task

@@ -9,14 +9,20 @@ from beltdyn.solve.alpha_march import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Task
 
 Spin = Callable[..., Task]
-TIMES = np.linspace(0.0, 0.5, 201)
+INTERVAL = 2.5e-3
+TIMES = INTERVAL * np.arange(201)
 
 
-def test_hands_out_every_instant_once(spin: Spin) -> None:
-    """Also where breakpoints lie between, on and beside them, and with more outputs than fit in a buffer."""
-    chunks = list(GeneralizedAlpha(0.8, 1e-3)(spin(TIMES, (0.1, 0.2001))))
-    np.testing.assert_array_equal(Chunk.join(chunks).time, TIMES)
-    angles = Chunk.join(chunks).interpolate()[0][:, -1]
+def test_steps_end_on_outputs_and_breakpoints(spin: Spin) -> None:
+    """Also where breakpoints lie between, on and beside outputs, and with more steps than fit in a buffer."""
+    chunks = list(GeneralizedAlpha(0.8, 1e-3, max_step=INTERVAL)(spin(INTERVAL, (0.1, 0.2001))))
+    joined = Chunk.join(chunks)
+    assert len(chunks) > 3
+    assert np.all(np.diff(joined.time) > 0.0)
+    np.testing.assert_allclose(joined.step[1:], np.diff(joined.time), rtol=1e-6)
+    for instant in (*TIMES, 0.2001):
+        assert np.min(np.abs(joined.time - instant)) < 1e-11
+    angles = joined.at(TIMES)[0][:, -1]
     np.testing.assert_allclose(angles, 2.5 * TIMES**2, atol=1e-10)  # rounding
     reached = [chunk.reached for chunk in chunks]
     assert reached == sorted(reached)
@@ -24,7 +30,7 @@ def test_hands_out_every_instant_once(spin: Spin) -> None:
 
 
 def test_statistics_and_longest_step(spin: Spin) -> None:
-    task = spin(TIMES)
+    task = spin(INTERVAL)
     steps = np.concatenate([chunk.step for chunk in GeneralizedAlpha(0.8, 1e-3, max_step=2.5e-3)(task)])
     assert steps[0] == 0.0
     assert np.max(steps) <= 2.5e-3 * (1 + 1e-5)  # rounding of the instants

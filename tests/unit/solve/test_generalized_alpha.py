@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.solve.engine import advance, restart
 from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
-from beltdyn.solve.march import FAILED, STEPS, March, Outputs, Settings, empty_outputs, new_march
+from beltdyn.solve.march import FAILED, STEPS, March, Settings, Steps, empty_steps, new_march
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.motion import new_equations
@@ -25,61 +25,72 @@ def start(system: System, step: float = 1e-3) -> March:
 
 
 def run(
-    system: System, march: March, stop: float, times: list[float], budget: int = 10_000, settings: Settings = SETTINGS
-) -> tuple[int, Outputs]:
-    outputs, equations = empty_outputs(np.array(times), march.position.size), new_equations(system)
+    system: System, march: March, stop: float, room: int, budget: int = 10_000, settings: Settings = SETTINGS
+) -> Chunk:
+    steps, equations = empty_steps(room, march.position.size), new_equations(system)
     restart(system, march, equations)
-    status, filled = advance(system, settings, march, equations, stop, budget, outputs)
+    status, filled = advance(system, settings, march, equations, stop, budget, steps)
     assert status == REACHED
-    return filled, outputs
+    return Chunk(*(array[:filled] for array in steps), reached=float(march.clock[0]))
 
 
-def test_outputs_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:
-    times = [0.0123, 0.1, 0.25, 0.7]
-    march = start(spinning)
-    filled, outputs = run(spinning, march, 0.7, times)
-    assert filled == len(times)
-    chunk = Chunk(**{name: getattr(outputs, name) for name in Chunk.__annotations__ if name != "reached"}, reached=0.7)
-    position, velocity = chunk.interpolate()
-    np.testing.assert_allclose(position[:, -1], 0.5 * ACCELERATION * outputs.time**2, atol=ROUNDING)
-    np.testing.assert_allclose(velocity[:, -1], ACCELERATION * outputs.time, atol=ROUNDING)
-    works = np.zeros((len(times), len(POWERS)))
-    works[:, 1] = 2.0 * 0.5 * ACCELERATION * outputs.time**2  # torque times angle
-    np.testing.assert_allclose(outputs.work, works, atol=ROUNDING)
+def test_states_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:
+    times = np.array([0.0123, 0.1, 0.25, 0.7])
+    chunk = Chunk.join([Chunk.start(straight(spinning)), run(spinning, start(spinning), 0.7, 10_000)])
+    assert chunk.time[-1] == 0.7
+    position, velocity = chunk.at(times)
+    np.testing.assert_allclose(position[:, -1], 0.5 * ACCELERATION * times**2, atol=ROUNDING)
+    np.testing.assert_allclose(velocity[:, -1], ACCELERATION * times, atol=ROUNDING)
+    works = np.zeros((len(chunk.time), len(POWERS)))
+    works[:, 1] = 2.0 * 0.5 * ACCELERATION * chunk.time**2  # torque times angle
+    np.testing.assert_allclose(chunk.work, works, atol=ROUNDING)
+
+
+@pytest.mark.parametrize("interval", [0.01, 0.003, 1e-4])
+def test_steps_end_on_multiples_of_the_interval(spinning: System, interval: float) -> None:
+    """Every step, or the last of some equal ones, ends on an output; but for those that it cannot reach yet."""
+    settings = SETTINGS._replace(max_step=0.0041, output_interval=interval)
+    chunk = run(spinning, start(spinning), 0.7, 10_000, settings=settings)
+    late = chunk.time[chunk.time > 0.1]
+    off = np.abs(late / interval - np.round(late / interval)) * interval
+    assert np.mean(off < 1e-11) > (0.3 if interval > 0.0041 else 0.99)
+    passed = np.arange(np.ceil(0.1 / interval), 0.7 / interval) * interval
+    if interval > 0.0041:
+        assert all(np.min(np.abs(late - instant)) < 1e-11 for instant in passed[1:])
 
 
 def test_stops_exactly(spinning: System) -> None:
     march = start(spinning)
-    run(spinning, march, 0.1 + 0.2, [])
+    run(spinning, march, 0.1 + 0.2, 0)
     assert march.clock[0] == 0.1 + 0.2
 
 
 def test_budget_is_kept(spinning: System) -> None:
     march = start(spinning, 1e-6)
-    run(spinning, march, 0.7, [0.7], budget=3)
+    run(spinning, march, 0.7, 10, budget=3)
     assert march.counts[STEPS] == 3
     assert march.clock[0] < 1e-4
 
 
-def test_ends_when_all_outputs_are_filled(spinning: System) -> None:
+def test_ends_when_there_is_no_room(spinning: System) -> None:
     march = start(spinning)
-    filled, _ = run(spinning, march, 0.7, [0.01])
-    assert filled == 1
-    assert 0.01 <= march.clock[0] < 0.7
+    assert len(run(spinning, march, 0.7, 2).time) == 2
+    assert march.counts[STEPS] == 2
+    assert march.clock[0] < 0.7
 
 
 def test_steps_grow_to_the_longest_allowed(spinning: System) -> None:
     march = start(spinning, 1e-6)
-    _, outputs = run(spinning, march, 1.0, [1.0], settings=SETTINGS._replace(max_step=1e-3))
-    assert outputs.step[0] <= 1e-3 * (1 + 1e-5)  # rounding of the stop
+    steps = run(spinning, march, 1.0, 10_000, settings=SETTINGS._replace(max_step=1e-3)).step
+    assert steps.max() <= 1e-3 * (1 + 1e-5)  # rounding of the stop
     assert march.counts[STEPS] == pytest.approx(1000, abs=15)
 
 
 def test_nan_forces_end_with_too_small_a_step(spinning: System) -> None:
     march = start(spinning)
     broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
-    outputs = empty_outputs(np.array([1.0]), march.position.size)
-    found = advance(broken, SETTINGS, march, new_equations(spinning), 1.0, 10_000, outputs)
+    steps = empty_steps(1, march.position.size)
+    found = advance(broken, SETTINGS, march, new_equations(spinning), 1.0, 10_000, steps)
     assert found == (STEP_TOO_SMALL, 0)
     assert march.counts[FAILED] > 0
     assert march.clock[0] == 0.0

@@ -25,9 +25,7 @@ def system(change: Change) -> System:
 
 def chunk(change: Change, system: System, time: float) -> Chunk:
     state = laid(system, change().path)
-    return Chunk.at(
-        np.array([time]), state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), np.array([1e-4])
-    )
+    return replace(Chunk.start(state), time=np.array([time]), step=np.array([1e-4]), reached=time)
 
 
 @pytest.mark.parametrize(
@@ -61,8 +59,7 @@ def test_empty_chunks_only_tell(change: Change, system: System) -> None:
     told: list[float] = []
     with Recording(change(), system, None, "title", lambda progress: told.append(progress.time)) as recording:
         none = np.empty((0, 62))
-        empty = Chunk.at(np.empty(0), none, none, np.empty((0, 4)), np.empty(0))
-        recording.take(replace(empty, reached=0.5))
+        recording.take(Chunk(np.empty(0), np.empty(0), none, none, np.empty((0, len(POWERS))), reached=0.5))
     assert told[-1] == 0.5
     assert recording.run().dataset.sizes["time"] == 0
 

@@ -26,8 +26,10 @@ def task_of(drive: Drive) -> Task:
 def test_outputs_are_multiples_of_the_interval_and_the_end(
     change: Change, duration: float, interval: float, count: int
 ) -> None:
-    times = task_of(change(simulation={"duration": duration, "output_interval": interval})).times
+    instants = task_of(change(simulation={"duration": duration, "output_interval": interval})).instants
+    times = instants[np.arange(instants.count)]
     assert len(times) == count
+    assert [instants.until(time) for time in times] == list(range(1, count + 1))
     assert times[0] == 0.0
     assert times[-1] == duration
     np.testing.assert_array_equal(times[:-1], interval * np.arange(count - 1))

@@ -16,7 +16,7 @@ from beltdyn import simulate
 from beltdyn.model import Belt, Drive
 from beltdyn.solve.engine import advance
 from beltdyn.solve.generalized_alpha import REACHED
-from beltdyn.solve.march import STEPS, Settings, empty_outputs, new_march
+from beltdyn.solve.march import STEPS, Settings, empty_steps, new_march
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations
@@ -98,7 +98,7 @@ def test_spectral_radius_at_infinite_frequency(measured: Measured, curve: Measur
         march = new_march(0.0, step, rest, np.zeros_like(rest))
         arrays = (march.position, march.velocity, march.acceleration, march.auxiliary)
         arrays[column][own] += small * scales[column]
-        none = empty_outputs(np.empty(0), rest.size)
+        none = empty_steps(0, rest.size)
         assert advance(system, settings, march, new_equations(system), step, 1, none)[0] == REACHED
         assert march.counts[STEPS] == 1
         state = np.array([array[own] for array in arrays])

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from beltdyn.model import Belt
 from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.instants import Instants
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.build import belt_section, belt_system
 from beltdyn.system.observations import Observations
@@ -40,9 +41,11 @@ def spin(belt: Belt, g: float, rtol: float) -> tuple[FloatArray, Observations]:
     radius = g * belt.length / (2.0 * pi)
     place = np.hstack([radius * out, g * forward, -out]).ravel()
     velocity = SPEED * np.hstack([radius * forward, -g * out, -forward]).ravel()
-    times = np.linspace(0.0, TURNS * 2.0 * pi / SPEED, 101)
-    task = Task(system, State(place, velocity, 0.0 * place), times, [], SPEED * radius, Statistics())
-    position, velocities = Chunk.join(list(GeneralizedAlpha(0.8, rtol, None)(task))).interpolate()
+    end = TURNS * 2.0 * pi / SPEED
+    instants = Instants(0.01 * end, end)
+    times = instants[np.arange(101)]
+    task = Task(system, State(place, velocity, 0.0 * place), instants, [], SPEED * radius, Statistics())
+    position, velocities = Chunk.join(list(GeneralizedAlpha(0.8, rtol, None)(task))).at(times)
     nodes = position.reshape(len(position), -1, 6)[:, :, :2]
     return np.linalg.norm(nodes, axis=2), observe(system, times, position, velocities)
 
