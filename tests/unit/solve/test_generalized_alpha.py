@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.solve.engine import advance, restart
 from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
-from beltdyn.solve.march import FAILED, STEPS, March, Settings, Steps, empty_steps, new_march
+from beltdyn.solve.march import FAILED, STEPS, March, Settings, empty_steps, new_march
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.motion import new_equations
