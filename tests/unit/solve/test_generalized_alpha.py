@@ -31,7 +31,7 @@ def run(
     restart(system, march, equations)
     status, filled = advance(system, settings, march, equations, stop, budget, steps)
     assert status == REACHED
-    return Chunk(*(array[:filled] for array in steps), reached=float(march.clock[0]))
+    return Chunk(**{name: array[:filled] for name, array in steps._asdict().items()}, reached=stop)
 
 
 def test_states_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:
