@@ -1,0 +1,43 @@
+"""Output instants: counted, and never listed as a whole."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.system.arrays import FloatArray
+
+SAME = 1e-11
+"""Instants nearer to each other than this are one, s."""
+
+
+@dataclass(frozen=True)
+class Instants:
+    """Multiples of an interval from zero on, and the end.
+
+    Attributes
+    ----------
+    interval : float
+        s.
+    end : float
+        s; a multiple that is nearer to it than a billionth of it is left out.
+    """
+
+    interval: float
+    end: float
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        multiples = int(np.floor(self.end / self.interval * (1.0 + 1e-12)))
+        return multiples + 1 + (self.end - multiples * self.interval > 1e-9 * self.end)
+
+    def __getitem__(self, numbers: NDArray[np.integer]) -> FloatArray:
+        """Some of them, s, by their numbers."""
+        return np.where(numbers < self.count - 1, self.interval * numbers, self.end)
+
+    def until(self, time: float) -> int:
+        """How many lie before a time (s) or on it."""
+        if time >= self.end - SAME:
+            return self.count
+        return min(self.count - 1, int(np.floor((time + SAME) / self.interval)) + 1)
