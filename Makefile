@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help install demo paper test validate bench docs lock clean
+.PHONY: help install demo paper test validate compatibility bench docs lock clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -32,6 +32,17 @@ test: install ## linters, types, layers, unit and verification tests
 validate: install ## slow verification tests and comparisons with the literature
 	$(BIN)/pytest -m slow $(wildcard tests/unit tests/verification)
 	$(if $(wildcard tests/validation),$(BIN)/pytest tests/validation)
+	$(MAKE) compatibility
+
+compatibility: ## kernels with the oldest Numba, the last one known and the newest, each in an environment of its own
+	for version in ==0.60.* ==0.68.* ""; do \
+		rm -rf .venv-numba && $(PYTHON) -m venv .venv-numba && \
+		.venv-numba/bin/pip install --quiet "numba$$version" pytest hypothesis . && \
+		.venv-numba/bin/python -c "import numba; print('Numba', numba.__version__)" && \
+		BELTDYN_CACHE_DIR=.venv-numba/kernels .venv-numba/bin/python -m pytest --quiet tests/unit/kernel tests/unit/contact \
+			tests/unit/ancf tests/unit/chain tests/unit/system || exit 1; \
+	done
+	rm -rf .venv-numba
 
 bench: install ## benchmarks
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
@@ -46,6 +57,6 @@ lock: ## resolve the versions anew
 		--no-header --no-emit-index-url --no-emit-find-links pyproject.toml --output-file requirements.lock
 
 clean: ## remove everything that can be made again
-	rm -rf .venv .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
+	rm -rf .venv .venv-numba .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .hypothesis \
 		dist docs/_build beltdyn-demo beltdyn-paper
 	find src tests -name __pycache__ -type d -exec rm -rf {} +

@@ -115,7 +115,7 @@ def add_shear_curvature(shear: NodalShear, factor: float, tangent: NDArray[np.fl
             tangent[y + j, x + i] += scale * left * right
 
 
-@kernel
+@kernel(inline=True)
 def _add_symmetric(tangent: NDArray[np.float64], first: int, xx: float, xy: float, yy: float) -> None:
     """Add a symmetric 2 x 2 block on the diagonal of an element tangent."""
     tangent[first, first] += xx

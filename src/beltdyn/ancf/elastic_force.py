@@ -145,7 +145,7 @@ def element_force(
     _add_thickness(e, section, length, wanted, gradient, tangent)
 
 
-@kernel
+@kernel(inline=True)
 def _add_point(
     e: FloatArray,
     sine_i: float,
@@ -217,7 +217,7 @@ def _add_point(
     )
 
 
-@kernel
+@kernel(inline=True)
 def _add_block(block: FloatArray, slope: Four, bend: Four, qq: float, qw: float, wq: float, ww: float) -> None:
     """Add slope_a qq slope_b + slope_a qw bend_b + bend_a wq slope_b + bend_a ww bend_b for all pairs (a, b)."""
     _add_row(block, 0, slope, bend, slope[0] * qq + bend[0] * wq, slope[0] * qw + bend[0] * ww)
@@ -226,7 +226,7 @@ def _add_block(block: FloatArray, slope: Four, bend: Four, qq: float, qw: float,
     _add_row(block, 3, slope, bend, slope[3] * qq + bend[3] * wq, slope[3] * qw + bend[3] * ww)
 
 
-@kernel
+@kernel(inline=True)
 def _add_row(block: FloatArray, a: int, slope: Four, bend: Four, q: float, w: float) -> None:
     """Add q slope_b + w bend_b to row a."""
     block[a, 0] += q * slope[0] + w * bend[0]
@@ -235,7 +235,7 @@ def _add_row(block: FloatArray, a: int, slope: Four, bend: Four, q: float, w: fl
     block[a, 3] += q * slope[3] + w * bend[3]
 
 
-@kernel
+@kernel(inline=True)
 def _add_shear_row(
     by_shear: FloatArray,
     k: int,
@@ -267,7 +267,7 @@ def _add_shear_row(
     by_shear[k, 9] += slope[3] * qy + bend[3] * wy
 
 
-@kernel
+@kernel(inline=True)
 def _fill_centreline(work: np.record, tangent: FloatArray) -> None:
     """Overwrite the tangent by the centreline's part."""
     tangent[:] = 0.0
@@ -281,7 +281,7 @@ def _fill_centreline(work: np.record, tangent: FloatArray) -> None:
             tangent[row + 1, column + 1] = work.yy[a, b]
 
 
-@kernel
+@kernel(inline=True)
 def _carry_shear(
     shear_i: NodalShear,
     shear_j: NodalShear,
@@ -306,7 +306,7 @@ def _carry_shear(
     add_shear_curvature(shear_j, sums.j, tangent, 8)
 
 
-@kernel
+@kernel(inline=True)
 def _add_shear(k: int, first: int, h: Four, mixed: FloatArray, tangent: FloatArray) -> None:
     """Add m_k h^T + h m_k^T to the tangent, h in the four columns that begin at first."""
     for row in range(12):
@@ -318,7 +318,7 @@ def _add_shear(k: int, first: int, h: Four, mixed: FloatArray, tangent: FloatArr
         tangent[first + 3, row] += m * h[3]
 
 
-@kernel
+@kernel(inline=True)
 def _add_four(matrix: FloatArray, row: int, first: int, factor: float, values: Four) -> None:
     """Add factor times four values to a row, from column first on."""
     matrix[row, first] += factor * values[0]
@@ -327,13 +327,13 @@ def _add_four(matrix: FloatArray, row: int, first: int, factor: float, values: F
     matrix[row, first + 3] += factor * values[3]
 
 
-@kernel
+@kernel(inline=True)
 def _thickness_strain(section_x: float, section_y: float) -> float:
     """eps_yy = (r_y . r_y - 1) / 2 at a node."""
     return 0.5 * (section_x * section_x + section_y * section_y - 1.0)
 
 
-@kernel
+@kernel(inline=True)
 def _add_thickness(
     e: FloatArray, section: Section, length: float, wanted: bool, gradient: FloatArray, tangent: FloatArray
 ) -> None:

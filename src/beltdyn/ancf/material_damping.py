@@ -140,13 +140,13 @@ def damping_tension(metric: float, metric_rate: float, section: Section) -> floa
     return 0.5 * section.axial_damping * metric_rate * sqrt(metric)
 
 
-@kernel
+@kernel(inline=True)
 def _first(a: int) -> int:
     """First coordinate of the centreline's vector a, in the order of `shape_functions`."""
     return 6 * (a // 2) + 2 * (a % 2)
 
 
-@kernel
+@kernel(inline=True)
 def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: np.record) -> tuple[float, float]:
     """Overwrite the derivatives of p = (s_j - s_i) / L; give p (1/m) and its rate."""
     work.by_shear[:] = 0.0
@@ -167,7 +167,7 @@ def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: np.re
     return total, rate
 
 
-@kernel
+@kernel(inline=True)
 def _strain_rates(
     e: FloatArray,
     velocity: FloatArray,
@@ -214,7 +214,7 @@ def _strain_rates(
     return _Point(ux, uy, stretch, strain_rate, curvature_rate, fold, cross)
 
 
-@kernel
+@kernel(inline=True)
 def _add_products(
     axial: float, bending: float, by_position: float, by_velocity: float, work: np.record, tangent: FloatArray
 ) -> None:
@@ -230,7 +230,7 @@ def _add_products(
             tangent[row, column] += along * work.change[0, column] + across * work.change[1, column]
 
 
-@kernel
+@kernel(inline=True)
 def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment: float, tangent: FloatArray) -> None:
     """Add force times the second derivative of eps and moment times that of kappa in the centreline's vectors.
 
@@ -251,7 +251,7 @@ def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment:
             tangent[row + 1, column + 1] += qq * yy - (qw + wq) * ux * uy
 
 
-@kernel
+@kernel(inline=True)
 def _add_shear_products(by_position: float, twist: float, work: np.record, tangent: FloatArray) -> None:
     """Add the sum over the points of the moment times the second derivative of kappa in q and p, and in p alone."""
     for row in range(12):

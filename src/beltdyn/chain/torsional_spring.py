@@ -74,7 +74,7 @@ def add_spring(e: FloatArray, i: int, stiffness: float, gradient: FloatArray, ta
     _add_curvature(i + 2, moment, after, tangent)
 
 
-@kernel
+@kernel(inline=True)
 def _direction(x: float, y: float) -> Direction:
     """Derivatives of atan2(y, x)."""
     square = x * x + y * y
@@ -82,7 +82,7 @@ def _direction(x: float, y: float) -> Direction:
     return Direction(-y / square, x / square, 2.0 * x * y / fourth, (y * y - x * x) / fourth)
 
 
-@kernel
+@kernel(inline=True)
 def _add_curvature(i: int, factor: float, direction: Direction, tangent: FloatArray) -> None:
     """Add factor times the second derivatives of the direction of the link that begins at coordinate i."""
     xx, xy = factor * direction.xx, factor * direction.xy

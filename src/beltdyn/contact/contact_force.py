@@ -163,7 +163,7 @@ def contact_force(
     return totals
 
 
-@kernel
+@kernel(inline=True)
 def _clear(work: np.record) -> None:
     """Set the results to zero."""
     work.force[:] = 0.0
@@ -175,7 +175,7 @@ def _clear(work: np.record) -> None:
     work.moment[:] = 0.0
 
 
-@kernel
+@kernel(inline=True)
 def _spread(
     shape: Four,
     weight: float,
@@ -193,7 +193,7 @@ def _spread(
     _add_block(work.yy, shape, weight * tangent.yy)
 
 
-@kernel
+@kernel(inline=True)
 def _add_pairs(vector: FloatArray, shape: Four, x: float, y: float) -> None:
     """Add shape_a (x, y) to the pairs of a vector."""
     vector[0] += shape[0] * x
@@ -206,7 +206,7 @@ def _add_pairs(vector: FloatArray, shape: Four, x: float, y: float) -> None:
     vector[7] += shape[3] * y
 
 
-@kernel
+@kernel(inline=True)
 def _add_block(block: FloatArray, shape: Four, factor: float) -> None:
     """Add factor shape_a shape_b."""
     _add_row(block, 0, factor * shape[0], shape)
@@ -215,7 +215,7 @@ def _add_block(block: FloatArray, shape: Four, factor: float) -> None:
     _add_row(block, 3, factor * shape[3], shape)
 
 
-@kernel
+@kernel(inline=True)
 def _add_row(block: FloatArray, a: int, factor: float, values: Four) -> None:
     """Add factor times four values to row a."""
     block[a, 0] += factor * values[0]
@@ -224,7 +224,7 @@ def _add_row(block: FloatArray, a: int, factor: float, values: Four) -> None:
     block[a, 3] += factor * values[3]
 
 
-@kernel
+@kernel(inline=True)
 def _add_end(
     by_end: FloatArray,
     end: int,
@@ -249,7 +249,7 @@ def _add_end(
     row[8] += share * moment + grow * drift[2]
 
 
-@kernel
+@kernel(inline=True)
 def _move_end(
     control: FloatArray,
     basis: FloatArray,

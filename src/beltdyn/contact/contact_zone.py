@@ -108,7 +108,7 @@ def zone_scratch() -> FloatArray:
     return np.zeros(PIECES)
 
 
-@kernel
+@kernel(inline=True)
 def _fill_overlap(control: FloatArray, wheel: Wheel, pieces: FloatArray) -> None:
     """Write the whole element on the stack: Bernstein coefficients of R^2 - |r - O|^2."""
     x0, y0 = control[0, 0] - wheel.center_x, control[0, 1] - wheel.center_y
@@ -126,7 +126,7 @@ def _fill_overlap(control: FloatArray, wheel: Wheel, pieces: FloatArray) -> None
     pieces[0, _END] = 1.0
 
 
-@kernel
+@kernel(inline=True)
 def _sign_changes(pieces: FloatArray, piece: int) -> int:
     """How often the coefficients of a piece change sign; zero counts as positive."""
     changes = 0
@@ -135,7 +135,7 @@ def _sign_changes(pieces: FloatArray, piece: int) -> int:
     return changes
 
 
-@kernel
+@kernel(inline=True)
 def _halve(pieces: FloatArray, piece: int, middle: float) -> None:
     """Leave the right half of a piece, and put the left half behind it, by de Casteljau's algorithm."""
     for k in range(_END):
@@ -145,7 +145,7 @@ def _halve(pieces: FloatArray, piece: int, middle: float) -> None:
     pieces[piece + 1, _END] = middle
 
 
-@kernel
+@kernel(inline=True)
 def _root(control: FloatArray, wheel: Wheel, left: float, right: float, falling: bool) -> float:
     """The root of the overlap between two points at which it has opposite signs.
 

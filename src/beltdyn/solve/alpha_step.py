@@ -132,7 +132,7 @@ def allowed_error(settings: Settings, length: float) -> float:
     return settings.velocity_tolerance * min(length, settings.long_step)
 
 
-@kernel
+@kernel(inline=True)
 def _predict(system: System, method: Method, march: March, length: float) -> Step:
     """Overwrite the trial state by that of a constant A."""
     for i in range(march.position.size):
@@ -149,7 +149,7 @@ def _predict(system: System, method: Method, march: March, length: float) -> Ste
     return step
 
 
-@kernel
+@kernel(inline=True)
 def _assemble(system: System, march: March, step: Step, equations: Equations, renewed: bool) -> None:
     """Assemble the residual at the trial state, and the tangent if it is renewed."""
     share = 1.0 if renewed else 0.0
@@ -169,7 +169,7 @@ def _assemble(system: System, march: March, step: Step, equations: Equations, re
     )
 
 
-@kernel
+@kernel(inline=True)
 def _cut_back(
     system: System, march: March, step: Step, equations: Equations, slope: float, factor: float, renewed: bool
 ) -> float:
@@ -185,7 +185,7 @@ def _cut_back(
     return factor
 
 
-@kernel
+@kernel(inline=True)
 def _move(system: System, march: March, step: Step, equations: Equations, factor: float) -> None:
     """Take factor times the solution off the trial state."""
     subtract_solution(system, equations, factor, march.trial[0])
@@ -194,7 +194,7 @@ def _move(system: System, march: March, step: Step, equations: Equations, factor
     subtract_multipliers(system, equations, factor, march.multipliers)
 
 
-@kernel
+@kernel(inline=True)
 def _finish(method: Method, march: March) -> None:
     """A at the end of the step, from the accelerations."""
     for i in range(march.position.size):
@@ -203,7 +203,7 @@ def _finish(method: Method, march: March) -> None:
         ) / (1.0 - method.am)
 
 
-@kernel
+@kernel(inline=True)
 def _imbalance(equations: Equations) -> float:
     """Residual along the last solution, J."""
     matrix, total = equations.matrix, 0.0
@@ -215,7 +215,7 @@ def _imbalance(equations: Equations) -> float:
     return total
 
 
-@kernel
+@kernel(inline=True)
 def _size(system: System, equations: Equations) -> float:
     """Root mean square of the change of the nodes, or the largest change of a body, m."""
     total = 0.0

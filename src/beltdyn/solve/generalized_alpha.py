@@ -100,7 +100,7 @@ def advance(
     return REACHED, filled
 
 
-@kernel
+@kernel(inline=True)
 def _next_step(clock: FloatArray, settings: Settings, stop: float) -> float:
     """One of the equal steps to the stop, or to the last output instant that one step reaches, or else to the next."""
     wanted, interval = clock[1], settings.output_interval
@@ -112,7 +112,7 @@ def _next_step(clock: FloatArray, settings: Settings, stop: float) -> float:
     return left / ceil(left / longest * (1.0 - 1e-6))
 
 
-@kernel
+@kernel(inline=True)
 def _local_error(system: System, settings: Settings, method: Method, march: March, step: float) -> float:
     """Local error of the positions over what is allowed: of nodes in the root mean square, of each body."""
     auxiliary, total = march.trial[3], 0.0
@@ -128,7 +128,7 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
     return method.error * step * step * largest / allowed_error(settings, step)
 
 
-@kernel
+@kernel(inline=True)
 def _accept(march: March, equations: Equations, step: float, stop: float) -> None:
     """Move to the end of the step."""
     power = equations.loads.power
@@ -143,7 +143,7 @@ def _accept(march: March, equations: Equations, step: float, stop: float) -> Non
         march.clock[0] = stop
 
 
-@kernel
+@kernel(inline=True)
 def _keep(march: March, step: float, steps: Steps, filled: int) -> int:
     """Keep the state that was reached, where there is room; returns the number of steps filled."""
     if filled == steps.time.size:

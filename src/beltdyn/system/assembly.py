@@ -121,7 +121,7 @@ def assemble(
         hold_fixed(system, matrix)
 
 
-@kernel
+@kernel(inline=True)
 def _gather(
     i: int, j: int, position: FloatArray, velocity: FloatArray, acceleration: FloatArray, work: np.record
 ) -> None:
@@ -135,7 +135,7 @@ def _gather(
         work.coordinates[2, NODE + c] = acceleration[NODE * j + c]
 
 
-@kernel
+@kernel(inline=True)
 def _elastic_and_inertia(
     system: System, element: int, by_position: float, by_acceleration: float, wanted: bool, work: np.record
 ) -> None:
@@ -193,7 +193,7 @@ def fill_control(system: System, element: int, curve: int, coordinates: FloatArr
             )
 
 
-@kernel
+@kernel(inline=True)
 def _contact(
     system: System,
     element: int,
@@ -254,7 +254,7 @@ def _contact(
             )
 
 
-@kernel
+@kernel(inline=True)
 def _take_contact(system: System, wanted: bool, work: np.record) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
     contact, tangent = work.contact, work.tangent
@@ -272,7 +272,7 @@ def _take_contact(system: System, wanted: bool, work: np.record) -> None:
             tangent[row + 1, column + 1] -= contact.yy[a, b]
 
 
-@kernel
+@kernel(inline=True)
 def _couple(
     system: System,
     node_i: int,
@@ -291,7 +291,7 @@ def _couple(
             matrix.row[node, unknown, c + axis] -= contact.moment[2 * a + axis]
 
 
-@kernel
+@kernel(inline=True)
 def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
     """Add residual and tangent of the element between nodes i and j."""
     for row in range(NODE):
@@ -306,7 +306,7 @@ def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) 
             matrix.diagonal[j, row, column] += work.tangent[NODE + row, NODE + column]
 
 
-@kernel
+@kernel(inline=True)
 def _bodies(system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads) -> None:
     """Motion of the free bodies (Eq. 23)."""
     bodies, first = system.bodies, NODE * system.nodes
@@ -317,7 +317,7 @@ def _bodies(system: System, acceleration: FloatArray, by_acceleration: float, ma
             matrix.border_side[unknown] = bodies[body].inertia * acceleration[first + body] - loads.force[body]
 
 
-@kernel
+@kernel(inline=True)
 def _joint(
     system: System,
     acceleration: FloatArray,

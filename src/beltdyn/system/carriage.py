@@ -69,7 +69,7 @@ def keep_drift(system: System, carriage: Carriage, contact: np.record, drift: Fl
         drift[8] += system.shift[a] * (contact.moment[2 * a] * x + contact.moment[2 * a + 1] * y)
 
 
-@kernel
+@kernel(inline=True)
 def _along(system: System, contact: np.record, a: int, x: float, y: float) -> tuple[float, float]:
     """Sum over b of T_ab w_b (x, y): what a shift of the curve does to the force on a vector."""
     fx = fy = 0.0

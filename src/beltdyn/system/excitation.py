@@ -124,7 +124,7 @@ def prescribe(
             position[i], velocity[i], acceleration[i] = prescribed_motion(system.profiles, p, time)
 
 
-@kernel
+@kernel(inline=True)
 def _segment(profiles: Profiles, number: int, time: float) -> int:
     """Segment that holds at an instant."""
     first, last = profiles.table[number].segment, profiles.table[number + 1].segment - 1

@@ -92,7 +92,7 @@ def add_machines(
     _take_shafts(system, time, position, velocity, acceleration, by_position, by_velocity, wanted, corner, loads)
 
 
-@kernel
+@kernel(inline=True)
 def _add_tensioners(
     system: System,
     position: FloatArray,
@@ -119,7 +119,7 @@ def _add_tensioners(
             corner[unknown, unknown] -= by_position * (by_place + x * ddx + y * ddy) + by_velocity * by_rate
 
 
-@kernel
+@kernel(inline=True)
 def _add_couplings(
     system: System,
     time: float,
@@ -159,7 +159,7 @@ def _add_couplings(
                 corner[j, i] -= slope
 
 
-@kernel
+@kernel(inline=True)
 def _take_shafts(
     system: System,
     time: float,

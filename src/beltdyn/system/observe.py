@@ -98,7 +98,7 @@ def fill_observations(
         _observe_bodies(system, position[k], velocity[k], result, k)
 
 
-@kernel
+@kernel(inline=True)
 def _keep_loads(loads: Loads, result: Observations, k: int) -> None:
     """Torques, hub forces, losses and energies of springs."""
     result.penalty_energy[k] = loads.stored[0]
@@ -112,7 +112,7 @@ def _keep_loads(loads: Loads, result: Observations, k: int) -> None:
         result.contact_damping_power[k, p] = loads.damping[p]
 
 
-@kernel
+@kernel(inline=True)
 def _gather(system: System, element: int, position: FloatArray, velocity: FloatArray, samples: Samples) -> None:
     """Coordinates and velocities of an element."""
     node_j = (element + 1) % system.nodes
@@ -123,7 +123,7 @@ def _gather(system: System, element: int, position: FloatArray, velocity: FloatA
         samples.element[1, NODE + c] = velocity[NODE * node_j + c]
 
 
-@kernel
+@kernel(inline=True)
 def _observe_energy(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
     """Energies of an element."""
     e, v, section, length = samples.element[0], samples.element[1], system.section, system.length[element]
@@ -140,7 +140,7 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
     result.kinetic_energy[k] += kinetic
 
 
-@kernel
+@kernel(inline=True)
 def _stretch(system: System, samples: Samples, xi: float, length: float) -> tuple[float, float, float]:
     """Derivative of the centreline with respect to the belt coordinate, and the tension."""
     weights = bernstein_rates(xi)
@@ -153,7 +153,7 @@ def _stretch(system: System, samples: Samples, xi: float, length: float) -> tupl
     return x / length, y / length, tension
 
 
-@kernel
+@kernel(inline=True)
 def _observe_tension(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
     """Axial force of a curve: its mean, and how much it varies."""
     mean = square = 0.0
@@ -166,7 +166,7 @@ def _observe_tension(system: System, length: float, curve: int, samples: Samples
     result.tension_variation[k, curve] = sqrt(max(0.0, square - mean * mean))
 
 
-@kernel
+@kernel(inline=True)
 def _observe_points(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
     """Places, tension and speed of the sampling points of a curve, as if they were free."""
     count = system.contact.points.size
@@ -184,7 +184,7 @@ def _observe_points(system: System, length: float, curve: int, samples: Samples,
         result.normal_force[k, row] = result.friction_force[k, row] = result.slip_velocity[k, row] = 0.0
 
 
-@kernel
+@kernel(inline=True)
 def _observe_contact(
     system: System,
     element: int,
@@ -221,7 +221,7 @@ def _observe_contact(
         _touch_points(system, element * system.control.shape[1] + curve, p, wheel, law, samples, result, k)
 
 
-@kernel
+@kernel(inline=True)
 def _touch_points(
     system: System,
     curve: int,
@@ -247,7 +247,7 @@ def _touch_points(
             result.slip_velocity[k, row] = slip_velocity(here, wheel)
 
 
-@kernel
+@kernel(inline=True)
 def _angle(control: FloatArray, wheel: Wheel, start: float, end: float) -> float:
     """Angle at the pulley's centre between two points of the centreline, rad."""
     ax, ay = combine(control, bernstein(start))
@@ -256,7 +256,7 @@ def _angle(control: FloatArray, wheel: Wheel, start: float, end: float) -> float
     return abs(atan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
-@kernel
+@kernel(inline=True)
 def _observe_spans(system: System, samples: Samples, result: Observations, k: int) -> None:
     """Mean tension and speed of the free belt between two pulleys.
 
@@ -293,7 +293,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
         result.belt_speed[k, p] = result.belt_speed[k, p] / weight[p] if weight[p] > 0.0 else np.nan
 
 
-@kernel
+@kernel(inline=True)
 def _observe_bodies(system: System, position: FloatArray, velocity: FloatArray, result: Observations, k: int) -> None:
     """Centres of the pulleys, kinetic energy of the bodies and potential energy of weight."""
     first = NODE * system.nodes

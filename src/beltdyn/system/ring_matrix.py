@@ -196,7 +196,7 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
             node_part[k, i] = total
 
 
-@kernel
+@kernel(inline=True)
 def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: FloatArray) -> None:
     """Rows of node k: [diagonal block | columns of the border]."""
     extra = matrix.corner.shape[0]
@@ -215,7 +215,7 @@ def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: Float
                     rows[i, NODE + j] += matrix.upper[k, i, j]
 
 
-@kernel
+@kernel(inline=True)
 def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray) -> None:
     """The border with itself: the last node of a closed ring, then the given border."""
     extra = matrix.corner.shape[0]
@@ -233,7 +233,7 @@ def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray) -> None:
                 dense[NODE + j, i] = matrix.row[last, j, i]
 
 
-@kernel
+@kernel(inline=True)
 def _split(rows: FloatArray, upper: FloatArray, coupled: bool, square: FloatArray, panel: FloatArray) -> None:
     """Block of a node, and its panel: [block towards the next node | columns of the border]."""
     for i in range(NODE):
@@ -244,7 +244,7 @@ def _split(rows: FloatArray, upper: FloatArray, coupled: bool, square: FloatArra
             panel[i, j] = upper[i, j] if coupled else 0.0
 
 
-@kernel
+@kernel(inline=True)
 def _eliminate(square: FloatArray, pivots: IntArray, panel: FloatArray, size: int) -> bool:
     """Overwrite panel by square^-1 panel, with partial pivoting, and square by its factors; False if a pivot vanishes.
 
@@ -284,7 +284,7 @@ def _eliminate(square: FloatArray, pivots: IntArray, panel: FloatArray, size: in
     return True
 
 
-@kernel
+@kernel(inline=True)
 def _solve_factorised(square: FloatArray, pivots: IntArray, size: int, vector: FloatArray) -> None:
     """Overwrite a vector by square^-1 vector, from the factors that `_eliminate` leaves."""
     for k in range(size):
@@ -301,7 +301,7 @@ def _solve_factorised(square: FloatArray, pivots: IntArray, size: int, vector: F
             vector[i] -= square[i, k] * value
 
 
-@kernel
+@kernel(inline=True)
 def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -> None:
     """Target -= left right, for factors of six columns and of six rows."""
     for i in range(NODE):
@@ -312,7 +312,7 @@ def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -
             target[i, j] -= first + (d * right[3, j] + e * right[4, j] + f * right[5, j])
 
 
-@kernel
+@kernel(inline=True)
 def _subtract_image(block: FloatArray, vector: FloatArray, target: FloatArray) -> None:
     """Take block times vector, six numbers, off the first six of target."""
     for i in range(NODE):
@@ -320,7 +320,7 @@ def _subtract_image(block: FloatArray, vector: FloatArray, target: FloatArray) -
         target[i] -= first + (block[i, 3] * vector[3] + block[i, 4] * vector[4] + block[i, 5] * vector[5])
 
 
-@kernel
+@kernel(inline=True)
 def _reduce(coupling: FloatArray, panel: FloatArray, border: int, row: FloatArray) -> None:
     """Put the chain's answers into an equation of the border that couples to a node."""
     for k in range(NODE):

@@ -102,7 +102,7 @@ def kloss(
     return top * slip / square, -by_slip / synchronous_speed
 
 
-@kernel
+@kernel(inline=True)
 def _characteristic(torques: Torques, load: int, speed: float) -> tuple[float, float]:
     """Torque of a load over the speed, and its slope."""
     kind = torques.table[load].kind
@@ -114,7 +114,7 @@ def _characteristic(torques: Torques, load: int, speed: float) -> tuple[float, f
     return resistance(speed, a, b, c, d)
 
 
-@kernel
+@kernel(inline=True)
 def _interpolate(torques: Torques, load: int, speed: float) -> tuple[float, float]:
     """Linear between the points of a table, constant outside."""
     first, last = torques.table[load].point, torques.table[load + 1].point - 1
@@ -133,7 +133,7 @@ def _interpolate(torques: Torques, load: int, speed: float) -> tuple[float, floa
     return points[first].torque + slope * (speed - points[first].speed), slope
 
 
-@kernel
+@kernel(inline=True)
 def _harmonic_factor(torques: Torques, load: int, angle: float) -> tuple[float, float]:
     """1 + sum a_k cos(k theta + phi_k), and its derivative with respect to theta."""
     factor, change = 1.0, 0.0

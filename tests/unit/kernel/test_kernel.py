@@ -23,7 +23,7 @@ def package(tmp_path: Path) -> Path:
     (tmp_path / "law").mkdir()
     (tmp_path / "law" / "friction.py").write_text("from beltdyn.kernel import kernel\n")
     (tmp_path / "force.py").write_text("from beltdyn.kernel import kernel\nimport law.friction\n")
-    (tmp_path / "kernel.py").write_text("import numba\n")
+    (tmp_path / "kernel.py").write_text("from beltdyn.kernel import kernel\nimport numba\n")
     (tmp_path / "plot.py").write_text("import matplotlib\n")
     return tmp_path
 
@@ -86,7 +86,7 @@ def test_machine_code_lands_in_the_cache(tmp_path: Path, monkeypatch: pytest.Mon
 def test_only_kernels_that_python_calls_become_machine_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
 
-    @kernel
+    @kernel(inline=True)
     def _half(x: float) -> float:
         return 0.5 * x
 

@@ -1,0 +1,16 @@
+"""Compiled code: the decorator of kernels and the folder that keeps their machine code."""
+
+from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, kernel_cache, source_hash
+from beltdyn.kernel.decorator import Kernel, kernel
+from beltdyn.kernel.version import PLAIN_VARIABLE, compiles_quickly
+
+__all__ = [
+    "CACHE_VARIABLE",
+    "PACKAGE",
+    "PLAIN_VARIABLE",
+    "Kernel",
+    "compiles_quickly",
+    "kernel",
+    "kernel_cache",
+    "source_hash",
+]

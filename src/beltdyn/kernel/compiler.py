@@ -1,0 +1,57 @@
+"""Compilation by Numba: its public decorator, or a quicker way where its internals are known."""
+
+import functools
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numba
+
+from beltdyn.kernel.cache import kernel_cache
+from beltdyn.kernel.setting import setting
+from beltdyn.kernel.version import compiles_quickly
+
+OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"}}
+"""Options of every kernel."""
+
+
+class PlainCompilationWarning(UserWarning):
+    """Kernels are compiled in the plain way, which takes longer."""
+
+
+def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
+    """Make what compiles a function at its first call, and calls it.
+
+    Parameters
+    ----------
+    function
+        The function.
+    inline
+        Whether it becomes a part of every kernel that calls it.
+
+    Returns
+    -------
+    numba.core.dispatcher.Dispatcher
+    """
+    if compiles_quickly():
+        from beltdyn.kernel.quick import QuickDispatcher
+
+        return QuickDispatcher(function, {"nopython": True, **OPTIONS}, inline, str(kernel_cache()))
+    _say_once()
+    dispatcher = numba.njit(forceinline=inline, **OPTIONS)(function)
+    with setting("CACHE_DIR", str(kernel_cache())):
+        dispatcher.enable_caching()
+    return dispatcher
+
+
+@functools.cache
+def _say_once() -> None:
+    """Say, where nothing is compiled yet, that the first start takes longer."""
+    if any(kernel_cache().rglob("*.nbi")):
+        return
+    warnings.warn(
+        f"Numba {numba.__version__} compiles the kernels of beltdyn in the plain way: the first start takes some "
+        "minutes, later ones as long as ever, and results are the same.",
+        PlainCompilationWarning,
+        stacklevel=4,
+    )

@@ -1,0 +1,69 @@
+"""The one decorator of compiled code.  Numba is imported at the first call of a kernel, not where it is written."""
+
+import functools
+from collections.abc import Callable
+from typing import Any, Generic, ParamSpec, TypeVar, cast, overload
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Kernel(Generic[P, R]):
+    """A function that is compiled at its first call.
+
+    Parameters
+    ----------
+    function
+        The function.
+    inline
+        Whether it becomes a part of every kernel that calls it.
+    """
+
+    def __init__(self, function: Callable[P, R], inline: bool) -> None:
+        self.py_func, self.inline = function, inline
+        functools.update_wrapper(self, function)
+
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
+        """Call the compiled function."""
+        return cast(R, self.dispatcher(*args, **kwargs))
+
+    def __reduce__(self) -> tuple[type["Kernel[P, R]"], tuple[Callable[P, R], bool]]:
+        return Kernel, (self.py_func, self.inline)
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """Numba's dispatcher of the function."""
+        from beltdyn.kernel.compiler import new_dispatcher
+
+        return new_dispatcher(self.py_func, self.inline)
+
+    @property
+    def _numba_type_(self) -> Any:
+        """Type by which other kernels know this one."""
+        return self.dispatcher._numba_type_
+
+
+@overload
+def kernel(function: Callable[P, R], /) -> Callable[P, R]: ...
+@overload
+def kernel(*, inline: bool = False) -> Callable[[Callable[P, R]], Callable[P, R]]: ...
+def kernel(function: Callable[..., Any] | None = None, /, *, inline: bool = False) -> Any:
+    """Compile a function with Numba at its first call and keep the machine code on disk.
+
+    Parameters
+    ----------
+    function
+        A function of scalars, arrays and named tuples of them, that makes no arrays.  Everything that it calls must be
+        a kernel too.
+    inline
+        Whether to make it a part of every kernel that calls it.  Small functions called at each point gain by it;
+        large ones that are called from several places cost time to compile.
+
+    Returns
+    -------
+    Callable
+        The compiled function, with the signature of the given one.
+    """
+    if function is None:
+        return functools.partial(Kernel, inline=inline)
+    return Kernel(function, inline)

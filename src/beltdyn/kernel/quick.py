@@ -1,0 +1,127 @@
+"""Compilation in a third of the time, by way of Numba's internals.
+
+Numba optimises a kernel and turns it into machine code before it links it into its callers, which do so again.
+Here kernels take each other in before optimisation; only those that Python calls are optimised, whole, and kept.
+"""
+
+import gc
+from functools import cached_property
+from typing import Any
+
+import numba
+from llvmlite.binding import parse_assembly
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.registry import CPUDispatcher
+from numba.core.types.misc import unliteral
+
+from beltdyn.kernel.setting import setting
+
+_NO_EXTRAS = {"no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False}
+"""Left away: functions for C, rewriting passes, Numba's memory management; kernels need none of them."""
+
+_OPTIMISATION = type(numba.config.OPT)(1)
+"""LLVM's level: a higher one takes a fifth longer to compile, and the code is no faster."""
+
+
+class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
+    """A compiled function that shows itself to other kernels as code to be optimised along with them.
+
+    Parameters
+    ----------
+    function
+        The function.
+    options
+        Numba's options.
+    inline
+        Whether it becomes a part of every kernel that calls it.
+    folder
+        Where its machine code is kept.
+    """
+
+    def __init__(self, function: Any, options: dict[str, Any], inline: bool, folder: str) -> None:
+        self._options = options | _NO_EXTRAS
+        super().__init__(function, targetoptions=self._options)
+        self._inline = inline
+        self._folder: str | None = folder
+
+    @cached_property
+    def _code(self) -> CPUDispatcher:
+        """What another kernel calls."""
+        inlined = {"forceinline": self._inline, "no_cpython_wrapper": True}
+        return CPUDispatcher(self.py_func, {}, self._options | inlined, _CodeCompiler)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Type a call by another kernel, constants like any other number."""
+        return self._code.get_call_template([unliteral(argument) for argument in args], kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """What another kernel calls, for some types of arguments."""
+        return self._code.get_overload(sig)
+
+    def compile(self, sig: Any) -> Any:
+        """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects."""
+        if self._folder:
+            with setting("CACHE_DIR", self._folder):
+                self._cache = _Cache(self.py_func)
+            self._folder = None
+        collecting = gc.isenabled()
+        gc.disable()
+        try:
+            with setting("OPT", _OPTIMISATION):
+                return super().compile(sig)
+        finally:
+            if collecting:
+                gc.enable()
+
+
+class _Stored(CompileResultCacheImpl):  # type: ignore[misc]
+    """What is kept of a compiled function: machine code and its name, without the code that others would take in."""
+
+    def reduce(self, cres: Any) -> Any:
+        """What is written."""
+        (name, kind, (machine_code, _)), *rest = super().reduce(cres)
+        entry = f'define void @"{cres.fndesc.llvm_cpython_wrapper_name}"() {{ ret void }}'
+        return (name, kind, (machine_code, parse_assembly(entry).as_bitcode())), *rest
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    """Numba's cache, which loads machine code without filling the tables that only compilation needs."""
+
+    _impl_class = _Stored
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load the machine code for some types of arguments; None where there is none."""
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
+
+
+class _CodeCompiler(Compiler):  # type: ignore[misc]
+    """Numba's compiler, up to the code before optimisation."""
+
+    def __init__(self, typingctx: Any, targetctx: Any, _library: Any, *choices: Any) -> None:
+        super().__init__(typingctx, targetctx, _Code(targetctx.codegen(), "code"), *choices)
+
+
+class _Code(JITCodeLibrary):  # type: ignore[misc]
+    """Code of a kernel with all that it calls, neither optimised as a whole nor turned into machine code."""
+
+    def finalize(self) -> None:
+        """Link what it calls, and no more."""
+        for library in dict.fromkeys(self._linking_libraries):
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        self._finalized = True
+
+    def get_pointer_to_function(self, _name: str) -> int:
+        """No machine code, no address."""
+        self._ensure_finalized()
+        return 0
+
+    @property
+    def codegen(self) -> "_Code":
+        """What Numba asks to `set_env`."""
+        return self
+
+    def set_env(self, _name: str, _environment: Any) -> None:
+        """Nothing to set: the environment is for Python objects, which kernels do not see."""
