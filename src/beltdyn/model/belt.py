@@ -1,11 +1,13 @@
 """The belt: a closed loop of rectangular section."""
 
+from collections.abc import Mapping
 from math import pi, sin
 from typing import Any, Literal, Self
 
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
+from pydantic.fields import FieldInfo
 
-from beltdyn.model.belt_form import describe_forms, to_material
+from beltdyn.model.belt_form import FORMS, describe_forms, to_material
 from beltdyn.model.part import Part, computed
 from beltdyn.model.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
 
@@ -81,6 +83,11 @@ class Belt(Part):
     quadrature_points: Count = Field(
         4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
     )
+
+    @classmethod
+    def alternatives(cls) -> Mapping[str, FieldInfo]:
+        """Arguments in place of the material, see `beltdyn.model.belt_form`."""
+        return FORMS
 
     @model_validator(mode="before")
     @classmethod

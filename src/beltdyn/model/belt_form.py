@@ -6,6 +6,7 @@ knows are often the stiffnesses and the mass of a metre, or the name of a profil
 
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from pydantic import Field
@@ -41,6 +42,9 @@ class Sold(Part):
 
 
 _OWN = [key for key in Stiffnesses.model_fields if key not in ("width", "thickness")]
+
+FORMS = MappingProxyType({**Sold.model_fields, **{key: Stiffnesses.model_fields[key] for key in _OWN}})
+"""Keys of the other forms."""
 
 
 def to_material(data: Any, base: Path | None) -> Any:

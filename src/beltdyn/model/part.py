@@ -1,10 +1,13 @@
 """The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
 
+from collections.abc import Mapping
 from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
 
 from beltdyn.errors import ModelError
+from beltdyn.model.documentation import document, signature
 from beltdyn.model.messages import explain
 
 
@@ -40,6 +43,17 @@ class Part(BaseModel):
             super().__init__(**data)
         except ValidationError as error:
             raise ModelError(explain(error, type(self), data)) from None
+
+    @classmethod
+    def alternatives(cls) -> Mapping[str, FieldInfo]:
+        """Arguments that the constructor takes in place of fields, by their names."""
+        return {}
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Tell of each argument in the docstring and in the signature."""
+        cls.__doc__ = document(cls, cls.alternatives())
+        cls.__signature__ = signature(cls, cls.alternatives())
 
     # Tells pydantic that parts inside parts need not go through this constructor, so that it reports
     # all errors of a drive at once, each with its path.

@@ -1,5 +1,6 @@
 """The results of a run: one labelled dataset, its file, and what is derived from it."""
 
+from beltdyn.results import derived
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks import Finding
 from beltdyn.results.layout import Layout
@@ -31,6 +32,7 @@ __all__ = [
     "Summary",
     "TensionerSummary",
     "Variable",
+    "derived",
     "open_run",
     "power_balance",
     "provenance",

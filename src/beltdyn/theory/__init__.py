@@ -1,1 +1,19 @@
 """Closed forms and boundary-value problems of belt theory, to hold simulations against; numbers in, numbers out."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach(
+    __name__,
+    submodules=[
+        "capstan",
+        "creep",
+        "elastic_creep",
+        "hoop",
+        "path",
+        "running_drive",
+        "sliding_flutter",
+        "static_tension",
+        "stretch",
+        "sunk_belt",
+    ],
+)

@@ -1,0 +1,41 @@
+"""What a script needs is there from the start, and found by completion."""
+
+import pkgutil
+import subprocess
+import sys
+
+import pytest
+
+import beltdyn as bd
+import beltdyn.model
+import beltdyn.results
+import beltdyn.solve
+import beltdyn.theory
+
+
+def run(program: str) -> str:
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip()
+
+
+@pytest.mark.parametrize("name", dir(bd))
+def test_every_name_is_there(name: str) -> None:
+    assert getattr(bd, name) is not None
+
+
+@pytest.mark.parametrize("package", [beltdyn.model, beltdyn.solve])
+def test_the_names_of_models_and_solvers_are_among_them(package: object) -> None:
+    assert set(package.__all__) <= set(dir(bd))  # type: ignore[attr-defined]
+
+
+def test_modules_are_there_without_anything_else_being_used_before() -> None:
+    used = "bd.results.VARIABLES, bd.derived.slips, bd.theory.capstan.capstan_ratio, bd.published.CASES, bd.plot.speeds"
+    assert run(f"import beltdyn as bd; print(len([{used}]))") == "5"
+
+
+def test_every_module_of_theory_is_named() -> None:
+    assert sorted(beltdyn.theory.__all__) == [found.name for found in pkgutil.iter_modules(beltdyn.theory.__path__)]
+
+
+def test_importing_the_package_imports_nothing_heavy() -> None:
+    heavy = "{'numpy', 'numba', 'pydantic', 'scipy', 'xarray', 'matplotlib'}"
+    assert run(f"import sys, beltdyn; dir(beltdyn); print({heavy} & set(sys.modules))") == "set()"
