@@ -22,10 +22,10 @@ def show_summary(run: "Run") -> None:
         show("Nothing was computed before the run ended.")
         return
     summary = summarize(run)
-    over = f" (means from {summary.start:.4g} to {summary.end:.4g} s)" if summary.end > summary.start else ""
+    over = _window(summary)
     show_table(
         f"\nPulleys{over}",
-        ("", "rad/s", "rpm", "torque\nN m", "power\nW", "slip", "wrap", "sliding", "margin", "hub load\nN"),
+        ("", "rad/s", "rpm", "torque\nN m", "power\nW", "slip", "elastic", "wrap", "sliding", "margin", "hub load\nN"),
         [_pulley(pulley) for pulley in summary.pulleys],
     )
     show_table(
@@ -45,7 +45,8 @@ def _pulley(pulley: "PulleySummary") -> tuple[str, ...]:
         f"{_RPM * pulley.speed:.5g}",
         _number(pulley.shaft_torque),
         _number(pulley.power),
-        "" if math.isnan(pulley.slip) else f"{pulley.slip:.3%}",
+        _share(pulley.slip),
+        _share(pulley.elastic_creep),
         f"{math.degrees(pulley.wrap_angle):.1f}°",
         f"{math.degrees(pulley.sliding_arc):.1f}°",
         _margin(pulley.margin),
@@ -53,10 +54,23 @@ def _pulley(pulley: "PulleySummary") -> tuple[str, ...]:
     )
 
 
-def _margin(margin: float) -> str:
-    """The capstan margin; without load it has no meaning, and is large."""
-    if math.isnan(margin):
+def _window(summary: "Summary") -> str:
+    """From when to when means are taken, and of how many turns of the belt."""
+    if not summary.end > summary.start:
         return ""
+    turns = f", {summary.turns} turn{'s'[: summary.turns != 1]} of the belt" if summary.turns else ""
+    return f" (means from {summary.start:.4g} to {summary.end:.4g} s{turns})"
+
+
+def _share(part: float) -> str:
+    """A part of the first rim's speed; none where that stands still."""
+    return "–" if math.isnan(part) else f"{part:.3%}"
+
+
+def _margin(margin: float) -> str:
+    """The capstan margin; without load there is none."""
+    if math.isnan(margin):
+        return "–"
     return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
 
 

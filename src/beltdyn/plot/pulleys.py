@@ -7,10 +7,10 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.history import lines, vibrates
+from beltdyn.plot.history import lines
 from beltdyn.plot.style import axes_or_new, color, label, name_lines, polar_or_new, styled
-from beltdyn.results import Run, derived
-from beltdyn.results.means import first_of_window
+from beltdyn.results import Run, derived, power_balance, summarize
+from beltdyn.results.cycles import mean_window
 
 _LARGEST_MARGIN = 10.0
 _RINGS = 4
@@ -18,9 +18,10 @@ _RINGS = 4
 
 @styled
 def slip(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the slip of the pulleys against the first over time, and thin the part of it that is creep.
+    """Draw the slip of the pulleys against the first over time, and dotted the part of it that is elastic creep.
 
-    Where vibrations hide it, means over a turn of the first pulley are drawn.
+    Means over a turn of the belt and a period of what repeats besides; the numbers are those of the summary. Where
+    whole arcs slide, all creep is dotted.
 
     Parameters
     ----------
@@ -39,19 +40,22 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     ModelError
         If the run holds no output.
     """
-    parts = derived.slips(run)
-    ax, notes = axes_or_new(ax), list[str]()
-    if vibrates(parts["slip"]).any():
-        parts = parts.map(lambda part: derived.turn_means(run, part), keep_attrs=True)
-        notes.append(f"means over a turn of {run.drive.pulleys[0].name}")
-    lines(parts["slip"], ax)
-    if bool((np.abs(parts["sliding"]) > 0.0).any()):
-        for number in range(parts.sizes["pulley"]):
-            creep = parts["creep"][:, number]
-            ax.plot(creep["time"], creep, color=color(number), linewidth=0.8, linestyle=":")
-        notes.append("dotted: creep; the rest is sliding of the whole arc")
-    if notes:
-        ax.annotate("\n".join(notes), (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+    parts, summary = derived.slips(run), summarize(run)
+    ax = lines(parts["slip"], axes_or_new(ax))
+    for line, pulley in zip(ax.lines, (one for one in summary.pulleys if np.isfinite(one.slip)), strict=False):
+        line.set_label(f"{pulley.name} {pulley.slip:.3%}")
+    name_lines(ax)
+    notes = [f"numbers: means from {summary.start:.4g} to {summary.end:.4g} s"]
+    slides = bool((np.abs(parts["sliding"]) > 0.0).any())
+    inner = parts["creep" if slides else "elastic_creep"]
+    for number in range(parts.sizes["pulley"]):
+        ax.plot(inner["time"], inner[:, number], color=color(number), linewidth=0.8, linestyle=":")
+    notes.append(
+        "dotted: creep; the rest is sliding of the whole arc"
+        if slides
+        else "dotted: elastic creep; the rest is the slope of the friction law"
+    )
+    ax.annotate("\n".join(notes), (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
     _limit(ax, parts["slip"].values)
     return ax
 
@@ -184,10 +188,10 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     """
     run.require_output()
     ax = axes_or_new(ax)
-    time = run.dataset["time"].values
-    start = float(time[first_of_window(time)])
-    balance = derived.balance(run, start)
-    by_pulley = derived.pulley_powers(run, start).mean("time")
+    over = mean_window(run.dataset, run.drive)
+    balance = power_balance(run.dataset, over)
+    by_pulley = derived.pulley_powers(run).map(lambda power: xr.DataArray(over.mean_of(power.values), dims="pulley"))
+    by_pulley = by_pulley.assign_coords(pulley=run.dataset["pulley"])
     parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}
     drawn = {cause: power for cause, power in balance.losses.items() if power != 0.0 or cause in parts}
     for row, (cause, power) in enumerate(drawn.items()):
@@ -202,7 +206,7 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     ax.grid(axis="y", visible=False)
     ax.margins(x=0.3)
     ax.set_xlim(left=0.0)
-    ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {start:.4g} to {time[-1]:.4g} s")
+    ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {over.start:.4g} to {over.end:.4g} s")
     name_lines(ax)
     return ax
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.results.recorded import Recorded
+from beltdyn.results.window import Window, plain_window
 
 LOSSES: Mapping[str, str] = {
     "friction_loss": "friction",
@@ -63,35 +64,27 @@ class Balance:
         return sum(self.losses.values())
 
 
-def power_balance(recorded: Recorded, first: int = 0, last: int = -1) -> Balance:
-    """Give the mean powers between two outputs.
+def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
+    """Give mean powers over a window.
 
-    The powers of the shafts are means over the outputs between them; losses and stored energy are differences of
-    what was integrated and recorded. A single output gives no rates: they are zero.
+    The powers of the shafts are means over outputs; losses and stored energy are differences of what was integrated
+    and recorded. A single output gives no rates: they are zero.
 
     Parameters
     ----------
     recorded : Recorded
         What was recorded.
-    first, last : int
-        Numbers of the outputs.
+    window : Window, optional
+        What means are taken over; from the first to the last output by default.
 
     Returns
     -------
     Balance
         The mean powers.
     """
-    time = np.asarray(recorded["time"])
-    rows = slice(first, range(len(time))[last] + 1)
-    elapsed = time[rows][-1] - time[rows][0]
-
-    def rate(name: str) -> float:
-        values = recorded[name][rows]
-        return float(values[-1] - values[0]) / elapsed if elapsed > 0.0 else 0.0
-
-    shafts = np.asarray(recorded["shaft_torque"][rows]) * np.asarray(recorded["shaft_speed"][rows])
+    window = plain_window(np.asarray(recorded["time"])) if window is None else window
     return Balance(
-        pulleys=tuple(map(float, shafts.mean(axis=0))),
-        losses={cause: rate(name) for name, cause in LOSSES.items()},
-        stored=sum(rate(name) for name in STORED),
+        pulleys=tuple(map(float, window.product(recorded, "shaft_torque", "shaft_speed"))),
+        losses={cause: float(window.rate(recorded, name)) for name, cause in LOSSES.items()},
+        stored=sum(float(window.rate(recorded, name)) for name in STORED),
     )

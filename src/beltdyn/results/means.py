@@ -6,23 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
+from beltdyn.results.cycles import mean_window
 from beltdyn.results.mechanics import (
     capstan_margin,
     cells,
     gross_sliding,
     pressing,
-    relative_loss,
     rim_speeds,
     sliding_shares,
     sliding_velocity,
-    slip,
 )
 from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.slipping import slip_parts
+from beltdyn.results.window import Window
 
 FloatArray = NDArray[np.float64]
-
-WINDOW = 0.1
-"""Part of the run, at its end, over which values are averaged."""
 
 _INSTANTS = 20
 """Outputs at which contact along the arcs is looked at, at most."""
@@ -47,6 +45,10 @@ class PulleySummary:
     slip : float
         Relative speed loss of the rim against the first pulley's,
         ``1 - v_i / v_0`` of the mean rim speeds along the belt; NaN when the first pulley stands still.
+    elastic_creep : float
+        Part of the slip that the belt's change of stretch makes, as with Coulomb's friction.
+    regularisation : float
+        Part of the slip that the slope of the friction law adds: what is left of the slip.
     sliding : float
         Part of the slip that is no creep: the belt slides on the whole arc of this pulley or of the first one.
     sliding_speed : float
@@ -55,7 +57,7 @@ class PulleySummary:
     sliding_arc : float
         Angle over which friction is fully used, rad.
     margin : float
-        Capstan margin: how many times its load it could transmit before the whole arc slides; infinite without load.
+        Capstan margin: how many times its load it could transmit before the whole arc slides; NaN without load.
     wrap_angle : float
         Wrap angle, rad.
     hub_load : float
@@ -68,6 +70,8 @@ class PulleySummary:
     shaft_torque: float
     power: float
     slip: float
+    elastic_creep: float
+    regularisation: float
     sliding: float
     sliding_speed: float
     sliding_arc: float
@@ -120,12 +124,7 @@ class SpanSummary:
     belt_speed: float
 
 
-def first_of_window(time: FloatArray) -> int:
-    """Number of the first output that means are taken over."""
-    return int(np.searchsorted(time, time[-1] - WINDOW * (time[-1] - time[0])))
-
-
-def pulley_means(recorded: Recorded, drive: Drive) -> tuple[PulleySummary, ...]:
+def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[PulleySummary, ...]:
     """Sum up the pulleys over the end of a run.
 
     Parameters
@@ -134,28 +133,29 @@ def pulley_means(recorded: Recorded, drive: Drive) -> tuple[PulleySummary, ...]:
         What was recorded, with at least one output.
     drive : Drive
         The drive.
+    window : Window, optional
+        What means are taken over; `mean_window` by default.
 
     Returns
     -------
     tuple of PulleySummary
         One for each pulley.
     """
-    first = first_of_window(np.asarray(recorded["time"]))
-    speed, belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed = _means(
-        recorded,
-        first,
-        *("pulley_speed", "pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "span_tension", "belt_speed"),
+    window = mean_window(recorded, drive) if window is None else window
+    belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed = (
+        window.mean(recorded, name)
+        for name in ("pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "span_tension", "belt_speed")
     )
-    power = np.asarray(recorded["shaft_torque"][first:]) * np.asarray(recorded["shaft_speed"][first:])
-    rim = rim_speeds(speed, drive)
-    gross, share = _sliding(recorded, drive, first)
+    single = len(window.time) == 1
+    speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
+    gross, share = _sliding(recorded, drive, window)
+    parts = slip_parts(rim_speeds(speed, drive), tension, gross, window.end - window.start, drive)
     columns = (
         speed,
         belt_torque,
         shaft_torque,
-        power.mean(axis=0),
-        slip(rim),
-        relative_loss(gross - gross[:1], rim),
+        window.product(recorded, "shaft_torque", "shaft_speed"),
+        *parts,
         gross,
         share * wrap_angle,
         capstan_margin(tension, belt_speed, wrap_angle, drive),
@@ -167,7 +167,7 @@ def pulley_means(recorded: Recorded, drive: Drive) -> tuple[PulleySummary, ...]:
     )
 
 
-def tensioner_means(recorded: Recorded, drive: Drive) -> tuple[TensionerSummary, ...]:
+def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[TensionerSummary, ...]:
     """Sum up the tensioners that move over the end of a run.
 
     Parameters
@@ -176,6 +176,8 @@ def tensioner_means(recorded: Recorded, drive: Drive) -> tuple[TensionerSummary,
         What was recorded, with at least one output.
     drive : Drive
         The drive.
+    window : Window, optional
+        What means are taken over; `mean_window` by default.
 
     Returns
     -------
@@ -185,39 +187,44 @@ def tensioner_means(recorded: Recorded, drive: Drive) -> tuple[TensionerSummary,
     moving = [one for one in drive.tensioners if one.kind != "fixed"]
     if not moving:
         return ()
-    place = np.asarray(recorded["tensioner_position"][first_of_window(np.asarray(recorded["time"])) :])
-    columns = (place.mean(axis=0), place.min(axis=0), place.max(axis=0))
+    window = mean_window(recorded, drive) if window is None else window
+    place = np.asarray(recorded["tensioner_position"][window.first :])
+    columns = (window.mean(recorded, "tensioner_position"), place.min(axis=0), place.max(axis=0))
     return tuple(
         TensionerSummary(one.pulley, one.kind == "rotary", *map(float, row))
         for one, *row in zip(moving, *columns, strict=True)
     )
 
 
-def span_means(recorded: Recorded) -> tuple[SpanSummary, ...]:
+def span_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[SpanSummary, ...]:
     """Sum up the spans over the end of a run.
 
     Parameters
     ----------
     recorded : Recorded
         What was recorded, with at least one output.
+    drive : Drive
+        The drive.
+    window : Window, optional
+        What means are taken over; `mean_window` by default.
 
     Returns
     -------
     tuple of SpanSummary
         One for each span.
     """
-    first = first_of_window(np.asarray(recorded["time"]))
-    tension = np.asarray(recorded["span_tension"][first:])
-    (belt_speed,) = _means(recorded, first, "belt_speed")
-    columns = (tension.mean(axis=0), tension.min(axis=0), tension.max(axis=0), belt_speed)
+    window = mean_window(recorded, drive) if window is None else window
+    tension = np.asarray(recorded["span_tension"][window.first :])
+    mean, belt_speed = (window.mean(recorded, name) for name in ("span_tension", "belt_speed"))
+    columns = (mean, tension.min(axis=0), tension.max(axis=0), belt_speed)
     return tuple(
         SpanSummary(name, *map(float, row)) for name, *row in zip(names(recorded, "span"), *columns, strict=True)
     )
 
 
-def _sliding(recorded: Recorded, drive: Drive, first: int) -> tuple[FloatArray, FloatArray]:
+def _sliding(recorded: Recorded, drive: Drive, window: Window) -> tuple[FloatArray, FloatArray]:
     """Mean velocity at which whole arcs slide, m/s, and mean share of the arcs that slides, shape (pulleys,)."""
-    rows = np.unique(np.linspace(first, len(recorded["time"]) - 1, _INSTANTS).round().astype(int))
+    rows = window.instants(_INSTANTS)
     touched, normal, velocity = (
         np.asarray(recorded[name][rows]) for name in ("contact_pulley", "normal_force", "slip_velocity")
     )
@@ -225,8 +232,3 @@ def _sliding(recorded: Recorded, drive: Drive, first: int) -> tuple[FloatArray, 
     pressed = pressing(normal, touched, len(drive.pulleys))
     cell = cells(np.asarray(recorded["belt_coordinate"]), drive.belt.length)
     return gross_sliding(sliding, pressed, drive).mean(axis=0), sliding_shares(sliding, pressed, cell).mean(axis=0)
-
-
-def _means(recorded: Recorded, first: int, *variables: str) -> list[FloatArray]:
-    """Means of variables over the outputs from the first one on."""
-    return [np.asarray(recorded[name][first:]).mean(axis=0) for name in variables]

@@ -11,6 +11,9 @@ from beltdyn.model import Contact, Drive
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.integer]
 
+UNLOADED = 1e-4
+"""Difference of the tensions at a pulley, over their sum, up to which it counts as unloaded."""
+
 
 def rim_speeds(speed: FloatArray, drive: Drive) -> FloatArray:
     """Speeds of the rims in the direction of ascending belt coordinate, m/s.
@@ -68,7 +71,8 @@ def capstan_margin(tension: FloatArray, belt_speed: FloatArray, wrap: FloatArray
 
         (T1 + T2 - 2 m v^2) (e^(mu theta) - 1) / (e^(mu theta) + 1) / |T1 - T2| :
 
-    Euler and Eytelwein's largest difference of tensions at the same sum. Infinite without a load.
+    Euler and Eytelwein's largest difference of tensions at the same sum. NaN without a load, or where the belt does not
+    touch: where the difference of tensions, over their sum, is below `UNLOADED`.
 
     Parameters
     ----------
@@ -83,7 +87,8 @@ def capstan_margin(tension: FloatArray, belt_speed: FloatArray, wrap: FloatArray
     lifted = 0.5 * drive.belt.mass_per_length * sum(speed**2 for speed in across(belt_speed))
     largest = np.maximum(before + after - 2.0 * lifted, 0.0) * np.tanh(0.5 * drive.frictions * wrap)
     load = np.abs(before - after)
-    return np.asarray(np.divide(largest, load, out=np.full_like(load, np.inf), where=load != 0.0))
+    loaded = load > UNLOADED * np.abs(before + after)
+    return np.asarray(np.divide(largest, load, out=np.full_like(load, np.nan), where=loaded))
 
 
 def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:

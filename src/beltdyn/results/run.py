@@ -82,7 +82,7 @@ class Run:
         with self.recorded() as recorded:
             return find(recorded, self.drive, resolution)
 
-    @property
+    @cached_property
     def warnings(self) -> list[str]:
         """The findings in words."""
         return [str(finding) for finding in self.findings]

@@ -6,11 +6,11 @@ import numpy as np
 
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.closure import largest_closure
+from beltdyn.results.cycles import mean_window
 from beltdyn.results.means import (
     PulleySummary,
     SpanSummary,
     TensionerSummary,
-    first_of_window,
     pulley_means,
     span_means,
     tensioner_means,
@@ -24,15 +24,16 @@ from beltdyn.results.run import Run
 class Summary:
     """The numbers that sum up a run.
 
-    Means are taken over the outputs of the last 10 % of the recorded time, or over the last
-    output when it is the only one there.
+    Means are taken over whole turns of the belt and whole periods of what repeats; see `cycles.mean_window`.
 
     Attributes
     ----------
     status : str
         How the run ended.
     start, end : float
-        First and last instant of the outputs that means are taken of, s.
+        First and last instant of what means are taken over, s.
+    turns : int
+        Number of turns of the belt that means are taken over; zero where not even one was taken.
     outputs : int
         Number of recorded outputs.
     pulleys : tuple of PulleySummary
@@ -64,6 +65,7 @@ class Summary:
     status: str
     start: float
     end: float
+    turns: int
     outputs: int
     pulleys: tuple[PulleySummary, ...]
     spans: tuple[SpanSummary, ...]
@@ -105,17 +107,17 @@ def summarize(run: Run) -> Summary:
 
 
 def _summarize(run: Run, recorded: Recorded) -> Summary:
-    time = np.asarray(recorded["time"])
-    first = first_of_window(time)
+    window = mean_window(recorded, run.drive)
     return Summary(
         status=run.status,
-        start=float(time[first]),
-        end=float(time[-1]),
-        outputs=len(time),
-        pulleys=pulley_means(recorded, run.drive),
-        spans=span_means(recorded),
-        tensioners=tensioner_means(recorded, run.drive),
-        balance=power_balance(recorded, first),
+        start=window.start,
+        end=window.end,
+        turns=window.turns,
+        outputs=len(window.time),
+        pulleys=pulley_means(recorded, run.drive, window),
+        spans=span_means(recorded, run.drive, window),
+        tensioners=tensioner_means(recorded, run.drive, window),
+        balance=power_balance(recorded, window),
         resolution=run.resolution,
         energy_closure=largest_closure(recorded).error,
         integrator=str(recorded.attrs.get("integrator", "")),

@@ -20,7 +20,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     show_summary(run)
     output = " ".join(capsys.readouterr().out.split())
     for part in (
-        "driver 12.00 114.59 2.438 29.25 0.000% 180.0° 0.0° 2.86 90",
+        "driver 12.00 114.59 2.438 29.25 0.000% 0.000% 180.0° 0.0° 2.86 90",
         "0.500%",
         "180.0°",
         "29.25 W in, 29.1 W out",

@@ -20,9 +20,10 @@ def texts(ax: Axes) -> list[str]:
 def test_slip(run: Run, ax: Axes) -> None:
     plot.slip(run, ax)
     assert ax.get_ylabel() == "Slip [%]"
-    driver, driven = ax.lines
+    driver, driven, _, elastic = ax.lines
     np.testing.assert_array_equal(driven.get_ydata(), slips(run)["slip"][:, 1])
-    assert driver.get_label() == "driver"
+    np.testing.assert_array_equal(elastic.get_ydata(), slips(run)["elastic_creep"][:, 1])
+    assert [line.get_label() for line in (driver, driven)] == ["driver 0.000%", "driven 0.500%"]
 
 
 def test_slip_that_slides_shows_its_creep(make_run: MakeRun, run: Run, ax: Axes) -> None:

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from beltdyn.results import Run, power_balance
+from beltdyn.results.window import plain_window
 
 TORQUE = 30.0 * 0.08125
 MakeRun = Callable[..., Run]
 
 
 def test_powers_of_the_end_of_a_run(run: Run) -> None:
-    balance = power_balance(run.dataset, first=90)
+    balance = power_balance(run.dataset, plain_window(run.dataset["time"].values, 0.9))
     assert balance.pulleys == pytest.approx((12.0 * TORQUE, -0.995 * 12.0 * TORQUE))
     assert balance.power_in == pytest.approx(12.0 * TORQUE)
     out = 0.995 * 12.0 * TORQUE

@@ -72,7 +72,8 @@ def test_margin_of_a_capstan_is_one_and_grows_as_the_load_falls(
 
 def test_margin_without_load_or_grip() -> None:
     drive = serpentine()
-    assert np.all(np.isinf(capstan_margin(np.full(3, 100.0), np.zeros(3), np.full(3, pi), drive)))
+    for tension in ([100.0, 100.0, 100.0], [100.0, 100.0 + 1e-12, 100.0 - 3e-12]):
+        assert np.all(np.isnan(capstan_margin(np.array(tension), np.zeros(3), np.full(3, pi), drive)))
     flung = capstan_margin(np.array([10.0, 12.0, 11.0]), np.full(3, 50.0), np.full(3, pi), drive)
     assert np.all(flung == 0.0)  # m v^2 = 500 N lifts the belt off
 

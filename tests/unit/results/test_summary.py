@@ -6,18 +6,21 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
+from beltdyn.model import Drive
 from beltdyn.results import Run, summarize
 from beltdyn.results.means import tensioner_means
+from beltdyn.results.window import plain_window
 
 
-def test_means_are_taken_over_the_last_tenth(make_run: Callable[..., Run]) -> None:
-    tension = np.zeros((101, 2))
-    tension[90:] = [1.0, 3.0]
-    tension[-1] += 11.0
-    summary = summarize(make_run(span_tension=tension))
-    assert summary.start == pytest.approx(0.9)
-    assert summary.end == 1.0
-    assert [span.tension for span in summary.spans] == pytest.approx([2.0, 4.0])
+def test_means_are_taken_over_whole_elements_where_no_turn_fits(make_run: Callable[..., Run], drive: Drive) -> None:
+    """One of 20 passes in L / (20 * 12 rad/s * R) = 65 ms; of a jump for the second half of it the mean has a half."""
+    element = drive.belt.length / (20 * 12.0 * drive.pulleys[0].radius)
+    tension = np.full((1001, 2), [1.0, 3.0])
+    tension[round(1000 * (1.0 - 0.5 * element)) :] += 2.0
+    summary = summarize(make_run(outputs=1001, span_tension=tension))
+    assert summary.start == pytest.approx(1.0 - element)
+    assert (summary.end, summary.turns) == (1.0, 0)
+    assert [span.tension for span in summary.spans] == pytest.approx([2.0, 4.0], abs=2.0 * 1e-3 / element)
 
 
 def test_pulleys(run: Run) -> None:
@@ -78,13 +81,14 @@ def test_closure_is_the_largest_over_time(make_run: Callable[..., Run]) -> None:
 
 
 def test_tensioners_that_move() -> None:
-    """Over the last tenth of the time; one that is fixed has no place."""
+    """Over the given part of the time; one that is fixed has no place."""
     kinds = [("fixed", "driver"), ("rotary", "idler"), ("sliding", "driven")]
     drive = SimpleNamespace(tensioners=[SimpleNamespace(kind=kind, pulley=pulley) for kind, pulley in kinds])
     position = np.zeros((11, 2))
     position[-2:] = [[0.1, 0.004], [0.3, 0.002]]
     dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": position}
-    arm, slide = tensioner_means(dataset, drive)  # type: ignore[arg-type]
+    window = plain_window(dataset["time"], 0.9)
+    arm, slide = tensioner_means(dataset, drive, window)  # type: ignore[arg-type]
     assert (arm.name, arm.rotary, slide.name, slide.rotary) == ("idler", True, "driven", False)
     assert (arm.position, arm.lowest, arm.highest) == pytest.approx((0.2, 0.1, 0.3))
     assert (slide.position, slide.lowest, slide.highest) == pytest.approx((0.003, 0.002, 0.004))

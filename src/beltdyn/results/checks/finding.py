@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
-from beltdyn.results.means import PulleySummary, first_of_window, pulley_means
+from beltdyn.results.cycles import mean_window
+from beltdyn.results.means import PulleySummary, pulley_means
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
+from beltdyn.results.window import Window
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +61,14 @@ class Evidence:
         return np.asarray(self.recorded["time"])
 
     @cached_property
-    def first(self) -> int:
-        """Number of the first output that means are taken over."""
-        return first_of_window(self.time)
+    def window(self) -> Window:
+        """What means are taken over."""
+        return mean_window(self.recorded, self.drive)
 
     @cached_property
     def pulleys(self) -> tuple[PulleySummary, ...]:
         """Means of the pulleys over the end of the run."""
-        return pulley_means(self.recorded, self.drive)
+        return pulley_means(self.recorded, self.drive, self.window)
 
 
 Check = Callable[[Evidence], Iterator[Finding]]

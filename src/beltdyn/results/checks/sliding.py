@@ -37,7 +37,7 @@ def near_gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     tension, speed, wrap, torque = (
         np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed", "wrap_angle", "pulley_torque")
     )
-    first, drive = evidence.first, evidence.drive
+    first, drive = evidence.window.first, evidence.drive
     times, margins = evidence.time[:first], capstan_margin(tension, speed, wrap, drive)[:first]
     reached = (margins < 1.0) & (drive.frictions > 0.0)
     for pulley, when, load in zip(drive.pulleys, reached.T, np.abs(torque[:first]).T, strict=True):

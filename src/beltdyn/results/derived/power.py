@@ -5,6 +5,7 @@ import xarray as xr
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.derived.labels import labelled, window
 from beltdyn.results.run import Run
+from beltdyn.results.window import plain_window
 
 
 def pulley_powers(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
@@ -54,4 +55,5 @@ def balance(run: Run, start: float | None = None, end: float | None = None) -> B
     Balance
         Mean powers; the efficiency leaves out what is being stored or given back.
     """
-    return power_balance(window(run, start, end))
+    part = window(run, start, end)
+    return power_balance(part, plain_window(part["time"].values))

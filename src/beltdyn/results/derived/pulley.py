@@ -39,7 +39,7 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
 def capstan_margins(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
     """How many times its present load each pulley could transmit before its whole arc slides.
 
-    See `beltdyn.results.mechanics.capstan_margin`: 1 at the edge of gross slip, infinite without load.
+    See `beltdyn.results.mechanics.capstan_margin`: 1 at the edge of gross slip, NaN without load.
 
     Parameters
     ----------

@@ -4,18 +4,19 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from beltdyn.results.cycles import turn_window
 from beltdyn.results.derived.labels import labelled, window
 from beltdyn.results.mechanics import (
     cells,
     gross_sliding,
     pressing,
-    relative_loss,
     rim_speeds,
     sliding_shares,
     sliding_velocity,
-    slip,
 )
 from beltdyn.results.run import Run
+from beltdyn.results.slipping import slip_parts
+from beltdyn.results.window import Window
 
 FloatArray = NDArray[np.float64]
 
@@ -24,18 +25,23 @@ _STANDING = 0.01
 _BLOCK = 256
 
 
-def slips(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Slip over time, split into creep and sliding.
+def slips(run: Run, start: float | None = None, end: float | None = None, *, turns: bool = True) -> xr.Dataset:
+    """Slip over time, and what it is made of.
 
     The slip of pulley i is its rim's speed loss against the first pulley's, s_i = 1 - v_i / v_0 with v = |omega| R,
-    positive in the direction in which the belt runs, as in the summary. With the velocity g (belt faster than the rim)
+    positive in the direction in which the belt runs. Speeds are means over a turn of the belt and a period of what
+    repeats besides, as in the summary, or those of the instant. With the velocity g (belt faster than the rim)
     at which the belt slides on the *whole* arc of a pulley beyond what the friction law calls creep,
 
         sliding_i = (g_i - g_0) / v_0,    creep_i = s_i - sliding_i.
 
-    So creep is what a belt that still sticks or creeps somewhere on both arcs loses: its stretch changes between
-    the two (Reynolds 1874; (T1 - T2) / E A without mass), and the law of friction lets it creep. What slides is a
-    loss without bound, as on a pulley that is overloaded.
+    So creep is what a belt that still sticks or creeps somewhere on both arcs loses. Of it,
+
+        elastic_creep_i = 1 - g(T_i) / g(T_0)
+
+    with the stretches g of the spans that reach the two pulleys, (T_0 - T_i) / E A at small strain, is what Coulomb's
+    friction would leave (Reynolds 1874, Grashof 1883); ``regularisation``, the rest, is what the slope of the friction
+    law adds. What slides is a loss without bound, as on a pulley that is overloaded.
 
     Parameters
     ----------
@@ -43,24 +49,34 @@ def slips(run: Run, start: float | None = None, end: float | None = None) -> xr.
         The run.
     start, end : float, optional
         From when to when, s.
+    turns : bool
+        Whether speeds and tensions are means over turns (`turn_means`), or those of the instant.
 
     Returns
     -------
     xarray.Dataset
-        ``slip``, ``creep`` and ``sliding`` in %, with the dimensions time and pulley; NaN while the first pulley
-        stands still.
+        ``slip``, ``creep``, ``elastic_creep``, ``regularisation`` and ``sliding`` in %, with the dimensions time and
+        pulley; NaN while the first pulley stands still.
     """
     dataset = window(run, start, end)
-    speed = dataset["pulley_speed"]
-    rim = rim_speeds(speed.values, run.drive)
-    largest = np.max(np.abs(rim[:, :1]))
+    dataset = run.dataset if turns else dataset
+    over = turn_window(run.dataset, run.drive) if turns else Window(dataset["time"].values, ())
+    gross = over.running_means(_contact(run, dataset)[0])
+    speed, tension = (over.running_means(dataset[name].values) for name in ("pulley_speed", "span_tension"))
+    rim = rim_speeds(speed, run.drive)
+    largest = np.max(np.abs(rim[:, :1]), initial=0.0, where=np.isfinite(rim[:, :1]))
     rim = np.where(np.abs(rim[:, :1]) > _STANDING * largest, rim, 0.0)
-    gross = _contact(run, dataset)[0]
-    total, slid = slip(rim), relative_loss(gross - gross[:, :1], rim)
-    parts = {"slip": (total, "Slip"), "creep": (total - slid, "Creep"), "sliding": (slid, "Sliding")}
-    return xr.Dataset(
-        {name: labelled(100.0 * values, speed, "%", long_name) for name, (values, long_name) in parts.items()}
-    )
+    total, elastic, added, slid = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.drive)
+    parts = {
+        "slip": (total, "Slip"),
+        "creep": (total - slid, "Creep"),
+        "elastic_creep": (elastic, "Elastic creep"),
+        "regularisation": (added, "Slip that the slope of the friction law adds"),
+        "sliding": (slid, "Sliding"),
+    }
+    like = dataset["pulley_speed"]
+    made = {name: labelled(100.0 * values, like, "%", long_name) for name, (values, long_name) in parts.items()}
+    return xr.Dataset(made).sel(time=slice(start, end))
 
 
 def sliding_arcs(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:

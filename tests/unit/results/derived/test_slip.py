@@ -27,6 +27,7 @@ def test_a_belt_that_creeps_does_not_slide(run: Run) -> None:
     parts, arcs = slips(run, start=0.7), sliding_arcs(run, start=0.7)
     np.testing.assert_allclose(parts["slip"], np.tile([0.0, 0.5], (31, 1)), atol=1e-9)
     np.testing.assert_array_equal(parts["creep"], parts["slip"])
+    np.testing.assert_allclose(parts["elastic_creep"] + parts["regularisation"], parts["creep"])
     assert not parts["sliding"].any()
     assert not arcs["sliding_arc"].any()
     assert parts["slip"].attrs == {"units": "%", "long_name": "Slip"}
@@ -58,6 +59,22 @@ def test_half_of_an_arc(make_run: MakeRun, run: Run) -> None:
 
 def test_slip_of_a_drive_at_rest_is_unknown(run: Run) -> None:
     assert np.isnan(slips(run, end=0.04)["slip"]).all()
+    assert np.isnan(slips(run, end=0.04, turns=False)["slip"]).all()
+
+
+def test_elastic_creep_is_the_difference_of_stretch(run: Run) -> None:
+    """The tight span of 60 N reaches the driver, the slack one of 30 N the driven pulley: 30 N / EA."""
+    elastic = slips(run, start=0.7)["elastic_creep"]
+    np.testing.assert_allclose(elastic[:, 1], 100.0 * 30.0 / run.drive.belt.axial_stiffness, rtol=0.02)
+    assert not elastic[:, 0].any()
+
+
+def test_slip_of_the_instant_swings_where_its_mean_does_not(make_run: MakeRun, run: Run) -> None:
+    speed = run.dataset["pulley_speed"].values.copy()
+    speed[60:, 1] *= 1.0 + 0.01 * (-1.0) ** np.arange(41)
+    shaken = make_run(pulley_speed=speed)
+    assert float(np.ptp(slips(shaken, start=0.8, turns=False)["slip"].values[:, 1])) == pytest.approx(2.0, rel=0.01)
+    assert float(np.ptp(slips(shaken, start=0.8)["slip"].values[:, 1])) < 0.2
 
 
 def test_no_output_between_two_instants(run: Run) -> None:

@@ -1,0 +1,48 @@
+"""Slip of the pulleys against the first, and what it is made of."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.model import Drive
+from beltdyn.results.mechanics import across, relative_loss, slip
+from beltdyn.theory.stretch import stretch
+
+FloatArray = NDArray[np.float64]
+
+
+def slip_parts(
+    rim: FloatArray, tension: FloatArray, gross: FloatArray, elapsed: FloatArray | float, drive: Drive
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Take slip apart into elastic creep, what the slope of the friction law adds, and sliding.
+
+    With Coulomb's friction the belt adheres to every rim where it reaches it, with the tension T of the span before
+    and the stretch g(T) there: the elastic creep is 1 - g(T_i) / g(T_0), (T_0 - T_i) / EA at small strain (Grashof
+    1883). A law of friction that starts at zero lets the belt creep there too.
+
+    Parameters
+    ----------
+    rim : ndarray, shape (..., pulleys)
+        Mean speeds of the rims, m/s; see `mechanics.rim_speeds`.
+    tension : ndarray, shape (..., spans)
+        Mean tensions, N.
+    gross : ndarray, shape (..., pulleys)
+        Mean velocities at which whole arcs slide, m/s; see `mechanics.gross_sliding`.
+    elapsed : float or ndarray, shape (...)
+        Time that means are taken over, s.
+    drive : Drive
+        The drive.
+
+    Returns
+    -------
+    slip, elastic, regularisation, sliding : ndarray, shape (..., pulleys)
+        Parts of the first rim's speed, of which the first is the sum of the others. NaN while the first rim stands
+        still: while it goes no further than the belt is stretched.
+    """
+    stretched = np.max(tension, axis=-1) / drive.belt.axial_stiffness * drive.belt.length
+    runs = np.abs(rim[..., 0]) * elapsed > np.maximum(stretched, 0.0)
+    rim = np.where(runs[..., None], rim, 0.0)
+    before, after = across(tension)
+    reached = stretch(np.where(rim[..., :1] > 0.0, before, after), drive.belt.axial_stiffness)
+    total, sliding = slip(rim), relative_loss(gross - gross[..., :1], rim)
+    elastic = np.where(runs[..., None], 1.0 - reached / reached[..., :1], np.nan)
+    return total, elastic, total - elastic - sliding, sliding
