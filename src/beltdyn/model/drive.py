@@ -80,6 +80,12 @@ class Drive(Part):
         """Centers of the pulleys, shape (n, 2), m, with spring-loaded tensioners at zero."""
         return np.array([pulley.center for pulley in self.pulleys])
 
+    def _repr_html_(self) -> str:
+        """Show the drive in a notebook."""
+        from beltdyn.model.notebook import drive_html
+
+        return drive_html(self)
+
     def carried(self, tensioner: AnyTensioner) -> int:
         """Tell the number of the pulley that a tensioner carries."""
         return [pulley.name for pulley in self.pulleys].index(tensioner.pulley)

@@ -40,6 +40,12 @@ class Run:
     def __repr__(self) -> str:
         return f"Run(path={self.path!r})"
 
+    def _repr_html_(self) -> str:
+        """Show the run in a notebook."""
+        from beltdyn.results.notebook import run_html
+
+        return run_html(self)
+
     @property
     def dataset(self) -> "xr.Dataset":
         """Every recorded variable with its units; see `beltdyn.results.VARIABLES`."""

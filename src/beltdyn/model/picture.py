@@ -1,0 +1,80 @@
+"""A drive as a small vector picture: its pulleys and the path of its belt, as text in SVG."""
+
+import math
+from dataclasses import dataclass
+
+from beltdyn.model.drive import Drive
+
+_SIZE = 360.0
+"""Longer side of the picture, pixels."""
+_MARGIN = 0.06
+"""Room around the drive, over its longer side."""
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A pulley in the picture, pixels; `prescribed` tells whether its speed is."""
+
+    name: str
+    x: float
+    y: float
+    radius: float
+    prescribed: bool
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What a template needs to draw a drive.
+
+    Attributes
+    ----------
+    width, height : float
+        Pixels.
+    circles : tuple of Circle
+        The pulleys.
+    belt : str
+        Path of the belt's line of tension, in the language of the attribute ``d``.
+    """
+
+    width: float
+    height: float
+    circles: tuple[Circle, ...]
+    belt: str
+
+
+def picture(drive: Drive) -> Picture:
+    """Draw a drive, with spring-loaded tensioners where the file has them.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    Picture
+        y points up in the drive and down in the picture.
+    """
+    path = drive.path
+    reach = abs(path.radii)[:, None]
+    low, high = (path.centers - reach).min(axis=0), (path.centers + reach).max(axis=0)
+    scale = _SIZE / max(high - low)
+    room = _MARGIN * _SIZE
+    width, height = (float(side) for side in scale * (high - low) + 2 * room)
+
+    def place(x: float, y: float) -> tuple[float, float]:
+        return room + scale * (x - low[0]), room + scale * (high[1] - y)
+
+    circles = tuple(
+        Circle(pulley.name, *place(*center), scale * pulley.radius, pulley.prescribed)
+        for pulley, center in zip(drive.pulleys, path.centers.tolist(), strict=True)
+    )
+    x, y = place(*path.span_points[0, 0])
+    steps = [f"M {x:.2f} {y:.2f}"]
+    for span in range(path.count):
+        arc = (span + 1) % path.count
+        radius, large = scale * abs(path.radii[arc]), int(path.wrap_angles[arc] > math.pi)
+        x, y = place(*path.span_points[span, 1])
+        steps.append(f"L {x:.2f} {y:.2f}")
+        x, y = place(*path.span_points[arc, 0])
+        steps.append(f"A {radius:.2f} {radius:.2f} 0 {large} {int(path.radii[arc] < 0)} {x:.2f} {y:.2f}")
+    return Picture(width, height, circles, " ".join(steps))
