@@ -8,7 +8,6 @@ import pytest
 
 import beltdyn as bd
 import beltdyn.model
-import beltdyn.results
 import beltdyn.solve
 import beltdyn.theory
 

@@ -72,7 +72,7 @@ def test_no_file(refuse: Refuse) -> None:
 
 
 def test_a_real_process_shows_no_traceback(drive_file: Path) -> None:
-    drive_file.write_text("[belt]\nlength = -1\n")
+    drive_file.write_text("[belt]\nlength = -1\n", encoding="utf-8")
     command = [sys.executable, "-c", "from beltdyn.cli import main; main()", "check", str(drive_file)]
     process = subprocess.run(command, capture_output=True, text=True, check=False)
     assert process.returncode == 2
