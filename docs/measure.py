@@ -393,7 +393,7 @@ def ripple() -> Iterator[Row]:
 
 @measurement("contact-force-spread")
 def contact_force_spread() -> Iterator[Row]:
-    """Normal force over the middle 90 degrees of the driver's arc, mean over the last 100 outputs."""
+    """Normal force over the middle 90 degrees of the driver's arc, mean over the last ten outputs of fields."""
     yield "elements", "(largest − smallest) / mean", "standard deviation / mean", "mean", "share of zeros", "misses by"
     for elements in (20, 30, 60, 120):
         run = bd.simulate(case_1(elements, duration=3.0, output_interval=2e-3))
@@ -447,8 +447,8 @@ def force_errors(run: bd.Run, reference: bd.Run) -> list[float]:
 
 
 def normal_forces(run: bd.Run, pulley: int) -> tuple[FloatArray, FloatArray]:
-    """Angles and normal forces within 60 degrees of the middle of an arc, at ten of the last 100 outputs."""
-    last = run.dataset.isel(time=slice(-100, None, 10))
+    """Angles and normal forces within 60 degrees of the middle of an arc, at the last ten outputs of fields."""
+    last = run.fields.isel(time=slice(-10, None))
     center = np.array(run.drive.pulleys[pulley].center)
     arm = last["contact_position"].values - center
     outwards = np.angle(np.exp(1j * (np.arctan2(arm[..., 1], arm[..., 0]) - (0.0 if center[0] > 0 else np.pi))))
@@ -460,8 +460,9 @@ def force_spread(run: bd.Run) -> Row:
     """Spread, standard deviation, mean and share of zeros of the normal force in the middle of the driver's arc."""
     pulley = run.drive.pulleys[DRIVER]
     rows = []
-    for k in range(-100, 0):
-        data = run.dataset.isel(time=k)
+    fields = run.fields
+    for k in range(-10, 0):
+        data = fields.isel(time=k)
         place = np.asarray(data["contact_position"]) - np.array(pulley.center)
         inside = np.hypot(*place.T) < 1.1 * pulley.radius
         middle = inside & (abs(np.arctan2(place[:, 1], -place[:, 0])) < np.pi / 4)

@@ -15,6 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.model import Drive
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
+from beltdyn.results.contact_scalars import contact_scalars
+from beltdyn.results.friction_work import FrictionWork
 
 FloatArray = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
@@ -104,7 +106,11 @@ def statistics() -> dict[str, Any]:
 
 @pytest.fixture(scope="session")
 def make_chunk(drive: Drive, layout: Layout) -> Callable[[FloatArray], Arrays]:
-    return lambda time: _outputs(drive, layout, time)
+    def make(time: FloatArray) -> Arrays:
+        outputs = _outputs(drive, layout, time)
+        return outputs | _summed_up(drive, layout, outputs)
+
+    return make
 
 
 @pytest.fixture(scope="session")
@@ -113,7 +119,8 @@ def make_run(
 ) -> Callable[..., Run]:
     def make(outputs: int = 101, status: Any = "completed", **changed: NDArray[Any]) -> Run:
         recorder = MemoryRecorder(layout, attributes)
-        recorder.append(make_chunk(np.linspace(0.0, 1.0, outputs)) | changed)
+        chunk = make_chunk(np.linspace(0.0, 1.0, outputs)) | changed
+        recorder.append(chunk | _summed_up(drive, layout, chunk) | changed)
         recorder.close(status, STATISTICS)
         return Run(recorder.dataset(), drive)
 
@@ -157,6 +164,7 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
     kinetic, still = 0.05 * speed**2, np.zeros_like(time)
     return {
         "time": time,
+        "field_time": time,
         "pulley_speed": speed[:, None] * pulleys,
         "pulley_angle": angle[:, None] * pulleys,
         "shaft_speed": speed[:, None] * pulleys,
@@ -168,7 +176,6 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "friction_power": np.repeat(0.045 * speed[:, None], 2, axis=1),
         "contact_damping_power": np.repeat(0.005 * speed[:, None], 2, axis=1),
         "wrap_angle": np.full((len(time), 2), np.pi),
-        "node_position": position,
         "nodal_coordinates": coordinates,
         "nodal_velocities": velocities,
         "belt_tension": tension(layout.element_coordinate),
@@ -194,4 +201,19 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "coupling_loss": still,
         "energy_closure": still + 1e-4,
         "step_size": still + 1e-3,
+    }
+
+
+def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
+    """What contact along the belt amounts to; with fields at every output."""
+    names = ("contact_pulley", "normal_force", "slip_velocity", "contact_position", "pulley_center")
+    touched, normal, slip, places, centers = (outputs[name] for name in names)
+    work = FrictionWork(drive, layout.belt_coordinate, layout.elements)
+    done = work.take(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
+    return {
+        **contact_scalars(drive, layout.belt_coordinate, touched, normal, slip, places, centers),
+        **{
+            f"friction_work_on_{place}": np.diff(each, axis=0, prepend=0.0 * each[:1])
+            for place, each in zip(("arc", "belt"), done, strict=True)
+        },
     }

@@ -199,7 +199,7 @@ def published_drive(creep_rate_factor: float, elements: int) -> Drive:
         friction=FRICTION,
         creep_rate_factor=creep_rate_factor,
     )
-    simulation = Simulation(duration=2.45, output_interval=1e-3, rtol=RTOL)
+    simulation = Simulation(duration=2.45, output_interval=1e-3, field_interval=2e-3, rtol=RTOL)
     return Drive(belt=belt, pulley=(driver, driven), contact=contact, simulation=simulation, gravity=(0.0, -GRAVITY))
 
 
@@ -275,7 +275,7 @@ def test_tension_over_the_driven_arc(run: Run, measured: Callable[..., None], cu
 
 def _driven_arc(run: Run) -> tuple[FloatArray, FloatArray]:
     """Angle from the top of the driven pulley, rad, and tension, of all elements in the last outputs, by angle."""
-    last = run.dataset.sel(time=slice(2.43, None))
+    last = run.fields.sel(time=slice(2.43, None))
     nodes = last["node_position"].values
     middle = 0.5 * (nodes + np.roll(nodes, -1, axis=1)) - run.dataset["pulley_center"].values[-1, 1]
     angle = np.pi / 2 - np.arctan2(middle[..., 1], middle[..., 0])

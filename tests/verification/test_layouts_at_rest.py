@@ -59,7 +59,7 @@ def make(circles: Circles, turned: float = 0.0, shift: tuple[float, float] = (0.
 def test_tension_and_hub_loads(circles: Circles, measured: Callable[..., None]) -> None:
     """The ends of contact add 5/12 d lambda / R each; bending, in the ends and on the arcs, is left out (0.05 %)."""
     drive = make(circles)
-    hand, found = install(drive), equilibrium(drive).dataset.isel(time=-1)
+    hand, found = install(drive), equilibrium(drive).fields_at()
     rise = 5 / 12 * hand.penetrations * np.sqrt(hand.penetrations / drive.radii)
     expected = 400.0 * 2 * float(rise.sum()) / (hand.path.length - drive.belt.length)
     tension = found["span_tension"].values
@@ -73,7 +73,7 @@ def test_tension_and_hub_loads(circles: Circles, measured: Callable[..., None]) 
 def test_turned_and_shifted(circles: Circles) -> None:
     """The search for equilibrium ends within 1e-6 of the forces."""
     turn, shift = 0.7, (3.0, -2.0)
-    plain, moved = (equilibrium(drive).dataset.isel(time=-1) for drive in (make(circles), make(circles, turn, shift)))
+    plain, moved = (equilibrium(drive).fields_at() for drive in (make(circles), make(circles, turn, shift)))
     np.testing.assert_allclose(moved["span_tension"], plain["span_tension"], rtol=1e-5)
     matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     np.testing.assert_allclose(moved["hub_force"].values, plain["hub_force"].values @ matrix.T, atol=400.0 * 1e-4)

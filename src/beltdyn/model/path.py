@@ -47,23 +47,13 @@ class Path:
 
     @cached_property
     def span_directions(self) -> FloatArray:
-        """Unit vectors u along the spans, shape (n, 2).
-
-        With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i.
-        """
-        between = np.roll(self.centers, -1, axis=0) - self.centers
-        distance = np.linalg.norm(between, axis=1, keepdims=True)
-        along = between / distance
-        sine = (np.roll(self.radii, -1) - self.radii)[:, None] / distance
-        return np.asarray(np.sqrt(1 - sine**2) * along - sine * _left(along))
+        """Unit vectors u along the spans, shape (n, 2)."""
+        return span_directions(self.centers, self.radii)
 
     @cached_property
     def span_points(self) -> FloatArray:
         """Start and end point of each span, shape (n, 2, 2), m: the tangent points on its two pulleys."""
-        normals = _left(self.span_directions)
-        starts = self.centers - self.radii[:, None] * normals
-        ends = np.roll(self.centers, -1, axis=0) - np.roll(self.radii, -1)[:, None] * normals
-        return np.stack([starts, ends], axis=1)
+        return span_points(self.centers, self.radii)
 
     @cached_property
     def span_lengths(self) -> FloatArray:
@@ -73,10 +63,7 @@ class Path:
     @cached_property
     def wrap_angles(self) -> FloatArray:
         """Angles over which the belt touches each pulley, shape (n,), rad, from 0 to 2 pi."""
-        before, after = np.roll(self.span_directions, 1, axis=0), self.span_directions
-        sine = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-        turning = np.arctan2(sine, np.sum(before * after, axis=1)) * np.sign(self.radii)
-        return np.asarray(np.where(turning > -_ROUNDING, np.maximum(turning, 0.0), turning + 2 * np.pi))
+        return wrap_angles(self.span_directions, self.radii)
 
     @property
     def total_turning(self) -> float:
@@ -140,6 +127,41 @@ class Path:
         return np.where(on_arc[:, None], on_circle, on_line), tangents
 
 
+def span_directions(centers: FloatArray, radii: FloatArray) -> FloatArray:
+    """Unit vectors u along the spans of paths around the same pulleys, shape (..., n, 2).
+
+    With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i.
+
+    Parameters
+    ----------
+    centers : ndarray, shape (..., n, 2), m
+        Centers of the pulleys.
+    radii : ndarray, shape (n,), m
+        Signed radii.
+    """
+    between = np.roll(centers, -1, axis=-2) - centers
+    distance = np.linalg.norm(between, axis=-1, keepdims=True)
+    along = between / distance
+    sine = (np.roll(radii, -1) - radii)[:, None] / distance
+    return np.asarray(np.sqrt(1 - sine**2) * along - sine * _left(along))
+
+
+def span_points(centers: FloatArray, radii: FloatArray) -> FloatArray:
+    """Tangent points where spans start and end, shape (..., n, 2, 2), m; arguments as for `span_directions`."""
+    normals = _left(span_directions(centers, radii))
+    starts = centers - radii[:, None] * normals
+    ends = np.roll(centers, -1, axis=-2) - np.roll(radii, -1)[:, None] * normals
+    return np.stack([starts, ends], axis=-2)
+
+
+def wrap_angles(directions: FloatArray, radii: FloatArray) -> FloatArray:
+    """Angles over which belts touch each pulley, shape (..., n), rad, from `span_directions`."""
+    before, after = np.roll(directions, 1, axis=-2), directions
+    sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
+    turning = np.arctan2(sine, np.sum(before * after, axis=-1)) * np.sign(radii)
+    return np.asarray(np.where(turning > -_ROUNDING, np.maximum(turning, 0.0), turning + 2 * np.pi))
+
+
 def _left(vectors: FloatArray) -> FloatArray:
-    """Left normals of vectors, shape (n, 2)."""
-    return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)
+    """Left normals of vectors, shape (..., 2)."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

@@ -1,13 +1,17 @@
 """How a drive is simulated: duration, outputs, start and integrator."""
 
+from math import floor
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from beltdyn.model.instants import Instants
 from beltdyn.model.part import Part
 from beltdyn.model.quantity import Ratio, Time
 
 _MOST_OUTPUTS = 1_000_000
+_FIELDS = 100
+"""Number of instants at which fields along the belt are recorded unless an interval is given, about."""
 
 
 class Simulation(Part):
@@ -15,6 +19,12 @@ class Simulation(Part):
 
     duration: Time = Field(gt=0, description="the simulated time, in s")
     output_interval: Time = Field(gt=0, description="the time between two outputs, in s")
+    field_interval: Time | None = Field(
+        None,
+        gt=0,
+        description="the time between two outputs of what is recorded along the belt, in s; by default a hundredth of "
+        "the duration",
+    )
     start: Literal["equilibrium", "laid"] = Field(
         "equilibrium", description="the state at time zero: static equilibrium, or the belt laid on its path"
     )
@@ -31,12 +41,24 @@ class Simulation(Part):
         description="the joint of the belt's ends: by one shared node, or by Lagrange multipliers",
     )
 
+    @property
+    def instants(self) -> Instants:
+        """Output instants; fields along the belt are recorded at least as often as asked for."""
+        wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
+        stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
+        return Instants(self.output_interval, self.duration, stride)
+
     @model_validator(mode="after")
     def _outputs_fit_the_duration(self) -> Self:
         if self.output_interval > self.duration:
             raise ValueError(
                 f"output_interval = {self.output_interval:g} s is longer than duration = {self.duration:g} s. "
                 "Shorten the interval, or simulate longer"
+            )
+        if self.field_interval is not None and self.field_interval < self.output_interval * (1.0 - 1e-9):
+            raise ValueError(
+                f"field_interval = {self.field_interval:g} s is shorter than output_interval = "
+                f"{self.output_interval:g} s. Lengthen it, or shorten output_interval"
             )
         if self.duration / self.output_interval > _MOST_OUTPUTS:
             raise ValueError(

@@ -26,7 +26,7 @@ def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25)
     path : Path or str
         The file: a GIF, or an MP4 where the program ffmpeg is installed.
     frames : int
-        Largest number of pictures; they are spread evenly over the outputs.
+        Largest number of pictures; they are spread evenly over the outputs of fields.
     frame_rate : float
         Pictures shown per second.
 
@@ -47,10 +47,11 @@ def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25)
     figure = new_figure(size_of(run.drive))
     tension = run.dataset["belt_tension"]
     picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
-    outputs = np.unique(np.linspace(0, run.dataset.sizes["time"] - 1, frames).round().astype(int))
+    times = run.dataset["field_time"].values
+    chosen = times[np.unique(np.linspace(0, len(times) - 1, frames).round().astype(int))]
     with atomic_path(path) as temporary, writer.saving(figure, str(temporary), _DPI):
-        for output in outputs:
-            picture.show(run.dataset.isel(time=output))
+        for time in chosen:
+            picture.show(run.fields_at(time))
             writer.grab_frame()
             figure.set_layout_engine("none")
     return path

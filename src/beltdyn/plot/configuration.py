@@ -4,7 +4,6 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 
 from beltdyn.plot.drive import DrivePicture, draw_rotation, size_of
-from beltdyn.plot.instant import at
 from beltdyn.plot.style import axes_or_new, styled
 from beltdyn.results import Run
 
@@ -18,7 +17,7 @@ def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -
     run : Run
         The run.
     time : float, optional
-        The instant, s; the output nearest to it is drawn. The last one by default.
+        The instant, s; the output of fields nearest to it is drawn. The last one by default.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -32,7 +31,7 @@ def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -
     ModelError
         If the run holds no output.
     """
-    instant = at(run, time)
+    instant = run.fields_at(time)
     ax = axes_or_new(ax, size_of(run.drive))
     tension = instant["belt_tension"].values
     DrivePicture(run, ax, Normalize(tension.min(), tension.max())).show(instant)

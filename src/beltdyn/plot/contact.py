@@ -8,7 +8,6 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from numpy.typing import NDArray
 
-from beltdyn.plot.instant import at
 from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, styled, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Run, derived
@@ -35,7 +34,7 @@ def contact_forces(
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
-        The instant, s; the output nearest to it is drawn. The last one by default.
+        The instant, s; the output of fields nearest to it is drawn. The last one by default.
     kind : {"normal", "friction"}
         Which force. Friction is positive along the counter-clockwise tangent.
     ax : Axes, optional
@@ -52,7 +51,7 @@ def contact_forces(
         If there is no such pulley, or the run holds no output.
     """
     number = derived.pulley_number(run, pulley)
-    instant = at(run, time)
+    instant = run.fields_at(time)
     ax = axes_or_new(ax)
     wrap = unwrap(
         instant["belt_coordinate"].values,
@@ -88,7 +87,7 @@ def contact_pressure(run: Run, pulley: str | int, time: float | None = None, ax:
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
-        The instant, s; the output nearest to it is drawn. The last one by default.
+        The instant, s; the output of fields nearest to it is drawn. The last one by default.
     ax : Axes, optional
         Where to draw; a new figure by default.
 

@@ -189,8 +189,8 @@ def _frame(ax: Axes, run: Run) -> None:
     positions = run.dataset["node_position"]
     centers = np.array([pulley.center for pulley in run.drive.pulleys])
     radii = np.array([[pulley.radius] for pulley in run.drive.pulleys])
-    low = np.min([positions.min(("time", "node")), *(centers - radii)], axis=0)
-    high = np.max([positions.max(("time", "node")), *(centers + radii)], axis=0)
+    low = np.min([positions.min(("field_time", "node")), *(centers - radii)], axis=0)
+    high = np.max([positions.max(("field_time", "node")), *(centers + radii)], axis=0)
     ax.set(xlabel=f"x [{positions.attrs['units']}]", ylabel=f"y [{positions.attrs['units']}]")
     make_room(ax, np.array([low, high]))
 

@@ -62,9 +62,8 @@ def wear_by_belt(run: Run, ax: Axes | None = None) -> Axes:
     ax = axes_or_new(ax)
     wear = derived.wear_by_belt(run)
     for number, name in enumerate(wear["pulley"].values):
-        ax.plot(
-            wear["belt_coordinate"], wear[number], color=color(number), linestyle=dash(number), lw=1.1, label=str(name)
-        )
-    ax.set(xlabel=label(wear["belt_coordinate"]), ylabel=label(wear), ylim=(0.0, None))
+        place = wear["element_coordinate"]
+        ax.plot(place, wear[number], color=color(number), linestyle=dash(number), lw=1.1, label=str(name))
+    ax.set(xlabel=label(wear["element_coordinate"]), ylabel=label(wear), ylim=(0.0, None))
     name_lines(ax)
     return ax

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from beltdyn.report.measures import SETTLED, FloatArray, times
+from beltdyn.report.measures import SETTLED, FloatArray
 from beltdyn.results import Run
 from beltdyn.system.build import contact_points
 
@@ -74,9 +74,10 @@ def contact_samples(run: Run) -> list[ContactSamples]:
     list of ContactSamples
         For every pulley those of the points on its nominal arc that are nearer than 5 % of the radius to the rim.
     """
-    first = int(np.searchsorted(times(run), times(run)[-1] - SETTLED, side="right"))
+    instants = run.dataset["field_time"].values
+    first = int(np.searchsorted(instants, instants[-1] - SETTLED, side="right"))
     names = ["contact_position", "contact_pulley", "normal_force", "friction_force"]
-    window = run.dataset[names].isel(time=slice(first, None)).load()
+    window = run.dataset[names].isel(field_time=slice(first, None)).load()
     contact = contact_points(run.drive.contact)
     weights = np.tile(contact.weights, window.sizes["contact_point"] // contact.weights.size)
     return [_on_pulley(run, window, weights, pulley) for pulley in range(len(run.drive.pulleys))]

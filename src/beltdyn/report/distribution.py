@@ -60,7 +60,7 @@ def distribution(run: Run, pulley: int) -> Distribution:
     pulley : int
         Number of the pulley.
     """
-    data, drive = run.dataset.isel(time=-1), run.drive
+    data, drive = run.fields_at(), run.drive
     wrap = unwrap(data["belt_coordinate"].values, data["contact_pulley"].values == pulley, drive.belt.length, 1.0)
     center = np.array(drive.pulleys[pulley].center)
     start = drive.path.span_points[pulley - 1, 1] - center

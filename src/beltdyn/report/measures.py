@@ -41,7 +41,9 @@ def largest(values: FloatArray) -> float:
 
 def settled(run: Run, name: str) -> xr.DataArray:
     """A variable over the end of a run."""
-    return run.dataset[name].isel(time=times(run) > times(run)[-1] - SETTLED)
+    variable = run.dataset[name]
+    instants = variable[variable.dims[0]].values
+    return variable[instants > instants[-1] - SETTLED]
 
 
 def settled_mean(run: Run, name: str, pulley: int = DRIVEN) -> float:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import COORDINATES, OPTIONAL, VARIABLES
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, OPTIONAL, TIMES, VARIABLES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,13 +34,14 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
     """
     import xarray as xr
 
-    coordinates = layout.coordinates | {"time": arrays["time"]}
+    coordinates = layout.coordinates | {name: arrays[name] for name in TIMES}
     variables = {name: variable for name, variable in layout.recorded.items() if name in VARIABLES}
-    return xr.Dataset(
+    dataset = xr.Dataset(
         {name: (variable.dims, arrays[name], variable.attributes) for name, variable in variables.items()},
         {name: (COORDINATES[name].dims, coordinates[name], COORDINATES[name].attributes) for name in coordinates},
         dict(attributes),
     )
+    return _with_parts(dataset)
 
 
 def open_dataset(path: Path) -> "xr.Dataset":
@@ -67,19 +68,33 @@ def open_dataset(path: Path) -> "xr.Dataset":
         dataset = xr.open_dataset(path, engine="h5netcdf", decode_times=False)
     except (OSError, ValueError, KeyError) as error:
         raise ModelError(f"{path} cannot be read as a result file: {error}.") from error
-    known = {**COORDINATES, **VARIABLES}
+    known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
     needed = [name for name in known if OPTIONAL.isdisjoint(known[name].dims) or not OPTIONAL.isdisjoint(dataset.dims)]
     missing = [name for name in needed if name not in dataset.variables]
     missing += [name for name in ("drive", "status") if name not in dataset.attrs]
     if missing:
         dataset.close()
+        if "drive" in dataset.attrs and "status" in dataset.attrs:
+            raise ModelError(
+                f"{path} was written by another version of beltdyn: it holds no `{missing[0]}`. Run the drive again; "
+                "its file is the attribute `drive`."
+            )
         raise ModelError(
             f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
         )
-    complete = int(np.count_nonzero(np.isfinite(dataset["time"].values)))
-    result = dataset.isel(time=slice(complete))
+    times, field_times = (dataset[name].values for name in reversed(TIMES))
+    complete = int(np.count_nonzero(np.isfinite(times)))
+    last = times[complete - 1] if complete else -np.inf
+    result = _with_parts(dataset.isel(time=slice(complete), field_time=slice(np.count_nonzero(field_times <= last))))
     result.set_close(dataset.close)
     return result
+
+
+def _with_parts(dataset: "xr.Dataset") -> "xr.Dataset":
+    """Add the variables that are parts of others."""
+    places = dataset["nodal_coordinates"].isel(coordinate=slice(len(AXIS_NAMES))).drop_vars("coordinate")
+    places = places.rename(coordinate="axis").assign_coords(axis=dataset["axis"])
+    return dataset.assign(node_position=places.assign_attrs(VARIABLES["node_position"].attributes))
 
 
 def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
@@ -90,7 +105,7 @@ def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str
     layout : Layout
         Sizes of the dimensions.
     chunk : mapping
-        An array for every name in `Layout.recorded`, each with one row for each new output.
+        An array for every name in `Layout.recorded`, each with one row for each new output or output of fields.
 
     Returns
     -------
@@ -106,10 +121,9 @@ def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str
     if chunk.keys() != recorded.keys():
         names = sorted(chunk.keys() ^ recorded.keys())
         raise ValueError(f"missing or unknown variables in a chunk of outputs: {', '.join(names)}")
-    outputs = len(chunk["time"])
     arrays = {name: np.asarray(chunk[name], dtype=variable.dtype) for name, variable in recorded.items()}
     for name, array in arrays.items():
-        expected = layout.shape(recorded[name], outputs)
+        expected = layout.shape(recorded[name], len(chunk[recorded[name].dims[0]]))
         if array.shape != expected:
             raise ValueError(f"{name} has shape {array.shape}, expected {expected}")
     return arrays

@@ -1,4 +1,4 @@
-"""What is recorded: the names and reference coordinates along every dimension but time."""
+"""What is recorded: the names and reference coordinates along every dimension but times."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.results.friction_work import ARC_PARTS, arc_shares
 from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, COORDINATES, RECORDED, Variable
 
 FloatArray = NDArray[np.float64]
@@ -59,7 +60,7 @@ class Layout:
 
     @property
     def coordinates(self) -> dict[str, NDArray[Any]]:
-        """Every coordinate of the dataset but time, by name; those along a dimension of size zero are left out."""
+        """Every coordinate of the dataset but times, by name; those along a dimension of size zero are left out."""
         values: Mapping[str, Any] = {
             "pulley": self.pulleys,
             "span": self.spans,
@@ -69,12 +70,13 @@ class Layout:
             "node_coordinate": self.node_coordinate,
             "element_coordinate": self.element_coordinate,
             "belt_coordinate": self.belt_coordinate,
+            "arc_share": arc_shares(),
         }
         return {name: np.asarray(value, COORDINATES[name].dtype) for name, value in values.items() if len(value)}
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Size of every dimension but time; those of size zero are left out."""
+        """Size of every dimension but times; those of size zero are left out."""
         sizes = {
             "pulley": len(self.pulleys),
             "span": len(self.spans),
@@ -84,6 +86,7 @@ class Layout:
             "node": self.nodes,
             "element": self.elements,
             "contact_point": self.contact_points,
+            "arc_part": ARC_PARTS,
         }
         return {name: size for name, size in sizes.items() if size}
 

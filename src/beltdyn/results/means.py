@@ -9,21 +9,13 @@ from beltdyn.model import Drive
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.mechanics import (
     capstan_margin,
-    cells,
-    gross_sliding,
-    pressing,
     rim_speeds,
-    sliding_shares,
-    sliding_velocity,
 )
 from beltdyn.results.recorded import Recorded, names
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
 
 FloatArray = NDArray[np.float64]
-
-_INSTANTS = 20
-"""Outputs at which contact along the arcs is looked at, at most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +140,7 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
     )
     single = len(window.time) == 1
     speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
-    gross, share = _sliding(recorded, drive, window)
+    gross, share = (window.mean(recorded, name) for name in ("sliding_speed", "sliding_share"))
     parts = slip_parts(rim_speeds(speed, drive), tension, gross, window.end - window.start, drive)
     columns = (
         speed,
@@ -220,15 +212,3 @@ def span_means(recorded: Recorded, drive: Drive, window: Window | None = None) -
     return tuple(
         SpanSummary(name, *map(float, row)) for name, *row in zip(names(recorded, "span"), *columns, strict=True)
     )
-
-
-def _sliding(recorded: Recorded, drive: Drive, window: Window) -> tuple[FloatArray, FloatArray]:
-    """Mean velocity at which whole arcs slide, m/s, and mean share of the arcs that slides, shape (pulleys,)."""
-    rows = window.instants(_INSTANTS)
-    touched, normal, velocity = (
-        np.asarray(recorded[name][rows]) for name in ("contact_pulley", "normal_force", "slip_velocity")
-    )
-    sliding = sliding_velocity(velocity, normal, touched, drive)
-    pressed = pressing(normal, touched, len(drive.pulleys))
-    cell = cells(np.asarray(recorded["belt_coordinate"]), drive.belt.length)
-    return gross_sliding(sliding, pressed, drive).mean(axis=0), sliding_shares(sliding, pressed, cell).mean(axis=0)

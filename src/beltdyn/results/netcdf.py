@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, Variable
+from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
 
 _FORMAT = "earliest"
 _CHUNK_BYTES = 32768
@@ -37,55 +37,56 @@ def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
         Global attributes.
     """
     with h5netcdf.File(path, "w", libver=_FORMAT) as file:
-        file.dimensions = {"time": None, **layout.sizes}
+        file.dimensions = {**dict.fromkeys(TIMES), **layout.sizes}
         for name, values in layout.coordinates.items():
             _create_coordinate(file, name, values)
-        time = COORDINATES["time"]
-        created = file.create_variable("time", time.dims, time.dtype, chunks=(_CHUNK_ROWS,), fillvalue=np.nan)
-        created.attrs.update(time.attributes)
+        for name in TIMES:
+            time = COORDINATES[name]
+            created = file.create_variable(name, time.dims, time.dtype, chunks=(_CHUNK_ROWS,), fillvalue=np.nan)
+            created.attrs.update(time.attributes)
         file.attrs.update(attributes)
     with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
         for name, variable in layout.recorded.items():
-            if name != "time":
+            if name not in TIMES:
                 _create_variable(file, name, variable, layout.shape(variable, 1)[1:])
 
 
-def append(path: Path, start: int, arrays: Mapping[str, NDArray[Any]]) -> None:
+def append(path: Path, starts: Mapping[str, int], arrays: Mapping[str, NDArray[Any]]) -> None:
     """Write outputs behind those that the file holds.
 
     Parameters
     ----------
     path : Path
         The file.
-    start : int
-        Number of outputs in the file.
+    starts : mapping
+        Number of outputs in the file along each of `TIMES`.
     arrays : mapping
         An array for every variable that the file holds, each with one row for each new output; ``time`` comes last.
     """
     with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
         *variables, time = arrays.items()
         for name, values in variables:
-            _extend(file, name, start, values)
+            _extend(file, name, starts[RECORDED[name].dims[0]], values)
         file.flush()
-        _extend(file, time[0], start, time[1])
+        _extend(file, time[0], starts["time"], time[1])
 
 
-def finish(path: Path, outputs: int, attributes: Mapping[str, Any]) -> None:
+def finish(path: Path, outputs: Mapping[str, int], attributes: Mapping[str, Any]) -> None:
     """Cut what an interrupted `append` has left, and set global attributes.
 
     Parameters
     ----------
     path : Path
         The file.
-    outputs : int
-        Number of complete outputs.
+    outputs : mapping
+        Number of complete outputs along each of `TIMES`.
     attributes : mapping
         Global attributes to set or to replace.
     """
     with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
-        for dataset in file.values():
+        for name, dataset in file.items():
             if dataset.maxshape[0] is None:
-                dataset.resize(outputs, axis=0)
+                dataset.resize(outputs[RECORDED[name].dims[0]], axis=0)
     with h5netcdf.File(path, "r+", libver=_FORMAT, locking=False) as file:
         file.attrs.update(attributes)
 
@@ -102,7 +103,8 @@ def _create_variable(file: h5py.File, name: str, variable: Variable, row: tuple[
     """Make a variable without outputs, whose rows have a shape."""
     rows = _CHUNK_BYTES // (int(np.prod(row)) * np.dtype(variable.dtype).itemsize)
     chunks = min(max(rows, 1), _CHUNK_ROWS), *row
-    fill = {"_FillValue": np.array([np.nan])} if variable.dtype == "float64" else {}
+    floating = np.issubdtype(variable.dtype, np.floating)
+    fill = {"_FillValue": np.array([np.nan], variable.dtype)} if floating else {}
     auxiliary = [AUXILIARY_COORDINATES[dim] for dim in variable.dims if dim in AUXILIARY_COORDINATES]
     coordinates = {"coordinates": " ".join(auxiliary)} if auxiliary else {}
     created = file.create_dataset(

@@ -12,6 +12,7 @@ from beltdyn.results import netcdf
 from beltdyn.results.atomic import atomic_path, unwritable
 from beltdyn.results.dataset import build_dataset, checked_chunk, open_dataset
 from beltdyn.results.layout import Layout
+from beltdyn.results.schema import TIMES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,7 +30,8 @@ class Recorder(Protocol):
         Parameters
         ----------
         chunk : mapping
-            An array for every name in `Layout.recorded`, each with one row for each new output.
+            An array for every name in `Layout.recorded`, each with one row for each new output along its first
+            dimension, ``time`` or ``field_time``.
 
         Raises
         ------
@@ -110,7 +112,7 @@ class FileRecorder:
     def __init__(self, path: Path | str, layout: Layout, attributes: Mapping[str, Any]) -> None:
         self.path = Path(path)
         self._layout = layout
-        self._outputs = 0
+        self._outputs = dict.fromkeys(TIMES, 0)
         with atomic_path(self.path) as temporary:
             netcdf.create(temporary, layout, {**attributes, "status": "running"})
 
@@ -129,7 +131,8 @@ class FileRecorder:
             netcdf.append(self.path, self._outputs, arrays)
         except OSError as error:
             raise BeltdynError(unwritable(self.path, error)) from error
-        self._outputs += len(arrays["time"])
+        for name in TIMES:
+            self._outputs[name] += len(arrays[name])
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
         """Take the end of the simulation; see `Recorder.close`.

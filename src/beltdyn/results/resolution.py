@@ -99,7 +99,7 @@ def estimate_resolution(dataset: Recorded, drive: Drive) -> Resolution:
 
 def _last_instants(dataset: Recorded) -> dict[str, NDArray[Any]]:
     """Some outputs from the last part of the run."""
-    time = np.asarray(dataset["time"])
+    time = np.asarray(dataset["field_time"])
     first = int(np.searchsorted(time, time[-1] - _WINDOW * (time[-1] - time[0])))
     rows = np.unique(np.linspace(first, len(time) - 1, _INSTANTS).round().astype(int))
     return {name: np.asarray(dataset[name][rows]) for name in _VARIABLES}

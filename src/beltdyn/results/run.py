@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import h5py
+import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
@@ -52,6 +53,39 @@ class Run:
         if self._dataset is None:
             self._dataset = open_dataset(self._file)
         return self._dataset
+
+    @property
+    def fields(self) -> "xr.Dataset":
+        """Everything at the instants at which fields along the belt were recorded, with ``time`` for these alone."""
+        dataset = self.dataset
+        along_belt = [name for name, variable in dataset.data_vars.items() if "field_time" in variable.dims]
+        others = dataset.drop_vars([*along_belt, "field_time"]).sel(time=dataset["field_time"].values)
+        fields = dataset[along_belt].rename(field_time="time")
+        return others.assign({name: fields[name] for name in along_belt})
+
+    def fields_at(self, time: float | None = None) -> "xr.Dataset":
+        """Everything at one instant at which fields along the belt were recorded.
+
+        Parameters
+        ----------
+        time : float, optional
+            s; the nearest of these instants is taken. The last one by default.
+
+        Returns
+        -------
+        xarray.Dataset
+            Without the dimension ``time``.
+
+        Raises
+        ------
+        ModelError
+            If the run holds no output.
+        """
+        self.require_output()
+        times = self.dataset["field_time"].values
+        number = -1 if time is None else int(np.argmin(np.abs(times - time)))
+        instant = self.dataset.isel(field_time=number).sel(time=times[number])
+        return instant.drop_vars("field_time")
 
     @contextmanager
     def recorded(self) -> Iterator[Recorded]:

@@ -10,6 +10,10 @@ AXIS_NAMES = ("x", "y")
 """Names of the two directions of the plane."""
 
 
+SHORT = "float32"
+"""Type of what is precise enough with 24 binary digits: rounding changes it by up to 6e-8 of its value."""
+
+
 @dataclass(frozen=True, slots=True)
 class Variable:
     """What a reader needs to know about one variable.
@@ -17,7 +21,7 @@ class Variable:
     Attributes
     ----------
     dims : tuple of str
-        Dimensions in order. ``time`` comes first where it occurs.
+        Dimensions in order. ``time`` or ``field_time`` comes first where it occurs.
     units : str
         SI units, "1" for a pure number.
     long_name : str
@@ -40,14 +44,17 @@ class Variable:
 
 _OVER_TIME = ("time",)
 _PULLEY = ("time", "pulley")
-_NODE = ("time", "node", "coordinate")
+_NODE = ("field_time", "node", "coordinate")
+_ELEMENT = ("field_time", "element")
 _SPAN = ("time", "span")
-_POINT = ("time", "contact_point")
+_POINT = ("field_time", "contact_point")
+_ARC = ("field_time", "pulley", "arc_part")
 _TENSIONER = ("time", "tensioner")
 
 COORDINATES = MappingProxyType(
     {
         "time": Variable(("time",), "s", "Time"),
+        "field_time": Variable(("field_time",), "s", "Time of what is recorded along the belt"),
         "pulley": Variable(("pulley",), "1", "Pulley", "str"),
         "span": Variable(("span",), "1", "Span, from pulley to pulley", "str"),
         "tensioner": Variable(("tensioner",), "1", "Tensioner, by the pulley it carries", "str"),
@@ -55,6 +62,7 @@ COORDINATES = MappingProxyType(
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
         "node_coordinate": Variable(("node",), "m", "Belt coordinate of the node, unstretched"),
         "element_coordinate": Variable(("element",), "m", "Belt coordinate of the element's middle, unstretched"),
+        "arc_share": Variable(("arc_part",), "1", "Share of the arc from the inlet"),
         "belt_coordinate": Variable(("contact_point",), "m", "Belt coordinate of the contact point, unstretched"),
     }
 )
@@ -71,22 +79,29 @@ VARIABLES = MappingProxyType(
         "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
         "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
         "pulley_center": Variable((*_PULLEY, "axis"), "m", "Center of the pulley"),
+        "sliding_speed": Variable(_PULLEY, "m/s", "Velocity at which the whole arc slides", SHORT),
+        "sliding_share": Variable(_PULLEY, "1", "Share of the arc that slides", SHORT),
         "friction_power": Variable(_PULLEY, "W", "Power lost in friction"),
         "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
         "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position"),
         "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed"),
-        "node_position": Variable(("time", "node", "axis"), "m", "Node position"),
+        "node_position": Variable(("field_time", "node", "axis"), "m", "Node position"),
         "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
-        "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities"),
-        "belt_tension": Variable(("time", "element"), "N", "Belt tension"),
-        "tension_variation": Variable(("time", "element"), "N", "Variation of the tension within an element"),
+        "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT),
+        "belt_tension": Variable(_ELEMENT, "N", "Belt tension"),
+        "tension_variation": Variable(_ELEMENT, "N", "Variation of the tension within an element", SHORT),
         "span_tension": Variable(_SPAN, "N", "Span tension"),
         "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
-        "normal_force": Variable(_POINT, "N/m", "Normal force on the belt"),
-        "friction_force": Variable(_POINT, "N/m", "Friction force on the belt"),
-        "slip_velocity": Variable(_POINT, "m/s", "Slip velocity"),
-        "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point"),
+        "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT),
+        "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT),
+        "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
+        "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
+        "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point", SHORT),
         "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8"),
+        "friction_work_on_arc": Variable(_ARC, "J", "Work of friction since the output before, on the arc", SHORT),
+        "friction_work_on_belt": Variable(
+            ("field_time", "pulley", "element"), "J", "Work of friction since the output before, on the belt", SHORT
+        ),
         "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
         "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
         "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy"),
@@ -105,8 +120,17 @@ VARIABLES = MappingProxyType(
 )
 """Data variables of the dataset by name; those with a dimension of size zero are left out."""
 
-RECORDED = MappingProxyType({**VARIABLES, "time": COORDINATES["time"]})
-"""What a recorder is given for every output but for what `Layout.recorded` leaves out; ``time`` comes last."""
+TIMES = ("field_time", "time")
+"""Dimensions along which results grow: instants of what is recorded along the belt, and of all else."""
+
+DERIVED = ("node_position",)
+"""Variables that are parts of others: they are in no file, and added when it is opened."""
+
+RECORDED = MappingProxyType(
+    {name: variable for name, variable in VARIABLES.items() if name not in DERIVED}
+    | {name: COORDINATES[name] for name in TIMES}
+)
+"""What a recorder is given but for what `Layout.recorded` leaves out; `TIMES` come last, ``time`` last of all."""
 
 OPTIONAL = frozenset({"tensioner"})
 """Dimensions that may be of size zero, and are left out then with all that lies along them."""

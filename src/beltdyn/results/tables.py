@@ -103,7 +103,7 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
         for name, variables in over_time.items()
         if variables[0] in dataset
     }
-    tables["contact.csv"] = _table(_columns(dataset.isel(time=-1), ("belt_coordinate", *_CONTACT)))
+    tables["contact.csv"] = _table(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT)))
     tables |= _summaries(summarize(run), run)
     return [_write(folder / name, *table) for name, table in tables.items()]
 
@@ -131,7 +131,6 @@ def _with_derived(run: Run) -> "xr.Dataset":
     named = {
         "capstan_margin": derived.capstan_margins(run),
         "tension_ratio": derived.tension_ratios(run),
-        "mid_span_displacement": derived.mid_span_displacements(run),
     }
     return run.dataset.assign({name: part[name] for part in parts for name in part.data_vars} | named)
 

@@ -75,10 +75,6 @@ class Window:
         """Number of the first output that counts."""
         return int(np.searchsorted(self.time, self.start * (1.0 - 1e-12)))
 
-    def instants(self, most: int) -> NDArray[np.intp]:
-        """Numbers of at most so many outputs, evenly over the window."""
-        return np.unique(np.linspace(self.first, len(self.time) - 1, most).round().astype(int))
-
     def mean(self, recorded: Recorded, name: str) -> FloatArray:
         """Mean of a recorded variable over the window."""
         return self.mean_of(np.asarray(recorded[name][self._rows]))

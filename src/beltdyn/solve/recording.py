@@ -9,16 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive
-from beltdyn.results import COORDINATE_NAMES, FileRecorder, Layout, MemoryRecorder, Recorder, Run, Status, provenance
+from beltdyn.results import (
+    COORDINATE_NAMES,
+    RECORDED,
+    FileRecorder,
+    Layout,
+    MemoryRecorder,
+    Recorder,
+    Run,
+    Status,
+    provenance,
+)
 from beltdyn.solve.compilation import compile_kernels
-from beltdyn.solve.energy import EnergyAccount
-from beltdyn.solve.flutter import FlutterWatch
-from beltdyn.solve.instants import Instants
+from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
-from beltdyn.system.arrays import NODE, POWERS, FloatArray, System
+from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.discretization import curve_lengths, point_coordinates
-from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
 
 _SECONDS_BETWEEN_WRITES = 0.25
@@ -27,7 +34,7 @@ _MOST_WAITING = 512
 _BLOCK = 512
 """Outputs that are made at a time."""
 
-Arrays = dict[str, NDArray[Any]]
+IntArray = NDArray[np.intp]
 
 
 class Recording:
@@ -63,12 +70,12 @@ class Recording:
         self._recorder: Recorder = (
             FileRecorder(self._path, layout, attributes) if self._path else MemoryRecorder(layout, attributes)
         )
-        self._instants = Instants(drive.simulation.output_interval, drive.simulation.duration)
-        self._energy = EnergyAccount()
-        self._flutter = FlutterWatch(system)
+        self._instants = drive.simulation.instants
+        self._observer = Observer(drive, system, layout.belt_coordinate)
         self._findings: dict[str, float] = {}
         self._waiting: list[Chunk] = []
         self._before: tuple[Chunk, Arrays] | None = None
+        self._done: Arrays = {}
         self._written = 0
         self._reached = self._step = 0.0
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
@@ -120,7 +127,7 @@ class Recording:
         """Look, when all is done, whether the belt may have fluttered."""
         self._write()
         self._ended = time.perf_counter()
-        flutter = self._flutter.find()
+        flutter = self._observer.find_flutter()
         self._findings = flutter.attributes if flutter else {}
         self._findings["check_time"] = time.perf_counter() - self._ended
 
@@ -133,7 +140,7 @@ class Recording:
         if self._waiting:
             states = Chunk.join(self._waiting)
             self._waiting.clear()
-            seen = self._observe(states)
+            seen = self._observer.see(states)
             if self._before is not None:
                 states = Chunk.join([self._before[0], states])
                 seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
@@ -141,40 +148,48 @@ class Recording:
             end = self._instants.until(float(states.time[-1]))
             for first in range(self._written, end, _BLOCK):
                 numbers = np.arange(first, min(first + _BLOCK, end))
-                self._recorder.append(self._outputs(states, seen, self._instants[numbers]))
+                self._recorder.append(self._outputs(states, seen, numbers))
                 self._written += len(numbers)
         self._last_write = time.perf_counter()
 
-    def _observe(self, states: Chunk) -> Arrays:
-        """What is seen at successive states, and the energy account there."""
-        seen = observe(self._system, states.time, states.position, states.velocity)._asdict()
-        self._flutter.take(states.time, states.position, states.velocity, seen)
-        stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
-        potential = np.stack([seen["spring_energy"], seen["potential_energy"]], axis=1)
-        closure = self._energy.closure(stored, potential, states.work)
-        return {**seen, **dict(zip(POWERS, states.work.T, strict=True)), "energy_closure": closure}
+    def _outputs(self, states: Chunk, seen: Arrays, numbers: IntArray) -> Arrays:
+        """Every recorded variable at some instants, by their numbers; fields at some of these."""
+        instants = self._instants[numbers]
+        moments = {"time": instants, "field_time": instants[self._instants.has_fields(numbers)]}
+        places = {name: states.locate(moment) for name, moment in moments.items()}
+        dims = {name: RECORDED[name].dims[0] for name in seen}
+        result = {name: interpolated(values, *places[dims[name]]) for name, values in seen.items()}
+        for name in WORKS:
+            done = result[name]
+            before = self._done.get(name, done[:1])
+            result[name] = np.diff(done, axis=0, prepend=before)
+            self._done[name] = done[-1:] if len(done) else before
+        bodies, nodes = self._bodies(states, instants), self._nodes(states, moments["field_time"])
+        return {**result, **bodies, **nodes, **moments, "step_size": states.step[places["time"][0]]}
 
-    def _outputs(self, states: Chunk, seen: Arrays, instants: FloatArray) -> Arrays:
-        """Every recorded variable at some instants."""
+    def _bodies(self, states: Chunk, instants: FloatArray) -> Arrays:
+        """Coordinates and speeds of bodies."""
         system = self._system
         position, velocity = states.at(instants)
         nodes, pulleys = NODE * system.nodes, len(system.pulleys)
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
-        coordinates = position[:, :nodes].reshape(len(instants), -1, NODE // system.points)
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
-        end, part = states.locate(instants)
         return {
-            **{name: interpolated(values, end, part) for name, values in seen.items()},
             **(carried if len(system.tensioners) else {}),
-            "time": instants,
             "pulley_speed": velocity[:, nodes : nodes + pulleys],
             "pulley_angle": position[:, nodes : nodes + pulleys],
             "shaft_speed": velocity[:, shafts],
             "shaft_angle": position[:, shafts],
-            "node_position": coordinates[..., :2],
-            "nodal_coordinates": coordinates,
-            "nodal_velocities": velocity[:, :nodes].reshape(coordinates.shape),
-            "step_size": states.step[end],
+        }
+
+    def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
+        """Coordinates and velocities of nodes."""
+        system = self._system
+        shape = len(instants), system.nodes * system.points, NODE // system.points
+        names = "nodal_coordinates", "nodal_velocities"
+        return {
+            name: motion[:, : NODE * system.nodes].reshape(shape)
+            for name, motion in zip(names, states.at(instants), strict=True)
         }
 
     def _attributes(self) -> dict[str, Any]:
@@ -193,7 +208,7 @@ class Recording:
         }
 
 
-def interpolated(values: NDArray[Any], end: NDArray[np.intp], part: FloatArray) -> NDArray[Any]:
+def interpolated(values: NDArray[Any], end: IntArray, part: FloatArray) -> NDArray[Any]:
     """Interpolate linearly within steps what is seen at their ends: only there do the equations of motion hold.
 
     Parameters

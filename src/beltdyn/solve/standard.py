@@ -11,7 +11,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.solve.instants import SAME
+from beltdyn.model.instants import SAME
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import FloatArray
 from beltdyn.system.first_order import FirstOrder

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.model import Drive, Motor, Pulley, install
-from beltdyn.solve.instants import SAME, Instants
+from beltdyn.model.instants import SAME, Instants
 from beltdyn.system.arrays import POWERS, FloatArray, System
 from beltdyn.system.state import State
 
@@ -198,8 +198,7 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
         Outputs at multiples of the interval and at the end.
     """
     settings = drive.simulation
-    instants = Instants(settings.output_interval, settings.duration)
-    return Task(system, start, instants, drive.breakpoints, velocity_scale(drive), statistics)
+    return Task(system, start, settings.instants, drive.breakpoints, velocity_scale(drive), statistics)
 
 
 def velocity_scale(drive: Drive) -> float:

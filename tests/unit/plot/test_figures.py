@@ -56,7 +56,7 @@ def test_single_output_is_a_point(make_run: Callable[..., Run], ax: Axes) -> Non
 def test_configuration(run: Run, ax: Axes) -> None:
     plot.configuration(run, time=0.501, ax=ax)
     assert ax.get_title() + ax.get_title(loc="left") == "t = 0.5 s"
-    instant = run.dataset.sel(time=0.5, method="nearest")
+    instant = run.fields_at(0.5)
     (belt,) = (artist for artist in ax.collections if isinstance(artist, LineCollection))
     np.testing.assert_array_equal(belt.get_array(), instant["belt_tension"])
     starts = np.array([segment[0] for segment in belt.get_segments()])

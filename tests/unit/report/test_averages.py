@@ -22,7 +22,7 @@ def test_normal_force(run: Run, pulley: int, first: float, last: float) -> None:
 @pytest.mark.parametrize(("pulley", "side"), [(0, 1.0), (1, -1.0)])
 def test_friction(run: Run, pulley: int, side: float) -> None:
     expected = side * (TIGHT - SLACK) / (np.pi * RADIUS)
-    np.testing.assert_allclose(contact_samples(run)[pulley].mean("friction"), expected, rtol=1e-12)
+    np.testing.assert_allclose(contact_samples(run)[pulley].mean("friction"), expected, rtol=1e-7)  # single precision
 
 
 def test_points_off_the_rim_are_left_out(run: Run) -> None:
@@ -41,7 +41,7 @@ def test_unevenness(run: Run) -> None:
 def test_unevenness_in_time(run: Run) -> None:
     """A force that swings by a tenth has the unevenness of a sine, 0.1 / sqrt(2)."""
     data = run.dataset.copy()
-    data["normal_force"] = data["normal_force"] * (1.0 + 0.1 * np.sin(2.0 * np.pi * data["time"] / 0.1))
+    data["normal_force"] = data["normal_force"] * (1.0 + 0.1 * np.sin(2.0 * np.pi * data["field_time"] / 0.1))
     uneven = contact_samples(Run(data, run.drive))[1].unevenness()
     assert uneven == pytest.approx(0.1 / np.sqrt(2.0), rel=0.1)
 

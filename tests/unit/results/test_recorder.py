@@ -32,8 +32,8 @@ def test_file_and_memory_hold_the_same(
     result: FileRecorder, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], statistics: Any
 ) -> None:
     memory = MemoryRecorder(layout, attributes)
-    memory.append(make_chunk(TIME[:70]))
-    memory.append(make_chunk(TIME[70:]))
+    for time in np.split(TIME, [1, 50, 100]):
+        memory.append(make_chunk(time))
     memory.close("completed", statistics)
     with result.dataset() as dataset:
         xr.testing.assert_identical(dataset, memory.dataset())
@@ -79,7 +79,7 @@ def test_result_that_lacks_the_place_of_its_tensioner_is_refused(
 
 def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
     with xr.open_dataset(result.path, engine="h5netcdf") as dataset:
-        assert dataset.encoding["unlimited_dims"] == {"time"}
+        assert dataset.encoding["unlimited_dims"] == {"time", "field_time"}
         assert dataset["time"].dtype == np.float64
         np.testing.assert_array_equal(dataset["time"], TIME)
         assert float(dataset["pulley_speed"].sel(pulley="driver")[-1]) == 12.0
@@ -88,8 +88,8 @@ def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
 
 def test_file_is_netcdf4_with_an_unlimited_time(result: FileRecorder, layout: Layout) -> None:
     with h5netcdf.File(result.path, "r") as file:
-        assert file.dimensions["time"].isunlimited()
-        assert file.variables["nodal_coordinates"].dimensions == ("time", "node", "coordinate")
+        assert all(file.dimensions[name].isunlimited() for name in ("time", "field_time"))
+        assert file.variables["nodal_coordinates"].dimensions == ("field_time", "node", "coordinate")
         assert all(file.variables[name].shape[0] == len(TIME) for name in layout.recorded)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from beltdyn.results import FileRecorder, Layout
+from beltdyn.results.schema import TIMES
 
 PERIOD = 100
 PAUSE = 0.05
@@ -27,6 +28,8 @@ def write(path: Path, outputs: int) -> None:
         for name, variable in layout.recorded.items():
             shape = layout.shape(variable, outputs)
             chunk[name] = np.broadcast_to(numbers.reshape(-1, *(1,) * (len(shape) - 1)), shape)
+        for name in TIMES:
+            chunk[name] = np.arange(start, start + outputs)
         recorder.append(chunk)
         time.sleep(PAUSE)
         start += outputs

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
-from beltdyn.solve.instants import Instants
+from beltdyn.model.instants import Instants
 from beltdyn.solve.trajectory import Statistics, Task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system

@@ -34,7 +34,12 @@ def test_outputs_lie_exactly_where_they_are_wanted(change: Change, integrator: s
 def thrown(change: Change) -> Callable[[float], xr.Dataset]:
     """The laid belt springs into its pulleys for a millisecond, in some hundred steps; recorded at intervals."""
     settings = {"start": "laid", "duration": 1e-3}
-    return lambda interval: simulate(change(simulation=settings | {"output_interval": interval})).dataset
+
+    def record(interval: float) -> xr.Dataset:
+        every = {"output_interval": interval, "field_interval": interval}
+        return simulate(change(simulation=settings | every)).dataset
+
+    return record
 
 
 def test_dense_output_costs_no_steps(thrown: Callable[[float], xr.Dataset]) -> None:

@@ -55,9 +55,9 @@ def test_a_held_pulley_is_a_capstan(
         pulleys,
         belt=BELT | {"wedge_angle": WEDGE, "elements": 120},
         contact=COULOMB | {"friction": friction, "creep_velocity": 1e-3},
-        simulation={"duration": 0.2, "output_interval": 1e-3, "rtol": 1e-3},
+        simulation={"duration": 0.2, "output_interval": 1e-3, "field_interval": 1e-3, "rtol": 1e-3},
     )
-    last = simulate(drive).dataset.isel(time=slice(-50, None))
+    last = simulate(drive).fields.isel(time=slice(-50, None))
     k = [pulley["name"] for pulley in pulleys].index(held)
     mean = last.mean("time")
     slack, tight = (float(mean.span_tension[j]) for j in (k - 1, k))
@@ -105,9 +105,9 @@ def test_elastic_creep(make: Make, measured: Measured, driven: str, load: float)
         three(turns, *((loaded, FREE) if driven == "back" else (FREE, loaded))),
         belt=BELT | {"elements": 80, "youngs_modulus": 1.25e8, "wedge_angle": 2.0},
         contact=COULOMB | {"friction": 0.5, "creep_velocity": 1e-3},
-        simulation={"duration": 0.8, "output_interval": 2e-3, "rtol": 1e-3},
+        simulation={"duration": 0.8, "output_interval": 2e-3, "field_interval": 2e-3, "rtol": 1e-3},
     )
-    run = simulate(drive).dataset
+    run = simulate(drive).fields
     mean = run.isel(time=slice(-100, None)).mean("time")
     rims, tensions = np.abs(mean.pulley_speed.values) * drive.radii, mean.span_tension.values
     k = list(run.pulley.values).index(driven)

@@ -87,7 +87,7 @@ def lengthening(drive: Drive, q: float, tension: float) -> float:
 
 def rest(drive: Drive) -> tuple[xr.Dataset, float, float]:
     """The output of the equilibrium, the place of the tensioner, and the tension beside its pulley."""
-    output = equilibrium(drive).dataset.isel(time=-1)
+    output = equilibrium(drive).fields_at()
     carried = drive.carried(drive.tensioners[0])
     beside = output.span_tension.values[[carried - 1, carried]]
     return output, float(output.tensioner_position[0]), float(beside.mean())

@@ -120,7 +120,7 @@ def drive(velocity: float) -> Drive:
         contact=Contact(
             stiffness=1e8, damping=1e3, friction=FRICTION, friction_law="coefficient_slope", creep_velocity=velocity
         ),
-        simulation=Simulation(duration=0.6, output_interval=1e-3),
+        simulation=Simulation(duration=0.6, output_interval=1e-3, field_interval=1e-3),
     )
 
 

@@ -33,6 +33,7 @@ def thin(table_1: Callable[..., Drive]) -> Callable[[float], Drive]:
         driven={"inertia": 1e-3, "torque": {"kind": "cosine_ramp", "start": 0.1, "end": 0.5, "value": -load}},
         duration=1.5,
         output_interval=5e-3,
+        field_interval=5e-3,
         rtol=1e-4,
     )
 
@@ -78,7 +79,7 @@ def test_speed_loss_and_sliding_grow_with_the_load(
 ) -> None:
     belt, losses, arcs = thin(0.0).belt, [], []
     for load in TORQUES:
-        run = simulate(thin(load)).dataset
+        run = simulate(thin(load)).fields
         last = run.isel(time=slice(-50, None)).mean("time")
         slack, tight = map(float, last.span_tension)
         inertia = {"mass_per_length": belt.mass_per_length, "speed": SPEED * thin(load).pulleys[0].radius}

@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from beltdyn.model import Belt
+from beltdyn.model.instants import Instants
 from beltdyn.solve.alpha_march import GeneralizedAlpha
-from beltdyn.solve.instants import Instants
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.build import belt_section, belt_system
 from beltdyn.system.observations import Observations

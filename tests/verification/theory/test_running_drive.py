@@ -43,7 +43,7 @@ def theory(numbers: RunningDrive) -> RunningBelt:
 @pytest.fixture(scope="module")
 def outputs(loaded: Callable[..., Drive], factor: float) -> dict[int, xr.Dataset]:
     """The drive at 1 s; velocities err by rtol of the rim's, and friction by nu_s times that."""
-    return {n: simulate(loaded(n, factor, rtol=1e-4)).dataset.isel(time=-1) for n in MESHES}
+    return {n: simulate(loaded(n, factor, rtol=1e-4)).fields_at() for n in MESHES}
 
 
 def angles(

@@ -84,7 +84,7 @@ def _fine() -> str:
 
 def _mean_slip(run: Run) -> float:
     """Mean magnitude of the slip velocity where the belt touches, in the ramp, m/s."""
-    inside = run.dataset.isel(time=(times(run) > LAG_START) & (times(run) < RAMP_END))
+    inside = run.dataset.sel(field_time=slice(LAG_START, RAMP_END))
     return float(abs(inside["slip_velocity"]).where(inside["contact_pulley"] >= 0).mean())
 
 

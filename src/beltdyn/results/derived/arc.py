@@ -2,56 +2,11 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from beltdyn.model import Drive, Path
+from beltdyn.results.arc import angle_from_inlet, arc_ends
 from beltdyn.results.derived.labels import pulley_number
 from beltdyn.results.mechanics import rim_speeds, sliding_velocity
 from beltdyn.results.run import Run
-
-FloatArray = NDArray[np.float64]
-
-
-def arc_ends(drive: Drive, centers: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Give the angles at which the belt's path reaches and the wrap angles, from circles alone.
-
-    Parameters
-    ----------
-    drive : Drive
-        Effective radii and sides.
-    centers : ndarray, shape (pulleys, 2)
-        Where the pulleys are, m.
-
-    Returns
-    -------
-    inlet, wrap : ndarray, shape (pulleys,)
-        Angle of the tangent point where the span before each pulley ends, from the x axis; wrap angle; rad.
-    """
-    path = Path(centers, drive.path.radii)
-    reached = np.roll(path.span_points[:, 1], 1, axis=0) - centers
-    return np.arctan2(reached[:, 1], reached[:, 0]), path.wrap_angles
-
-
-def angle_from_inlet(place: FloatArray, inlet: float, wrap: float, turning: int) -> FloatArray:
-    """Angle of points around a pulley in the direction of ascending belt coordinate.
-
-    Parameters
-    ----------
-    place : ndarray, shape (k, 2)
-        Points, from the pulley's center, m.
-    inlet, wrap : float
-        See `arc_ends`.
-    turning : int
-        1, or -1 for a pulley at the belt's back.
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        rad, zero at the inlet, negative shortly before it.
-    """
-    free = 0.5 * (2.0 * np.pi - wrap)
-    turned = turning * (np.arctan2(place[:, 1], place[:, 0]) - inlet)
-    return np.asarray(np.mod(turned + free, 2.0 * np.pi) - free)
 
 
 def contact_arc(run: Run, pulley: str | int, time: float | None = None) -> xr.Dataset:
@@ -64,7 +19,7 @@ def contact_arc(run: Run, pulley: str | int, time: float | None = None) -> xr.Da
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
-        The instant, s; the output nearest to it is taken. The last one by default.
+        The instant, s; the output of fields nearest to it is taken. The last one by default.
 
     Returns
     -------
@@ -80,8 +35,7 @@ def contact_arc(run: Run, pulley: str | int, time: float | None = None) -> xr.Da
         If there is no such pulley, or the run holds no output.
     """
     number, drive = pulley_number(run, pulley), run.drive
-    run.require_output()
-    instant = run.dataset.isel(time=-1) if time is None else run.dataset.sel(time=time, method="nearest")
+    instant = run.fields_at(time)
     centers = instant["pulley_center"].values
     inlet, wrap = arc_ends(drive, centers)
     touched = instant["contact_pulley"].values

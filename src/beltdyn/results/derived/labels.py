@@ -25,7 +25,7 @@ def labelled(values: NDArray[Any], like: xr.DataArray, units: str, long_name: st
 
 
 def window(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Take the outputs from one instant to another, both included.
+    """Take the outputs from one instant to another, both included, and those of fields between them.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def window(run: Run, start: float | None = None, end: float | None = None) -> xr
         If there is no output between the two.
     """
     run.require_output()
-    dataset = run.dataset.sel(time=slice(start, end))
+    dataset = run.dataset.sel(time=slice(start, end), field_time=slice(start, end))
     if dataset.sizes["time"] == 0:
         times = run.dataset["time"].values
         raise ModelError(

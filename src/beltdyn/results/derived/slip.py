@@ -6,14 +6,7 @@ from numpy.typing import NDArray
 
 from beltdyn.results.cycles import turn_window
 from beltdyn.results.derived.labels import labelled, window
-from beltdyn.results.mechanics import (
-    cells,
-    gross_sliding,
-    pressing,
-    rim_speeds,
-    sliding_shares,
-    sliding_velocity,
-)
+from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.run import Run
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
@@ -22,7 +15,6 @@ FloatArray = NDArray[np.float64]
 
 _STANDING = 0.01
 """Part of its largest speed below which the first pulley counts as standing still."""
-_BLOCK = 256
 
 
 def slips(run: Run, start: float | None = None, end: float | None = None, *, turns: bool = True) -> xr.Dataset:
@@ -61,7 +53,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     dataset = window(run, start, end)
     dataset = run.dataset if turns else dataset
     over = turn_window(run.dataset, run.drive) if turns else Window(dataset["time"].values, ())
-    gross = over.running_means(_contact(run, dataset)[0])
+    gross = over.running_means(dataset["sliding_speed"].values)
     speed, tension = (over.running_means(dataset[name].values) for name in ("pulley_speed", "span_tension"))
     rim = rim_speeds(speed, run.drive)
     largest = np.max(np.abs(rim[:, :1]), initial=0.0, where=np.isfinite(rim[:, :1]))
@@ -95,24 +87,10 @@ def sliding_arcs(run: Run, start: float | None = None, end: float | None = None)
         ``sliding_share`` of the arc of contact, and ``sliding_arc`` = share * wrap angle, rad; time and pulley.
     """
     dataset = window(run, start, end)
-    wrap, share = dataset["wrap_angle"], _contact(run, dataset)[1]
+    wrap, share = dataset["wrap_angle"], dataset["sliding_share"].values
     return xr.Dataset(
         {
             "sliding_share": labelled(share, wrap, "1", "Share of the arc that slides"),
             "sliding_arc": labelled(share * wrap.values, wrap, "rad", "Sliding arc"),
         }
     )
-
-
-def _contact(run: Run, dataset: xr.Dataset) -> tuple[FloatArray, FloatArray]:
-    """Sliding velocities along the belt of whole arcs, m/s, and shares of the arcs that slide, shape (time, pulley)."""
-    cell = cells(dataset["belt_coordinate"].values, run.drive.belt.length)
-    gross, share = list[FloatArray](), list[FloatArray]()
-    for first in range(0, dataset.sizes["time"], _BLOCK):
-        part = dataset.isel(time=slice(first, first + _BLOCK))
-        touched, normal = part["contact_pulley"].values, part["normal_force"].values
-        sliding = sliding_velocity(part["slip_velocity"].values, normal, touched, run.drive)
-        pressed = pressing(normal, touched, len(run.drive.pulleys))
-        gross.append(gross_sliding(sliding, pressed, run.drive))
-        share.append(sliding_shares(sliding, pressed, cell))
-    return np.concatenate(gross), np.concatenate(share)

@@ -23,6 +23,10 @@ def sliding_on(run: Run, pulley: int, beyond: float) -> np.ndarray:
     return np.where(on, np.sign(beyond) * creep + beyond, dataset["slip_velocity"].values)
 
 
+SINGLE = 2.0 * np.finfo(np.float32).eps
+"""Rounding of slip velocities, taken from a result and put into one."""
+
+
 def test_a_belt_that_creeps_does_not_slide(run: Run) -> None:
     parts, arcs = slips(run, start=0.7), sliding_arcs(run, start=0.7)
     np.testing.assert_allclose(parts["slip"], np.tile([0.0, 0.5], (31, 1)), atol=1e-9)
@@ -40,7 +44,7 @@ def test_what_slides_on_either_pulley_counts_for_the_driven_one(
     """A belt that is slower than the driver, or faster than the driven rim, by 2 % of the rim's speed."""
     slid = make_run(slip_velocity=sliding_on(run, pulley, sign * 0.02 * RIM))
     parts, arcs = slips(slid, start=0.7), sliding_arcs(slid, start=0.7)
-    np.testing.assert_allclose(parts["sliding"], np.tile([0.0, 2.0], (31, 1)), rtol=1e-9)
+    np.testing.assert_allclose(parts["sliding"], np.tile([0.0, 2.0], (31, 1)), rtol=SINGLE)
     np.testing.assert_allclose(parts["creep"] + parts["sliding"], parts["slip"], rtol=1e-9)
     np.testing.assert_allclose(arcs["sliding_arc"][:, pulley], WRAP)
     assert not arcs["sliding_arc"][:, 1 - pulley].any()

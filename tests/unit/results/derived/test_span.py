@@ -9,6 +9,8 @@ from beltdyn.results import Run
 from beltdyn.results.derived import mid_span_displacements, span_tensions
 
 MakeRun = Callable[..., Run]
+SINGLE = 1e-7
+"""Rounding of places and displacements that were taken from a result, of up to 0.5 m, m."""
 
 
 def test_numbers_of_the_tensions(make_run: MakeRun) -> None:
@@ -21,7 +23,7 @@ def test_numbers_of_the_tensions(make_run: MakeRun) -> None:
 
 def test_straight_spans_are_not_displaced(run: Run) -> None:
     displacement = mid_span_displacements(run)
-    np.testing.assert_allclose(displacement, 0.0, atol=1e-12)
+    np.testing.assert_allclose(displacement, 0.0, atol=SINGLE)
     assert displacement.attrs == {"units": "m", "long_name": "Mid-span displacement"}
 
 
@@ -38,7 +40,7 @@ def test_bulge_of_the_lower_span(make_run: MakeRun, run: Run) -> None:
     displacement = mid_span_displacements(make_run(contact_position=places))
     apart = run.drive.path.length / run.dataset.sizes["contact_point"]
     np.testing.assert_allclose(displacement[:, 0], height[:, 0], atol=apart**2 / 8 * 2 * 0.004 / half**2)
-    np.testing.assert_allclose(displacement[:, 1], 0.0, atol=1e-12)
+    np.testing.assert_allclose(displacement[:, 1], 0.0, atol=SINGLE)
 
 
 def test_displacement_is_measured_from_where_the_pulleys_are(make_run: MakeRun, run: Run) -> None:
@@ -49,9 +51,9 @@ def test_displacement_is_measured_from_where_the_pulleys_are(make_run: MakeRun, 
         contact_position=dataset["contact_position"].values + moved,
         pulley_center=dataset["pulley_center"].values + moved,
     )
-    np.testing.assert_allclose(mid_span_displacements(both), 0.0, atol=1e-12)
+    np.testing.assert_allclose(mid_span_displacements(both), 0.0, atol=SINGLE)
     pulleys = make_run(pulley_center=dataset["pulley_center"].values + moved)
-    np.testing.assert_allclose(mid_span_displacements(pulleys)[-1], [-0.01, 0.01], atol=1e-12)
+    np.testing.assert_allclose(mid_span_displacements(pulleys)[-1], [-0.01, 0.01], atol=SINGLE)
 
 
 def test_a_belt_that_touches_nothing_has_no_spans(make_run: MakeRun, run: Run) -> None:

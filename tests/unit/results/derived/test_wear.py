@@ -9,6 +9,9 @@ from beltdyn.results import Run
 from beltdyn.results.derived import wear_by_arc, wear_by_belt
 from beltdyn.results.mechanics import cells
 
+SINGLE = 1e-6
+"""Rounding of the works of a hundred outputs."""
+
 MakeRun = Callable[..., Run]
 POWER = 40.0 * 0.025
 """W/m."""
@@ -22,7 +25,7 @@ def steady(make_run: MakeRun, run: Run) -> Run:
 
 def test_wear_of_the_arc_is_even(steady: Run) -> None:
     """Over 1 s and a belt 0.3 % longer than its unstretched length; contact comes and goes by whole points."""
-    wear = wear_by_arc(steady, bins=12, start=0.0)
+    wear = wear_by_arc(steady, start=0.0)
     inside = (wear["share"] > 0.1) & (wear["share"] < 0.9)
     stretch = steady.drive.path.length / steady.drive.belt.length
     values = wear.where(inside, drop=True).sum("share") / inside.sum()
@@ -36,14 +39,14 @@ def test_all_work_is_somewhere_on_the_arc_and_somewhere_on_the_belt(steady: Run)
     power = np.abs(dataset["friction_force"].values * dataset["slip_velocity"].values) @ cell
     work = np.trapezoid(power, dataset["time"])
     arc, belt = wear_by_arc(steady), wear_by_belt(steady)
-    assert float((arc * arc["part_length"]).sum()) == pytest.approx(work)
-    assert float((belt * cell).sum()) == pytest.approx(work)
+    assert float((arc * arc["part_length"]).sum()) == pytest.approx(work, rel=SINGLE)
+    assert float(belt.sum()) * drive.belt.length / belt.sizes["element"] == pytest.approx(work, rel=SINGLE)
     by_pulley = (arc * arc["part_length"]).sum("share")
-    np.testing.assert_allclose(by_pulley, belt.values @ cell)
+    np.testing.assert_allclose(by_pulley, belt.sum("element") * drive.belt.length / belt.sizes["element"], rtol=SINGLE)
 
 
 def test_nothing_outside_of_the_arc_wears(steady: Run) -> None:
-    wear = wear_by_arc(steady, bins=60)
+    wear = wear_by_arc(steady)
     outside = (wear["share"] < -0.05) | (wear["share"] > 1.05)
     assert float(wear.where(outside, 0.0).max()) == 0.0
     assert float(wear.max()) > 0.0
@@ -51,5 +54,5 @@ def test_nothing_outside_of_the_arc_wears(steady: Run) -> None:
 
 def test_belt_wears_where_it_has_been_on_a_pulley(steady: Run) -> None:
     wear = wear_by_belt(steady)
-    touched = (steady.dataset["contact_pulley"].values == 1).any(axis=0)
+    touched = (steady.dataset["contact_pulley"].values == 1).any(axis=0).reshape(-1, 5).any(axis=1)
     np.testing.assert_array_equal(wear.values[1] > 0.0, touched)

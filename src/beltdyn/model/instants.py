@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.system.arrays import FloatArray
+FloatArray = NDArray[np.float64]
 
 SAME = 1e-11
 """Instants nearer to each other than this are one, s."""
@@ -13,7 +13,7 @@ SAME = 1e-11
 
 @dataclass(frozen=True)
 class Instants:
-    """Multiples of an interval from zero on, and the end.
+    """Multiples of an interval from zero on, and the end; every few of them fields along the belt are recorded.
 
     Attributes
     ----------
@@ -21,16 +21,28 @@ class Instants:
         s.
     end : float
         s; a multiple that is nearer to it than a billionth of it is left out.
+    stride : int
+        Number of instants from one at which fields are recorded to the next; the end is one too.
     """
 
     interval: float
     end: float
+    stride: int = 1
 
     @property
     def count(self) -> int:
         """How many there are."""
         multiples = int(np.floor(self.end / self.interval * (1.0 + 1e-12)))
         return multiples + 1 + (self.end - multiples * self.interval > 1e-9 * self.end)
+
+    @property
+    def fields(self) -> int:
+        """At how many of them fields are recorded."""
+        return (self.count - 1) // self.stride + 1 + ((self.count - 1) % self.stride > 0)
+
+    def has_fields(self, numbers: NDArray[np.integer]) -> NDArray[np.bool_]:
+        """Whether fields are recorded at some of them, by their numbers."""
+        return np.asarray((numbers % self.stride == 0) | (numbers == self.count - 1))
 
     def __getitem__(self, numbers: NDArray[np.integer]) -> FloatArray:
         """Some of them, s, by their numbers."""
