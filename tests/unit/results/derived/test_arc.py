@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from beltdyn.model import Path
 from beltdyn.results import Run
+from beltdyn.results.arc import angle_from_inlet, arc_ends
 from beltdyn.results.derived import contact_arc
-from beltdyn.results.derived.arc import angle_from_inlet, arc_ends
 
 MakeRun = Callable[..., Run]
 

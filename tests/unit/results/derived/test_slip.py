@@ -23,7 +23,7 @@ def sliding_on(run: Run, pulley: int, beyond: float) -> np.ndarray:
     return np.where(on, np.sign(beyond) * creep + beyond, dataset["slip_velocity"].values)
 
 
-SINGLE = 2.0 * np.finfo(np.float32).eps
+SINGLE = 2.4e-7
 """Rounding of slip velocities, taken from a result and put into one."""
 
 
