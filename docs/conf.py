@@ -11,7 +11,13 @@ copyright = "2026, the beltdyn developers"
 release = installed_version("beltdyn")
 version = release
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx.ext.napoleon"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.napoleon",
+]
 myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath", "substitution"]
 myst_heading_anchors = 3
 
@@ -29,6 +35,7 @@ def table(variables: Mapping[str, Variable]) -> str:
 myst_substitutions = {"variables": table(VARIABLES), "coordinates": table(COORDINATES)}
 napoleon_google_docstring = False
 autodoc_typehints = "description"
+templates_path = ["_templates"]
 exclude_patterns = ["_build"]
 
 html_theme = "pydata_sphinx_theme"

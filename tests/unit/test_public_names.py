@@ -1,8 +1,11 @@
 """What a script needs is there from the start, and found by completion."""
 
 import pkgutil
+import re
 import subprocess
 import sys
+from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -38,3 +41,12 @@ def test_every_module_of_theory_is_named() -> None:
 def test_importing_the_package_imports_nothing_heavy() -> None:
     heavy = "{'numpy', 'numba', 'pydantic', 'scipy', 'xarray', 'matplotlib'}"
     assert run(f"import sys, beltdyn; dir(beltdyn); print({heavy} & set(sys.modules))") == "set()"
+
+
+def test_the_reference_tells_of_every_name() -> None:
+    reference = (Path(__file__).parents[2] / "docs" / "reference.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^    (\w+)$", reference, flags=re.MULTILINE))
+    modules = {name for name in dir(bd) if isinstance(getattr(bd, name), ModuleType)}
+    assert set(dir(bd)) - modules - {"VARIABLES"} <= listed
+    assert set(bd.plot.__all__) - {"FIGURES"} <= listed
+    assert set(bd.derived.__all__) <= listed

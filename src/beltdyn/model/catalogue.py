@@ -59,6 +59,11 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
     ------
     ValueError
         If the file cannot be read, or is not a catalogue.
+
+    Examples
+    --------
+    >>> bd.read_catalogue()["PK"].sold_by
+    'ribs'
     """
     if name is None:
         return dict(_shipped())

@@ -76,6 +76,11 @@ def install(drive: Drive) -> Installation:
     Returns
     -------
     Installation
+
+    Examples
+    --------
+    >>> round(bd.install(drive).tension, 1)  # N
+    26.6
     """
     carriers = carriers_of(drive.tensioners, [pulley.name for pulley in drive.pulleys], drive.path)
     rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, carriers)

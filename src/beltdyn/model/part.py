@@ -84,5 +84,10 @@ class Part(BaseModel):
         ------
         ModelError
             If the changed part is not valid.
+
+        Examples
+        --------
+        >>> drive.belt.replace(elements=30).elements
+        30
         """
         return type(self)(**self.arguments | changes)

@@ -27,6 +27,13 @@ def load(path: str | pathlib.Path) -> Drive:
     ------
     ModelError
         If the file cannot be read, or does not describe a drive.
+
+    Examples
+    --------
+    >>> with open("drive.toml", "w", encoding="utf-8") as file:
+    ...     _ = file.write(bd.published.demo_text())
+    >>> bd.load("drive.toml").belt.elements
+    20
     """
     path = pathlib.Path(path)
     try:
@@ -56,6 +63,12 @@ def loads(text: str, base: pathlib.Path | None = None) -> Drive:
     ------
     ModelError
         If the text is not TOML, or does not describe a drive.
+
+    Examples
+    --------
+    >>> drive = bd.loads(bd.published.demo_text())
+    >>> [pulley.name for pulley in drive.pulleys]
+    ['driver', 'driven']
     """
     data = _parse(text)
     try:

@@ -19,5 +19,10 @@ def dumps(drive: "Drive") -> str:
     -------
     str
         A text from which `loads` makes the same drive.
+
+    Examples
+    --------
+    >>> bd.loads(bd.dumps(drive)) == drive
+    True
     """
     return tomli_w.dumps(drive.model_dump(mode="json", by_alias=True, exclude_none=True), multiline_strings=False)

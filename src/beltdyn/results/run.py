@@ -177,6 +177,13 @@ def open_run(path: Path | str) -> Run:
     ------
     ModelError
         If the file cannot be read or is not a result of beltdyn.
+
+    Examples
+    --------
+    >>> short = drive.replace(simulation=drive.simulation.replace(duration=0.01))
+    >>> _ = bd.simulate(short, "short.nc")
+    >>> bd.open_run("short.nc").dataset.pulley_speed.dims
+    ('time', 'pulley')
     """
     path = Path(path)
     dataset = open_dataset(path)

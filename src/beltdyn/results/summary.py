@@ -100,6 +100,11 @@ def summarize(run: Run) -> Summary:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.summarize(run).pulleys[1].name
+    'driven'
     """
     run.require_output()
     with run.recorded() as recorded:

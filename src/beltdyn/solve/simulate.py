@@ -44,6 +44,13 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
         If the result file cannot be written, or an integrator is not installed.
     ConvergenceError
         If the simulation cannot go on; what was computed is kept in the file, with the status "failed".
+
+    Examples
+    --------
+    >>> short = drive.replace(simulation=drive.simulation.replace(duration=0.01))
+    >>> run = bd.simulate(short)
+    >>> run.status, run.outputs
+    ('completed', 11)
     """
     system, settings = drive_system(drive), drive.simulation
     with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress) as recording:
@@ -79,6 +86,12 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
     ------
     ConvergenceError
         If no equilibrium is found.
+
+    Examples
+    --------
+    >>> run = bd.equilibrium(drive)
+    >>> run.dataset.span_tension.values.round().tolist()  # N
+    [[27.0, 27.0]]
     """
     system = drive_system(drive)
     with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:

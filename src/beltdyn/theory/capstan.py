@@ -12,6 +12,14 @@ def capstan_ratio(friction: float, angle: float) -> float:
         Coefficient of friction mu.
     angle
         theta, rad.
+
+    Examples
+    --------
+    Half a turn with a friction of 0.5:
+
+    >>> from math import pi
+    >>> round(bd.theory.capstan.capstan_ratio(0.5, pi), 3)
+    4.81
     """
     return exp(friction * angle)
 
@@ -36,6 +44,12 @@ def tight_tension(
     -------
     float
         T1, N.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> round(bd.theory.capstan.tight_tension(100.0, 0.5, pi, mass_per_length=0.1, speed=20.0), 1)
+    328.6
     """
     lifted = mass_per_length * speed**2
     return lifted + (slack - lifted) * capstan_ratio(friction, angle)
@@ -47,6 +61,11 @@ def sliding_angle(
     """Arc of sliding ln((T1 - rho A v^2) / (T2 - rho A v^2)) / mu that turns one tension into another, rad.
 
     Parameters are those of `tight_tension`, with the tight tension T1 (N) in place of the angle.
+
+    Examples
+    --------
+    >>> round(bd.theory.capstan.sliding_angle(tight=300.0, slack=100.0, friction=0.5), 3)
+    2.197
     """
     lifted = mass_per_length * speed**2
     return log((tight - lifted) / (slack - lifted)) / friction

@@ -19,6 +19,11 @@ def speed_loss(tight: float, slack: float, axial_stiffness: float) -> float:
         T1, T2, N.
     axial_stiffness
         EA, N.
+
+    Examples
+    --------
+    >>> f"{bd.theory.elastic_creep.speed_loss(tight=300.0, slack=100.0, axial_stiffness=1e5):.3%}"
+    '0.198%'
     """
     return 1.0 - float(stretch(slack, axial_stiffness) / stretch(tight, axial_stiffness))
 
@@ -62,6 +67,12 @@ def gross_slip_tensions(
     -------
     tuple of float
         T1, T2, N.
+
+    Examples
+    --------
+    >>> tight, slack = bd.theory.elastic_creep.gross_slip_tensions(200.0, friction=0.3, distance=0.4, radius=0.05)
+    >>> round(tight, 1), round(slack, 1)
+    (293.5, 114.4)
     """
     belt, lifted = open_belt(distance, (radius, radius)), mass_per_length * speed**2
     ratio = exp(friction * belt.wrap[0])

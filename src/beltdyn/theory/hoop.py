@@ -17,6 +17,11 @@ def hoop_tension(mass_per_length: float, speed: float) -> float:
     -------
     float
         T, N.
+
+    Examples
+    --------
+    >>> bd.theory.hoop.hoop_tension(mass_per_length=0.1, speed=20.0)
+    40.0
     """
     return mass_per_length * speed**2
 
@@ -46,6 +51,11 @@ def hoop_stretch(
         EI, N m^2.
     turning
         kappa = 2 pi / L, 1/m.
+
+    Examples
+    --------
+    >>> round(bd.theory.hoop.hoop_stretch(20.0, axial_stiffness=1e5, mass_per_length=0.1), 6)
+    1.0004
     """
     inertia = 2.0 * mass_per_length * transport_speed**2
     return sqrt(1.0 + (inertia - 3.0 * bending_stiffness * turning**2) / axial_stiffness)

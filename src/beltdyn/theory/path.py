@@ -26,6 +26,11 @@ def open_belt(distance: float, radii: tuple[float, float]) -> OpenBelt:
         Between the centres, m.
     radii
         m.
+
+    Examples
+    --------
+    >>> round(bd.theory.path.open_belt(distance=0.4, radii=(0.05, 0.1)).length, 4)
+    1.2775
     """
     tilt = asin((radii[1] - radii[0]) / distance)
     span = sqrt(distance**2 - (radii[1] - radii[0]) ** 2)

@@ -67,6 +67,12 @@ def static_tension(
     ------
     ModelError
         If the belt hangs slack.
+
+    Examples
+    --------
+    >>> from beltdyn.theory.static_tension import static_tension
+    >>> round(static_tension(1.295, 0.4, (0.08, 0.08), axial_stiffness=1e4, contact_stiffness=1e8).tension, 2)
+    59.27
     """
     from scipy.optimize import brentq
 

@@ -20,6 +20,11 @@ def tension(stretch: ArrayLike, axial_stiffness: float) -> FloatArray:
     -------
     ndarray
         N, N: the force that does the work of a change of g.
+
+    Examples
+    --------
+    >>> round(float(bd.theory.stretch.tension(1.01, axial_stiffness=1e4)), 3)
+    101.505
     """
     g = np.asarray(stretch, dtype=float)
     return np.asarray(0.5 * axial_stiffness * (g * g - 1.0) * g)
@@ -45,6 +50,11 @@ def stretch(tension: ArrayLike, axial_stiffness: float) -> FloatArray:
     -------
     ndarray
         g, by Cardano's formula: 2 / sqrt(3) cos(arccos(x) / 3) with x = sqrt(27) N / EA, or with arcosh for x > 1.
+
+    Examples
+    --------
+    >>> round(float(bd.theory.stretch.stretch(101.505, axial_stiffness=1e4)), 6)
+    1.01
     """
     x = np.sqrt(27.0) * np.asarray(tension, dtype=float) / axial_stiffness
     third = np.where(

@@ -20,7 +20,7 @@ _STANDING = 0.01
 def slips(run: Run, start: float | None = None, end: float | None = None, *, turns: bool = True) -> xr.Dataset:
     """Slip over time, and what it is made of.
 
-    The slip of pulley i is its rim's speed loss against the first pulley's, s_i = 1 - v_i / v_0 with v = |omega| R,
+    The slip of pulley i is its rim's speed loss against the first pulley's, s_i = 1 - v_i / v_0 with v = ``|omega|`` R,
     positive in the direction in which the belt runs. Speeds are means over a turn of the belt and a period of what
     repeats besides, as in the summary, or those of the instant. With the velocity g (belt faster than the rim)
     at which the belt slides on the *whole* arc of a pulley beyond what the friction law calls creep,
@@ -72,7 +72,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
 
 
 def sliding_arcs(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Arc of each pulley on which the belt slides: where |f_t| has reached mu f_n.
+    """Arc of each pulley on which the belt slides: where ``|f_t|`` has reached mu f_n.
 
     Parameters
     ----------

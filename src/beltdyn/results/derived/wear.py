@@ -14,7 +14,7 @@ FloatArray = NDArray[np.float64]
 
 
 def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Give the work of |f_t v_t| by place on the arc of each pulley.
+    """Give the work of ``|f_t v_t|`` by place on the arc of each pulley.
 
     In each of equal parts of the arc, the work done on the belt in it is summed and divided by its length, so that
     the sum over a pulley is all of its work. The parts reach a quarter of the arc between the tangent points further at
@@ -58,7 +58,7 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
 
 
 def wear_by_belt(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Give the work of |f_t v_t| by place on the belt.
+    """Give the work of ``|f_t v_t|`` by place on the belt.
 
     Parameters
     ----------

@@ -1,0 +1,41 @@
+"""The examples in docstrings do what they say.
+
+They may use `bd`, the package, and `drive` and `run`: the drive of `beltdyn demo` over 10 ms.
+"""
+
+import doctest
+import importlib
+import pkgutil
+from pathlib import Path
+
+import pytest
+
+import beltdyn as bd
+
+_MODULES = [found.name for found in pkgutil.walk_packages(bd.__path__, "beltdyn.") if ".cli" not in found.name]
+_FINDER = doctest.DocTestFinder(exclude_empty=True)
+EXAMPLES = [
+    example
+    for name in _MODULES
+    for example in _FINDER.find(importlib.import_module(name), module=None)
+    if example.examples and example.name.startswith(name)
+]
+
+
+@pytest.fixture(scope="module")
+def run() -> bd.Run:
+    drive = bd.loads(bd.published.demo_text())
+    return bd.simulate(drive.replace(simulation=drive.simulation.replace(duration=0.01)))
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name.removeprefix("beltdyn."))
+def test_example(example: doctest.DocTest, run: bd.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    example.globs = {"bd": bd, "drive": bd.loads(bd.published.demo_text()), "run": run}
+    failed, tried = doctest.DocTestRunner(verbose=False).run(example)
+    assert tried > 0
+    assert failed == 0
+
+
+def test_there_are_examples() -> None:
+    assert len(EXAMPLES) >= 20
