@@ -5,12 +5,14 @@ them; to add one, write it there and enter it in `CHECKS`.
 """
 
 from beltdyn.model import Drive
-from beltdyn.results.checks.contact import leaves_pulley, slack_spans
+from beltdyn.results.checks.contact import deep_penetration, large_strain, leaves_pulley, slack_spans
+from beltdyn.results.checks.creep import impossible_slip, regularised_slip
 from beltdyn.results.checks.ending import unfinished
 from beltdyn.results.checks.energy import open_account
 from beltdyn.results.checks.finding import Check, Evidence, Finding
 from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved
+from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
 from beltdyn.results.checks.sliding import near_gross_slip, near_gross_slip_before
 from beltdyn.results.checks.tensioners import stopped_tensioners
 from beltdyn.results.recorded import Recorded
@@ -23,8 +25,15 @@ CHECKS: tuple[Check, ...] = (
     open_account,
     slack_spans,
     leaves_pulley,
+    deep_penetration,
+    large_strain,
     near_gross_slip,
     near_gross_slip_before,
+    impossible_slip,
+    regularised_slip,
+    driving_loads,
+    negative_losses,
+    artificial_losses,
     flutter,
     stopped_tensioners,
     unresolved,

@@ -1,4 +1,4 @@
-"""Contact and tension that are lost."""
+"""Contact and tension that are lost, and belts that sink in or stretch more than belts do."""
 
 from collections.abc import Iterator
 
@@ -6,6 +6,16 @@ import numpy as np
 
 from beltdyn.results.checks.finding import Evidence, Finding
 from beltdyn.results.recorded import names
+from beltdyn.theory.stretch import stretch
+
+STRAIN_LIMIT = 0.05
+"""Largest strain of a span that passes without a warning; belts with cords work below 0.02, elastic ones below 0.05."""
+
+DEEPEST_OF_RADIUS, DEEPEST_OF_THICKNESS = 0.1, 0.5
+"""Largest penetrations over the radius and over the belt's thickness that pass without a warning."""
+
+_INSTANTS = 40
+"""Outputs at which places of contact are looked at, at most."""
 
 
 def slack_spans(evidence: Evidence) -> Iterator[Finding]:
@@ -29,3 +39,39 @@ def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
         if laid > 0.0 and left.any():
             time = float(evidence.time[int(left.argmax())])
             yield Finding(f"the belt leaves the pulley {pulley.name} at t = {time:.4g} s.", remedy="Raise the tension.")
+
+
+def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
+    """Pulleys into which the belt sinks so far that the softness of the contact shapes the result."""
+    drive, recorded = evidence.drive, evidence.recorded
+    rows = np.unique(np.linspace(0, len(evidence.time) - 1, _INSTANTS).round().astype(int))
+    place, touched, centers = (
+        np.asarray(recorded[name][rows]) for name in ("contact_position", "contact_pulley", "pulley_center")
+    )
+    for number, (pulley, radius) in enumerate(zip(drive.pulleys, drive.radii.tolist(), strict=True)):
+        away = np.hypot(*np.moveaxis(place - centers[:, number, None], -1, 0))
+        depths = np.where(touched == number, radius - away, 0.0)
+        depth, time = float(depths.max()), float(evidence.time[rows[int(depths.max(axis=1).argmax())]])
+        most = min(DEEPEST_OF_RADIUS * radius, DEEPEST_OF_THICKNESS * drive.belt.thickness)
+        if depth > most:
+            yield Finding(
+                f"the belt sinks {depth:.2g} m into {pulley.name} at t = {time:.4g} s: {depth / radius:.1%} of its "
+                f"radius, {depth / drive.belt.thickness:.0%} of the belt's thickness.",
+                "Tensions, arms of torques and wrap angles are those of a pulley smaller by as much.",
+                f"Raise contact.stiffness = {drive.contact.stiffness:g} N/m^2 to "
+                f"{drive.contact.stiffness * depth / most:.1e}.",
+            )
+
+
+def large_strain(evidence: Evidence) -> Iterator[Finding]:
+    """Spans that stretch more than belts do."""
+    tension = np.asarray(evidence.recorded["span_tension"])
+    row, span = np.unravel_index(int(tension.argmax()), tension.shape)
+    strain = float(stretch(tension[row, span], evidence.drive.belt.axial_stiffness)) - 1.0
+    if strain > STRAIN_LIMIT:
+        yield Finding(
+            f"the span {names(evidence.recorded, 'span')[span]} is stretched by {strain:.1%} at t = "
+            f"{evidence.time[row]:.4g} s, more than {STRAIN_LIMIT:.0%}: few belts bear that.",
+            "The law of the material is linear in a strain that real belts do not follow so far.",
+            f"Raise the axial stiffness of {evidence.drive.belt.axial_stiffness:.4g} N, or lower the tension.",
+        )

@@ -3,12 +3,13 @@
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.results.checks.finding import Evidence, Finding
 
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
-    """Tensioners that lie on a stop at the end of the run, and since when."""
+    """Tensioners that lay on a stop at any time: from when to when, or since when at the end."""
     moving = [tensioner for tensioner in evidence.drive.tensioners if tensioner.kind != "fixed"]
     for number, tensioner in enumerate(moving):
         if tensioner.stops is None:
@@ -16,11 +17,22 @@ def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
         position = np.asarray(evidence.recorded["tensioner_position"])[:, number]
         lower, upper = tensioner.stops
         for name, on in (("lower", position <= lower), ("upper", position >= upper)):
-            if on[-1]:
-                first = float(evidence.time[len(on) - int(np.argmin(on[::-1])) if not on.all() else 0])
-                since = f" since t = {first:.4g} s" if len(on) > 1 else ""
+            if on.any():
+                held = "It no longer keeps the tension:" if on[-1] else "It did not keep the tension then:"
                 yield Finding(
-                    f"the tensioner of {tensioner.pulley} is on its {name} stop{since}.",
-                    "It no longer keeps the tension:",
+                    f"the tensioner of {tensioner.pulley} {_when(on, evidence.time, name)}.",
+                    held,
                     "change the length of the belt, or the stops.",
                 )
+
+
+def _when(on: NDArray[np.bool_], time: NDArray[np.float64], stop: str) -> str:
+    """Say since when it is on a stop, or from when to when it was and how often."""
+    starts = np.flatnonzero(on & ~np.append(False, on[:-1]))
+    if on[-1]:
+        since = f" since t = {time[starts[-1]]:.4g} s" if len(time) > 1 else ""
+        before = f", and was before from t = {time[starts[0]]:.4g} s on" if starts[1:].size else ""
+        return f"is on its {stop} stop{since}{before}"
+    last = float(time[np.flatnonzero(on)[-1]])
+    often = f", {len(starts)} times" if len(starts) > 1 else ""
+    return f"was on its {stop} stop between t = {time[starts[0]]:.4g} s and {last:.4g} s{often}"

@@ -1,0 +1,100 @@
+"""Slip that creep cannot make, and slip that the slope of the friction law makes."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from beltdyn.results.checks.finding import Evidence, Finding
+
+SLIP_DEFECT = 5e-4
+"""Part of the speed by which slip may fall short of elastic creep without a warning."""
+
+LEAST_SLIP = 1e-3
+"""Slip up to which it does not matter what makes it."""
+
+_LAYERS = 3.0
+"""Lengths over which a slip velocity grows e-fold that an arc should have: regularisation adds a tenth then."""
+
+_TRANSMITS = 0.01
+"""Part of the power put in above which a pulley counts as one that transmits power."""
+
+
+def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
+    """Pulleys that lose less speed against the driver than elastic creep alone takes, over whole turns of the belt."""
+    driver = max(evidence.pulleys, key=lambda pulley: pulley.power)
+    if not (driver.power > 0.0 and evidence.window.turns and np.isfinite(driver.slip)):
+        return
+    for pulley in evidence.pulleys:
+        slip, elastic, slid = (
+            1.0 - (1.0 - own) / (1.0 - others)
+            for own, others in (
+                (pulley.slip, driver.slip),
+                (pulley.elastic_creep, driver.elastic_creep),
+                (pulley.sliding, driver.sliding),
+            )
+        )
+        defect = elastic + slid - slip
+        if pulley.power < -_TRANSMITS * driver.power and defect > SLIP_DEFECT:
+            yield Finding(
+                f"{pulley.name} turns faster than {driver.name}, by {-slip:.3%} of the rim's speed, though it takes "
+                f"{-pulley.power:.4g} W from it: creep cannot do that."
+                if slip < 0.0
+                else f"{pulley.name} slips {slip:.3%} behind {driver.name}, less than the {elastic:.3%} that elastic "
+                "creep alone takes: impossible.",
+                f"Slip, and what is told from it, is wrong by {defect:.2%} of the speed or more; tensions and torques "
+                "are not concerned.",
+                _finer(evidence, defect),
+            )
+
+
+def _finer(evidence: Evidence, defect: float) -> str:
+    """Say what is to blame: the bending around the smallest pulley, or the mesh there."""
+    drive = evidence.drive
+    radius, belt = float(drive.radii.min()), drive.belt
+    name = drive.pulleys[int(drive.radii.argmin())].name
+    bent = belt.bending_stiffness / belt.axial_stiffness / radius**2
+    covered = float(np.degrees(belt.length / belt.elements / radius))
+    finer = f"compare a run with belt.elements = {2 * belt.elements} (an element covers {covered:.0f}° of {name})"
+    if defect < bent:
+        stretched = f"Bending around {name} changes the belt's stretch by {bent:.2%}"
+        return f"{stretched}: slip is known to that and no better; {finer}."
+    return f"The mesh is to blame: {finer}."
+
+
+def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
+    """Slip of which the slope of the friction law makes more than elastic creep does."""
+    led = [
+        pulley
+        for pulley in evidence.pulleys
+        if abs(pulley.slip) > LEAST_SLIP
+        and pulley.sliding == 0.0
+        and pulley.slip * pulley.elastic_creep >= 0.0
+        and pulley.slip * pulley.regularisation > 0.0
+        and abs(pulley.regularisation) > abs(pulley.elastic_creep)
+    ]
+    if led and evidence.window.turns:
+        worst = max(led, key=lambda pulley: abs(pulley.regularisation))
+        others = f" (so on {', '.join(one.name for one in led if one is not worst)} too)" if led[1:] else ""
+        yield Finding(
+            f"of the slip of {worst.name}, {worst.slip:.2%}, elastic creep makes {worst.elastic_creep:.2%}, and the "
+            f"slope of the friction law {worst.regularisation:.2%}{others}.",
+            "Slip and friction losses are those of that slope rather than of the belt.",
+            f"For slip near that of Coulomb's friction {_steeper(evidence)}.",
+        )
+
+
+def _steeper(evidence: Evidence) -> str:
+    """Say which slope makes arcs several layers long; see `theory.creep.layer_length`."""
+    drive, contact, pulleys = evidence.drive, evidence.drive.contact, evidence.pulleys
+    tension, speed = (
+        float(np.mean(evidence.window.mean(evidence.recorded, name))) for name in ("span_tension", "belt_speed")
+    )
+    most = max(abs(pulley.power) for pulley in pulleys)
+    loaded = np.array([abs(pulley.power) > _TRANSMITS * most and pulley.wrap_angle > 0.0 for pulley in pulleys])
+    arcs = (drive.radii * np.array([pulley.wrap_angle for pulley in pulleys]))[loaded]
+    slopes = _LAYERS * drive.belt.axial_stiffness / (abs(speed) * arcs)
+    if contact.creep_velocity is None:
+        return f"raise contact.creep_rate_factor = {contact.creep_rate_factor:g} to {slopes.max():.1e} kg/(m s)"
+    pressing = (tension - drive.belt.mass_per_length * speed**2) / drive.radii[loaded]
+    slowest = (drive.frictions[loaded] * pressing / slopes).min()
+    return f"lower contact.creep_velocity = {contact.creep_velocity:g} to {slowest:.1e} m/s"

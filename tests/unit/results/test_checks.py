@@ -1,0 +1,160 @@
+"""Audits of a run made by formulas: each speaks where it is violated, with its numbers, and is silent otherwise."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.model import Drive, loads
+from beltdyn.results import Run, summarize
+from beltdyn.results.checks import CHECKS
+
+MakeRun = Callable[..., Run]
+TURN = 0.3
+
+
+@pytest.fixture
+def turning(make_run: MakeRun, run: Run) -> Callable[..., Run]:
+    """A run of the drive, or of one like it, whose belt goes round in 0.3 s."""
+
+    def make(drive: Drive = run.drive, **changed: Any) -> Run:
+        speed = np.full((101, 2), drive.belt.length / TURN)
+        return Run(make_run(**({"belt_speed": speed} | changed)).dataset, drive)
+
+    return make
+
+
+def with_slip(run: Run, slip: float) -> dict[str, np.ndarray]:
+    """Angles and speeds of the pulleys at a slip of the driven one."""
+    loss = np.array([1.0, 1.0 - slip])
+    return {
+        name: run.dataset[name].values[:, :1] * loss
+        for name in ("pulley_angle", "pulley_speed", "shaft_speed", "shaft_angle")
+    }
+
+
+def said(run: Run, words: str) -> list[str]:
+    return [warning for warning in run.warnings if words in warning]
+
+
+def test_every_check_is_silent_on_a_sound_run(run: Run, turning: Callable[..., Run]) -> None:
+    """Elastic creep is 0.294 % of the 0.5 % slip."""
+    assert run.warnings == []
+    assert turning().warnings == []
+    assert len(CHECKS) == len(set(CHECKS))
+
+
+def test_driven_pulley_faster_than_its_driver(turning: Callable[..., Run], run: Run) -> None:
+    """The slip of -0.185 % falls short of the elastic creep of 0.294 % by 0.48 % of the speed."""
+    (finding,) = turning(**with_slip(run, -0.00185)).findings
+    assert finding.fault.startswith("driven turns faster than driver, by 0.185% of the rim's speed, though it takes 29")
+    assert "wrong by 0.48% of the speed" in finding.spoils
+    assert "compare a run with belt.elements = 40 (an element covers 45° of driver)" in finding.remedy
+
+
+def test_less_slip_than_elastic_creep(turning: Callable[..., Run], run: Run) -> None:
+    (warning,) = turning(**with_slip(run, 0.001)).warnings
+    assert warning.startswith("driven slips 0.100% behind driver, less than the 0.294% that elastic creep alone takes")
+    assert not said(turning(**with_slip(run, 0.0026)), "elastic creep")
+
+
+def test_the_driver_need_not_come_first(turning: Callable[..., Run], run: Run) -> None:
+    """Torques reversed, the second pulley drives: it must be the faster one, here by 0.5 %."""
+    dataset = run.dataset
+    changed = {name: -dataset[name].values for name in ("shaft_torque", "pulley_torque")}
+    changed |= {"span_tension": dataset["span_tension"].values[:, ::-1]}
+    assert said(turning(**changed), "driver turns faster than driven, by 0.503%")
+    assert not said(turning(**changed, **with_slip(run, -0.005)), "faster")
+
+
+@pytest.mark.parametrize(
+    ("change", "remedy"),
+    [
+        ("creep_rate_factor = 1e5", "raise contact.creep_rate_factor = 100000 to"),
+        ('friction_law = "coefficient_slope"\ncreep_velocity = 0.1', "lower contact.creep_velocity = 0.1 to"),
+    ],
+)
+def test_slip_of_the_friction_law(
+    turning: Callable[..., Run], run: Run, drive_text: str, change: str, remedy: str
+) -> None:
+    """Of a slip of 20 % the slope makes all but 0.29 %."""
+    drive = loads(drive_text.replace("creep_rate_factor = 1e5", change))
+    (finding,) = turning(drive, **with_slip(run, 0.2)).findings
+    assert finding.fault == (
+        "of the slip of driven, 20.00%, elastic creep makes 0.29%, and the slope of the friction law 19.71%."
+    )
+    assert remedy in finding.remedy
+
+
+def test_slope_that_is_asked_for(turning: Callable[..., Run], run: Run) -> None:
+    """Three lengths EA / (nu v) fill the arc of pi R: nu = 3 * 10 kN / (4.24 m/s * 0.255 m) = 2.77e4 kg/(m s)."""
+    (finding,) = turning(**with_slip(run, 0.2)).findings
+    assert finding.remedy.endswith("to 2.8e+04 kg/(m s).")
+
+
+def test_load_that_drives(turning: Callable[..., Run], run: Run) -> None:
+    torque = run.dataset["shaft_torque"].values * np.array([1.0, -1.0])
+    (warning,) = said(turning(shaft_torque=torque), "drives")
+    assert warning.startswith(
+        "the load on driven drives: its torque of 2.438 N m has the sign of its speed, 11.94 rad/s, and gives 29.1 W."
+    )
+    assert warning.endswith("a load on a shaft that turns counter-clockwise is negative.")
+
+
+def test_a_drive_by_torques_alone_has_no_load_that_drives(
+    turning: Callable[..., Run], run: Run, drive_text: str
+) -> None:
+    speed = 'speed = { kind = "ramp", start = 0.05, end = 0.6, value = 12.0 }'
+    assert speed in drive_text
+    motor = 'inertia = 0.1\ntorque = { kind = "constant", value = 2.0 }'
+    torque = run.dataset["shaft_torque"].values
+    assert not said(turning(loads(drive_text.replace(speed, motor)), shaft_torque=torque), "drives")
+
+
+def test_contact_damping_that_takes_power(turning: Callable[..., Run], run: Run) -> None:
+    """Of 29.25 W put in 12 * 0.4 = 4.8 W, 16.4 %: a hundred and sixty times what the remedy leaves."""
+    angle = run.dataset["pulley_angle"].values[:, 0]
+    (finding,) = turning(damping_loss=0.4 * angle).findings
+    assert finding.fault.startswith("contact damping takes 4.8 W, 16.4% of the power put in")
+    assert finding.spoils == "Without them the efficiency is 96.42%, not 83.19%."
+    assert finding.remedy == "Lower contact.damping = 10 to 0.06 N s/m^2 or less."
+
+
+@pytest.mark.parametrize("name", ["friction_loss", "damping_loss", "material_loss", "coupling_loss"])
+def test_losses_that_give_power(turning: Callable[..., Run], run: Run, name: str) -> None:
+    angle = run.dataset["pulley_angle"].values[:, 0]
+    (warning,) = said(turning(**{name: -0.05 * angle}), "no loss can")
+    assert "are -0.6 W in the mean" in warning
+    assert ("moment_arm" in warning) == (name == "friction_loss")
+
+
+def test_belt_that_sinks_in_too_far(make_run: MakeRun, run: Run) -> None:
+    """By 6 mm, of 81 mm of radius and 10 mm of belt; the places of the made run lie on the rims."""
+    dataset, center = run.dataset, np.array(run.drive.pulleys[1].center)
+    place, on = dataset["contact_position"].values, dataset["contact_pulley"].values == 1
+    sunk = np.where(on[..., None], center + (1.0 - 0.006 / 0.08125) * (place - center), place)
+    (warning,) = said(make_run(contact_position=sunk), "sinks")
+    assert warning.startswith("the belt sinks 0.006 m into driven at t = 0.51 s: 7.4% of its radius, 60% of the belt's")
+    assert warning.endswith("Raise contact.stiffness = 1e+07 N/m^2 to 1.2e+07.")
+
+
+def test_belt_that_stretches_too_far(make_run: MakeRun) -> None:
+    """EA is 10 kN: 900 N are 8 % by Green's law, and 300 N 2.9 %."""
+    tension = np.full((101, 2), 300.0)
+    assert not said(make_run(span_tension=tension), "stretched")
+    tension[40, 1] = 900.0
+    (warning,) = said(make_run(span_tension=tension), "stretched")
+    assert warning.startswith("the span driven-driver is stretched by 8.0% at t = 0.4 s, more than 5%")
+
+
+def test_noise_is_no_slip_and_no_margin(make_run: MakeRun, run: Run) -> None:
+    """A drive at rest, but for rounding: the belt would go as far as it is stretched in a million years."""
+    noise = np.random.default_rng(5).normal(scale=1e-16, size=(101, 2))
+    still = {"pulley_speed": noise, "pulley_angle": np.cumsum(noise, axis=0), "belt_speed": noise}
+    still |= {"span_tension": 30.0 + 1e3 * noise, "shaft_speed": noise}
+    still |= {name: np.zeros(101) for name in ("friction_loss", "damping_loss", "driver_work", "torque_work")}
+    made = make_run(**still)
+    summary = summarize(made)
+    assert all(np.isnan([one.slip, one.elastic_creep, one.margin]).all() for one in summary.pulleys)
+    assert made.warnings == []
