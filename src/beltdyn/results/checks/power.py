@@ -1,5 +1,6 @@
 """Powers with the wrong sign, and losses that no belt has."""
 
+import math
 from collections.abc import Iterator
 
 from beltdyn.model import Motor
@@ -37,14 +38,16 @@ def negative_losses(evidence: Evidence) -> Iterator[Finding]:
 def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     """Power that contact damping takes, which belongs to the numerical contact and not to a belt."""
     balance = power_balance(evidence.recorded, evidence.window)
-    power, damping = balance.losses["contact damping"], evidence.drive.contact.damping
+    power, contact = balance.losses["contact damping"], evidence.drive.contact
     if min(balance.power_in, balance.power_out) > 0.0 and power > DAMPING_LIMIT * balance.power_in:
         share = power / balance.power_in
+        critical = 2.0 * math.sqrt(contact.stiffness * evidence.drive.belt.mass_per_length)
+        growing = min(contact.damping, critical)  # beyond it the loss no longer grows with the damping
         yield Finding(
             f"contact damping takes {power:.3g} W, {share:.1%} of the power put in: it is a means of computation, and "
             "no loss of a belt.",
             _spoiled(balance, power),
-            f"Lower contact.damping = {damping:g} to {damping * _DAMPING_GOAL / share:.1g} N s/m^2 or less.",
+            f"Lower contact.damping = {contact.damping:g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 or less.",
         )
 
 
