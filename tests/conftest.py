@@ -17,6 +17,7 @@ from beltdyn.model import Drive
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 from beltdyn.results.contact_scalars import contact_scalars
 from beltdyn.results.friction_work import FrictionWork
+from beltdyn.results.mechanics import cells
 
 FloatArray = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
@@ -208,7 +209,7 @@ def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
     """What contact along the belt amounts to; with fields at every output."""
     names = ("contact_pulley", "normal_force", "slip_velocity", "contact_position", "pulley_center")
     touched, normal, slip, places, centers = (outputs[name] for name in names)
-    work = FrictionWork(drive, layout.belt_coordinate, layout.elements)
+    work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt.length), layout.elements)
     done = work.take(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
     return {
         **contact_scalars(drive, layout.belt_coordinate, touched, normal, slip, places, centers),

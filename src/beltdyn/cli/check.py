@@ -47,6 +47,8 @@ def check(file: Path, /, *, figure: Annotated[Path | None, Parameter(alias="-f")
 
 
 def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]]:
+    from beltdyn.results import describe_size
+
     return [
         ("path length", f"{installation.path.length:.5g} m"),
         ("belt length", f"{drive.belt.length:.5g} m unstretched, {drive.belt.elements} elements"),
@@ -55,6 +57,7 @@ def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]
         ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
         ("tension at rest", f"about {installation.tension:.4g} N{_lost(drive, installation)}"),
         *_taken_up(drive),
+        ("results of a run", f"about {describe_size(drive)}"),
     ]
 
 

@@ -91,8 +91,10 @@ def simulate_to(drive: "Drive", path: Path) -> "Run":
     ConvergenceError
         If the simulation cannot go on.
     """
+    from beltdyn.results import describe_size
     from beltdyn.solve import simulate
 
+    show(f"Results of about {describe_size(drive)}")
     try:
         with progress_bar() as report:
             finished = simulate(drive, path, report)

@@ -10,6 +10,7 @@ from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Sta
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run, open_run
 from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARIABLES, Variable
+from beltdyn.results.size import describe_size, expected_bytes, require_room
 from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tables import write_csv
 
@@ -33,9 +34,12 @@ __all__ = [
     "TensionerSummary",
     "Variable",
     "derived",
+    "describe_size",
+    "expected_bytes",
     "open_run",
     "power_balance",
     "provenance",
+    "require_room",
     "summarize",
     "write_csv",
 ]

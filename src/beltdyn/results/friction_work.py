@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from beltdyn.model import Drive
 from beltdyn.results.arc import angle_from_inlet, arc_ends
-from beltdyn.results.mechanics import cells
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.integer]
@@ -29,15 +28,14 @@ class FrictionWork:
     ----------
     drive : Drive
         The drive.
-    belt_coordinate : ndarray, shape (points,)
-        Of the contact points, m.
+    cell : ndarray, shape (points,)
+        Length of belt that each contact point stands for, m.
     elements : int
         Number of pieces of the belt, each with as many contact points.
     """
 
-    def __init__(self, drive: Drive, belt_coordinate: FloatArray, elements: int) -> None:
-        self._drive, self._elements = drive, elements
-        self._cell = cells(belt_coordinate, drive.belt.length)
+    def __init__(self, drive: Drive, cell: FloatArray, elements: int) -> None:
+        self._drive, self._cell, self._elements = drive, cell, elements
         pulleys = len(drive.pulleys)
         self._time = -np.inf
         self._power = np.zeros((pulleys, ARC_PARTS + elements))

@@ -18,10 +18,9 @@ from numpy.typing import NDArray
 
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
+from beltdyn.results.size import chunk_rows
 
 _FORMAT = "earliest"
-_CHUNK_BYTES = 32768
-_CHUNK_ROWS = 1024
 
 
 def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
@@ -42,7 +41,9 @@ def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
             _create_coordinate(file, name, values)
         for name in TIMES:
             time = COORDINATES[name]
-            created = file.create_variable(name, time.dims, time.dtype, chunks=(_CHUNK_ROWS,), fillvalue=np.nan)
+            created = file.create_variable(
+                name, time.dims, time.dtype, chunks=(chunk_rows((), time.dtype),), fillvalue=np.nan
+            )
             created.attrs.update(time.attributes)
         file.attrs.update(attributes)
     with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
@@ -101,8 +102,7 @@ def _create_coordinate(file: h5netcdf.File, name: str, values: NDArray[Any]) -> 
 
 def _create_variable(file: h5py.File, name: str, variable: Variable, row: tuple[int, ...]) -> None:
     """Make a variable without outputs, whose rows have a shape."""
-    rows = _CHUNK_BYTES // (int(np.prod(row)) * np.dtype(variable.dtype).itemsize)
-    chunks = min(max(rows, 1), _CHUNK_ROWS), *row
+    chunks = chunk_rows(row, variable.dtype), *row
     floating = np.issubdtype(variable.dtype, np.floating)
     fill = {"_FillValue": np.array([np.nan], variable.dtype)} if floating else {}
     auxiliary = [AUXILIARY_COORDINATES[dim] for dim in variable.dims if dim in AUXILIARY_COORDINATES]

@@ -12,6 +12,7 @@ from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import POWERS, FloatArray, System
+from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.observe import observe
 
 Arrays = dict[str, NDArray[Any]]
@@ -33,8 +34,8 @@ class Observer:
 
     def __init__(self, drive: Drive, system: System, belt_coordinate: FloatArray) -> None:
         self._drive, self._system, self._belt_coordinate = drive, system, belt_coordinate
-        curves = system.length.size * system.control.shape[1]
-        self._friction_work = FrictionWork(drive, belt_coordinate, curves)
+        lengths = curve_lengths(system)
+        self._friction_work = FrictionWork(drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
         self._energy = EnergyAccount()
         self._flutter = FlutterWatch(system)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.model import Drive, install
 from beltdyn.model import Path as BeltPath
-from beltdyn.results import Run
+from beltdyn.results import Run, require_room
 from beltdyn.solve.alpha_march import GeneralizedAlpha
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
@@ -41,7 +41,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
     Raises
     ------
     ModelError
-        If the result file cannot be written, or an integrator is not installed.
+        If the result file cannot be written, there is no room for it, or an integrator is not installed.
     ConvergenceError
         If the simulation cannot go on; what was computed is kept in the file, with the status "failed".
 
@@ -52,6 +52,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
     >>> run.status, run.outputs
     ('completed', 11)
     """
+    require_room(drive, Path(output) if output is not None else None)
     system, settings = drive_system(drive), drive.simulation
     with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress) as recording:
         recording.prepare()
