@@ -16,7 +16,15 @@ class ModelError(BeltdynError, ValueError):
     exit_code = 2
 
 
-class ConvergenceError(BeltdynError, RuntimeError):
-    """A simulation cannot go on: the message says when, where and what to try."""
+class SimulationError(BeltdynError, RuntimeError):
+    """A simulation cannot go on; what was computed is kept."""
 
     exit_code = 3
+
+
+class ConvergenceError(SimulationError):
+    """The equations find no solution: the message says when, where and what to try."""
+
+
+class OutputError(SimulationError):
+    """Results can no longer be written, as on a full disk; what was written before stays readable."""

@@ -14,11 +14,12 @@ from beltdyn.cli.demo import demo
 from beltdyn.cli.new import new
 from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
-from beltdyn.cli.run import INTERRUPTED, run
+from beltdyn.cli.run import run
 from beltdyn.cli.schema import schema
 from beltdyn.cli.static import static
 from beltdyn.cli.sweep import sweep
 from beltdyn.errors import BeltdynError
+from beltdyn.signals import ending_in_order, exit_code
 
 _BAD_INPUT = 2
 
@@ -50,8 +51,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit.
 
     The exit code is 0 when all went well, 2 for bad input, 3 for a simulation that could not go on, 4 for doubtful
-    results where warnings are errors, and 130 for an interruption by the keyboard.  Linear algebra uses one thread
-    unless OMP_NUM_THREADS says otherwise: matrices are so small that more would only wait for each other.
+    results where warnings are errors, and for an interruption 128 and the number of the signal: 130 for Ctrl-C.
+    Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise: matrices are so small that more would only
+    wait for each other.
 
     Parameters
     ----------
@@ -64,7 +66,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         Always.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    sys.exit(_exit_code(arguments))
+    with ending_in_order():
+        code = _exit_code(arguments)
+    sys.exit(code)
 
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
@@ -77,4 +81,4 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
         return error.exit_code
     except KeyboardInterrupt:
         show_error("interrupted")
-        return INTERRUPTED
+        return exit_code()

@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING
 
 from beltdyn.cli.console import show, show_error, show_table, show_warnings
 from beltdyn.cli.progress import runs_bar
-from beltdyn.cli.run import INTERRUPTED, doubt, refuse_overwriting, write_tables
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.cli.run import doubt, require_output, write_tables
+from beltdyn.errors import ModelError, SimulationError
+from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
     from beltdyn.solve import Ending
 
 
-def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, csv: bool, strict: bool) -> int:
+def run_several(
+    files: Sequence[Path], folder: Path | None, jobs: int | None, *, csv: bool, strict: bool, force: bool
+) -> int:
     """Simulate drives side by side, and show a table of them.
 
     Parameters
@@ -30,6 +33,8 @@ def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, cs
         Whether to write plain tables too.
     strict
         Whether warnings are errors.
+    force
+        Whether to replace other files than earlier results.
 
     Returns
     -------
@@ -39,23 +44,30 @@ def run_several(files: Sequence[Path], folder: Path | None, jobs: int | None, cs
     Raises
     ------
     ModelError
-        Before anything is computed, if a drive file cannot be used, or two drives would share a result file.
+        Before anything is computed, if a drive file cannot be used, two drives would share a result file, or other
+        files than earlier results would be replaced.
     """
     drives = _load_all(files)
     results = _result_files(files, folder)
+    for path in results.values():
+        require_output(path, files, csv, force)
+    if folder is not None:
+        from beltdyn.results.atomic import make_folder
+
+        make_folder(folder)
     from beltdyn.solve import simulate_all
 
     with runs_bar() as report:
-        endings = simulate_all({results[file]: drives[file] for file in files}, report, jobs)
+        endings = simulate_all({results[file]: drives[file] for file in files}, report, jobs, force)
     ends = {file: endings[results[file]] for file in files}
     _show_endings(ends, results)
     if csv:
-        _write_all_tables(ends, results)
+        _write_all_tables(ends, results, force)
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
         show("Interrupted: what was computed is kept.")
-        return INTERRUPTED
+        return exit_code()
     if any(end.error for end in ends.values()):
-        return ConvergenceError.exit_code
+        return SimulationError.exit_code
     return doubt([warning for end in ends.values() if end.summary for warning in end.summary.warnings]) if strict else 0
 
 
@@ -84,12 +96,6 @@ def _result_files(files: Sequence[Path], folder: Path | None) -> dict[Path, Path
             raise ModelError(
                 f"{' and '.join(sharing)} would share the result file {path}. Rename one, or run them one by one."
             )
-    for path in results:
-        refuse_overwriting(path, files)
-    if folder is not None:
-        from beltdyn.results.atomic import make_folder
-
-        make_folder(folder)
     return dict(zip(files, results, strict=True))
 
 
@@ -120,12 +126,12 @@ def _result(end: "Ending", path: Path) -> tuple[str]:
     return (str(path) if end.summary else "",)
 
 
-def _write_all_tables(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path]) -> None:
+def _write_all_tables(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path], force: bool) -> None:
     """Write plain tables of all drives of which something was computed."""
     from beltdyn.results import open_run
 
     for file, end in ends.items():
         if end.summary:
             run = open_run(results[file])
-            write_tables(run, results[file])
+            write_tables(run, results[file], force)
             run.dataset.close()

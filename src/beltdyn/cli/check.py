@@ -12,7 +12,13 @@ if TYPE_CHECKING:
     from beltdyn.model import Drive, Installation
 
 
-def check(file: Path, /, *, figure: Annotated[Path | None, Parameter(alias="-f")] = None) -> None:
+def check(
+    file: Path,
+    /,
+    *,
+    figure: Annotated[Path | None, Parameter(alias="-f")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
     """Validate a drive file, and say what to expect of the drive at rest.
 
     Parameters
@@ -20,7 +26,9 @@ def check(file: Path, /, *, figure: Annotated[Path | None, Parameter(alias="-f")
     file
         The drive file, TOML.
     figure
-        Draw the layout into this file too, such as layout.png.
+        Draw the layout into this file too, such as layout.png; it replaces figures of beltdyn, and no other files.
+    force
+        Replace other files too.
     """
     from beltdyn.model import advise, install, load
 
@@ -43,7 +51,7 @@ def check(file: Path, /, *, figure: Annotated[Path | None, Parameter(alias="-f")
         return
     from beltdyn import plot
 
-    show(f"Layout: {plot.save_layout(drive, figure, installation)}")
+    show(f"Layout: {plot.save_layout(drive, figure, installation, force)}")
 
 
 def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]]:

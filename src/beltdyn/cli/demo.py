@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from beltdyn.cli.console import show
-from beltdyn.cli.new import write_text
+from beltdyn.cli.new import refuse_existing, write_text
 from beltdyn.cli.plot import draw
-from beltdyn.cli.run import exit_code, simulate_to
+from beltdyn.cli.run import ended, simulate_to
 
 
 def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
@@ -20,9 +20,11 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
     from beltdyn.published import demo_text
 
     file = folder / "two_pulley.toml"
-    write_text(file, demo_text())
+    if not (file.is_file() and file.read_text("utf-8", "replace") == demo_text()):
+        refuse_existing(file)
+        write_text(file, demo_text())
     show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
     run = simulate_to(load(file), folder / "two_pulley.nc")
     if run.status == "completed":
         draw(run, folder, animate=False)
-    return exit_code(run)
+    return ended(run)

@@ -26,8 +26,7 @@ def new(
     """
     source = files("beltdyn.cli").joinpath("new_drive.toml") if example is None else _example(example)
     target = file or Path("drive.toml" if example is None else source.name)
-    if target.exists():
-        raise ModelError(f"{target} exists already, and would be overwritten. Choose another name, or remove it.")
+    refuse_existing(target)
     write_text(target, source.read_text(encoding="utf-8"))
     show(f"{target} is written. Edit it, then: beltdyn check {target}; beltdyn run {target}")
 
@@ -42,6 +41,18 @@ def _example(name: str) -> Traversable:
     return found[key]
 
 
+def refuse_existing(file: Path) -> None:
+    """Make sure that a file is not there yet.
+
+    Raises
+    ------
+    ModelError
+        If it is.
+    """
+    if file.exists():
+        raise ModelError(f"{file} exists already, and would be overwritten. Choose another name, or remove it.")
+
+
 def write_text(file: Path, text: str) -> None:
     """Write a text file, and the folders it is in.
 
@@ -50,10 +61,8 @@ def write_text(file: Path, text: str) -> None:
     ModelError
         If it cannot be written.
     """
-    try:
-        if not file.parent.exists():
-            file.parent.mkdir(parents=True)
-        file.write_text(text, encoding="utf-8")
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise ModelError(f"{file} cannot be written: {reason}. Choose a folder that can be written to.") from error
+    from beltdyn.results.atomic import atomic_path, make_folder
+
+    make_folder(file.parent)
+    with atomic_path(file, lambda _: False) as temporary:
+        temporary.write_text(text, encoding="utf-8")

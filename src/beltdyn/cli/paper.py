@@ -4,7 +4,7 @@ from pathlib import Path
 
 from beltdyn.cli.console import show, show_error
 from beltdyn.cli.progress import runs_bar
-from beltdyn.errors import ConvergenceError
+from beltdyn.errors import SimulationError
 
 
 def paper(*, out: Path = Path("beltdyn-paper")) -> int:
@@ -24,4 +24,4 @@ def paper(*, out: Path = Path("beltdyn-paper")) -> int:
     for name, reason in outcome.failures.items():
         show_error(f"the run {name} failed: {reason}")
     show(f"Page: {outcome.page}")
-    return ConvergenceError.exit_code if outcome.failures else 0
+    return SimulationError.exit_code if outcome.failures else 0

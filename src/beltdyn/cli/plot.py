@@ -20,6 +20,7 @@ def plot(
     pulley: str | None = None,
     variable: str = "span_tension",
     animate: Annotated[bool, Parameter(negative="")] = False,
+    force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Draw the figures of a result file.
 
@@ -39,20 +40,23 @@ def plot(
         What waterfall and orders show, such as span_tension, pulley_speed or pulley_torque.
     animate
         Draw an animation too, which takes longer.
+    force
+        Replace other files than figures of beltdyn too.
     """
     from beltdyn.results import open_run
 
     folder = output or file.with_name(f"{file.stem}-figures")
-    draw(open_run(file), folder, animate, figures=_names(figures), pulley=pulley, variable=variable)
+    choice = {"figures": _names(figures), "pulley": pulley, "variable": variable, "overwrite": force}
+    draw(open_run(file), folder, animate, **choice)
 
 
 def draw(run: "Run", folder: Path, animate: bool, **choice: Any) -> None:
-    """Draw figures of a run into a folder, the essential ones or a choice, and say where they are."""
+    """Draw figures of a run into a folder, as `plot.save_all` does, and say where they are."""
     from beltdyn import plot
 
     paths = plot.save_all(run, folder, **choice)
     if animate:
-        paths = [*paths, plot.animate(run, folder / "animation.gif")]
+        paths = [*paths, plot.animate(run, folder / "animation.gif", overwrite=bool(choice.get("overwrite")))]
     show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
 
 

@@ -10,13 +10,13 @@ from cyclopts.validators import Number
 from beltdyn.cli.console import show, show_error
 from beltdyn.cli.progress import progress_bar
 from beltdyn.cli.summary import show_summary
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ModelError, SimulationError
+from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
     from beltdyn.results import Run
 
-INTERRUPTED = 130
 DOUBTFUL = 4
 
 
@@ -28,10 +28,12 @@ def run(
     jobs: Annotated[int | None, Parameter(alias="-j", validator=Number(gte=1))] = None,
     csv: Annotated[bool, Parameter(negative="")] = False,
     strict: Annotated[bool, Parameter(negative="")] = False,
+    force: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Simulate a drive: a progress bar, then a summary, and the results in a NetCDF file.
 
-    Several drives run side by side on all cores. Ctrl-C ends the simulation and keeps what was computed.
+    Several drives run side by side on all cores. Ctrl-C, or the signal to terminate, ends the simulation and
+    keeps what was computed. Earlier results are replaced, and no other files.
 
     Parameters
     ----------
@@ -47,48 +49,61 @@ def run(
         Write plain tables too, into a folder beside the result file, named after it with -tables.
     strict
         End with an error (exit code 4) where a warning makes results doubtful; they are kept.
+    force
+        Replace other files too.
     """
     if more:
         from beltdyn.cli.batch import run_several
 
-        return run_several((file, *more), output, jobs, csv, strict)
+        return run_several((file, *more), output, jobs, csv=csv, strict=strict, force=force)
     from beltdyn.model import load
 
     drive = load(file)
     path = output or file.with_suffix(".nc")
-    refuse_overwriting(path, (file,))
-    finished = simulate_to(drive, path)
+    require_output(path, (file,), csv, force)
+    finished = simulate_to(drive, path, force)
     if csv and finished.outputs:
-        write_tables(finished, path)
-    return exit_code(finished) or (doubt(finished.warnings) if strict else 0)
+        write_tables(finished, path, force)
+    return ended(finished) or (doubt(finished.warnings) if strict else 0)
 
 
-def refuse_overwriting(path: Path, files: Iterable[Path]) -> None:
-    """Make sure that a result file is none of the drive files.
+def require_output(path: Path, files: Iterable[Path], csv: bool, force: bool) -> None:
+    """Make sure that results and their tables would replace nothing but such, and never a drive file.
 
     Raises
     ------
     ModelError
-        If it is.
+        If they would.
     """
+    from beltdyn.results.atomic import require_replaceable
+    from beltdyn.results.dataset import is_result
+    from beltdyn.results.tables import require_tables
+
     if path.resolve() in {file.resolve() for file in files}:
         raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
+    require_replaceable(path, is_result, force)
+    if csv:
+        require_tables(tables_folder(path), force)
 
 
-def write_tables(run: "Run", path: Path) -> None:
+def tables_folder(path: Path) -> Path:
+    """Where the tables of a result file are written."""
+    return path.with_name(f"{path.stem}-tables")
+
+
+def write_tables(run: "Run", path: Path, force: bool) -> None:
     """Write plain tables into a folder beside the result file, and name them."""
     from beltdyn.results import write_csv
 
-    folder = path.with_name(f"{path.stem}-tables")
-    show(f"Tables: {', '.join(str(table) for table in write_csv(run, folder))}")
+    show(f"Tables: {', '.join(str(table) for table in write_csv(run, tables_folder(path), force))}")
 
 
-def simulate_to(drive: "Drive", path: Path) -> "Run":
+def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
     """Simulate into a file with a progress bar, and show the summary.
 
     Raises
     ------
-    ConvergenceError
+    SimulationError
         If the simulation cannot go on.
     """
     from beltdyn.results import describe_size
@@ -97,8 +112,8 @@ def simulate_to(drive: "Drive", path: Path) -> "Run":
     show(f"Results of about {describe_size(drive)}")
     try:
         with progress_bar() as report:
-            finished = simulate(drive, path, report)
-    except ConvergenceError:
+            finished = simulate(drive, path, report, force)
+    except SimulationError:
         show(f"What was computed is in {path}")
         raise
     show_summary(finished)
@@ -117,6 +132,6 @@ def doubt(warnings: Sequence[str]) -> int:
     return DOUBTFUL
 
 
-def exit_code(run: "Run") -> int:
+def ended(run: "Run") -> int:
     """Exit code of a run that ended without an error."""
-    return INTERRUPTED if run.status == "interrupted" else 0
+    return exit_code() if run.status == "interrupted" else 0

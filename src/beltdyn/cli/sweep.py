@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from beltdyn.cli.console import show
-from beltdyn.cli.run import exit_code, refuse_overwriting, simulate_to
+from beltdyn.cli.run import ended, require_output, simulate_to
 from beltdyn.errors import ModelError
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ def sweep(
     end: Annotated[str, Parameter(name="--to")],
     duration: str = "5 s",
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Run a drive up through a range of speeds, for waterfall and order plots.
 
@@ -46,18 +47,20 @@ def sweep(
         How long the run-up takes, such as "5 s".
     output
         The result file; by default the drive file's name with -sweep.nc.
+    force
+        Replace that file even if it is no result of an earlier run.
     """
     from beltdyn.model import load
 
     path = output or file.with_name(f"{file.stem}-sweep.nc")
-    refuse_overwriting(path, (file,))
+    require_output(path, (file,), csv=False, force=force)
     drive = run_up(load(file), pulley, *_numbers(start, end, duration))
-    finished = simulate_to(drive, path)
+    finished = simulate_to(drive, path, force)
     if finished.outputs:
         highest = 0.5 / drive.simulation.output_interval
         show(f"Spectra reach {highest:.4g} Hz, half the rate of outputs. Draw them with:")
         show(f'  beltdyn plot {path} --figures waterfall,orders --pulley "{pulley}"')
-    return exit_code(finished)
+    return ended(finished)
 
 
 def run_up(drive: "Drive", pulley: str, start: float, end: float, duration: float) -> "Drive":

@@ -15,12 +15,13 @@ from beltdyn.plot.contact import Kind, contact_forces, contact_pressure
 from beltdyn.plot.drive import size_of
 from beltdyn.plot.history import energy, span_tensions, speeds, torques
 from beltdyn.plot.pulleys import capstan_margins, hub_loads, losses, powers, slip
+from beltdyn.plot.saving import save
 from beltdyn.plot.spans import mid_spans, tension_spectrum, tensioners
 from beltdyn.plot.style import SIZE, new_figure, styled
 from beltdyn.plot.sweep import names_of, orders, waterfall
 from beltdyn.plot.wear import wear_by_arc, wear_by_belt
 from beltdyn.results import Run, derived
-from beltdyn.results.atomic import atomic_path, make_folder
+from beltdyn.results.atomic import is_marked, make_folder, require_replaceable
 
 Draw = Callable[..., Axes]
 Item = TypeVar("Item")
@@ -65,6 +66,7 @@ def save_all(
     figures: Iterable[str] | None = None,
     pulley: str | int | None = None,
     variable: str = "span_tension",
+    overwrite: bool = False,
 ) -> list[Path]:
     """Write figures as PNG.
 
@@ -81,6 +83,8 @@ def save_all(
         default.
     variable : str
         What is drawn in a sweep: a variable over time and pulley, span or tensioner.
+    overwrite : bool
+        Replace any regular files, and not only figures of beltdyn.
 
     Returns
     -------
@@ -90,8 +94,8 @@ def save_all(
     Raises
     ------
     ModelError
-        If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, or a file
-        cannot be written.
+        If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, a file cannot
+        be written, or would replace one that is no figure of ours.
     """
     run.require_output()
     chosen = _essential(run) if figures is None else tuple(figures)
@@ -99,9 +103,12 @@ def save_all(
     if unknown:
         raise ModelError(f"figure {unknown[0]!r} is not known. Choose out of {', '.join(FIGURES)}.")
     number = None if pulley is None else derived.pulley_number(run, pulley)
+    paths = {name: Path(folder) / f"{name}.png" for name in chosen}
+    for path in paths.values():
+        require_replaceable(path, is_marked, overwrite)
     drawn = {name: _figure(run, name, number, variable) for name in chosen}
-    folder = make_folder(Path(folder))
-    return [_save(figure, folder / f"{name}.png") for name, figure in drawn.items()]
+    make_folder(Path(folder))
+    return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]
 
 
 def _essential(run: Run) -> tuple[str, ...]:
@@ -153,9 +160,3 @@ def _panels(rows: Sequence[Sequence[Draw]], *, sharey: bool = True) -> Figure:
             if sharey and column:
                 ax.set_ylabel("")
     return figure
-
-
-def _save(figure: Figure, path: Path) -> Path:
-    with atomic_path(path) as temporary:
-        figure.savefig(temporary)
-    return path

@@ -15,8 +15,8 @@ from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
 from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner
 from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
+from beltdyn.plot.saving import save
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
-from beltdyn.results.atomic import atomic_path
 
 FloatArray = NDArray[np.float64]
 _BELT, _TENSIONER = COLORS[0], COLORS[1]
@@ -65,7 +65,9 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
 
 
 @styled
-def save_layout(drive: Drive, path: FilePath | str, installation: Installation | None = None) -> FilePath:
+def save_layout(
+    drive: Drive, path: FilePath | str, installation: Installation | None = None, overwrite: bool = False
+) -> FilePath:
     """Draw the layout of a drive into a file.
 
     Parameters
@@ -76,6 +78,8 @@ def save_layout(drive: Drive, path: FilePath | str, installation: Installation |
         The file: PNG, SVG, PDF or another format of matplotlib.
     installation : Installation, optional
         Its belt at rest; computed by default.
+    overwrite : bool
+        Replace any regular file, and not only figures of beltdyn.
 
     Returns
     -------
@@ -85,7 +89,7 @@ def save_layout(drive: Drive, path: FilePath | str, installation: Installation |
     Raises
     ------
     ModelError
-        If the format is unknown, or the file cannot be written.
+        If the format is unknown, the file cannot be written, or would replace one that is no figure of ours.
     """
     path = FilePath(path)
     figure = new_figure(size_of(drive))
@@ -96,9 +100,7 @@ def save_layout(drive: Drive, path: FilePath | str, installation: Installation |
             f"Use one of {', '.join(formats)}."
         )
     layout(drive, installation, figure.add_subplot())
-    with atomic_path(path) as temporary:
-        figure.savefig(temporary)
-    return path
+    return save(figure, path, overwrite)
 
 
 def _draw_pulley(ax: Axes, drive: Drive, path: Path, number: int) -> None:

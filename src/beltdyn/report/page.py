@@ -8,8 +8,9 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 
 from beltdyn.report.numbers import shown
 from beltdyn.report.statement import Section, Verdict
-from beltdyn.results.atomic import atomic_path
+from beltdyn.results.atomic import MARK, atomic_path, is_marked
 
+_MARK = f'<meta name="generator" content="{MARK}">'
 _BADGES = {Verdict.HOLDS: "holds", Verdict.FAILS: "fails", Verdict.OPEN: "open"}
 
 
@@ -30,7 +31,7 @@ def write_page(path: Path, sections: Sequence[Section], failures: Mapping[str, s
     Raises
     ------
     ModelError
-        If it cannot be written.
+        If it cannot be written, or would replace a file that is no such page.
     """
     environment = Environment(
         loader=FunctionLoader(_read), autoescape=True, undefined=StrictUndefined, trim_blocks=True
@@ -41,8 +42,12 @@ def write_page(path: Path, sections: Sequence[Section], failures: Mapping[str, s
     text = environment.get_template("page.html.jinja").render(
         sections=sections, failures=failures, facts=facts, counts=counts, style=_read("page.css")
     )
-    with atomic_path(path) as temporary:
+    with atomic_path(path, _is_page) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+def _is_page(path: Path) -> bool:
+    return is_marked(path, _MARK)
 
 
 def _read(name: str) -> str:

@@ -1,22 +1,36 @@
-"""Files that are either complete or not there."""
+"""Files that are either complete or not there, and take the place of no file but our own."""
 
+import errno
 import os
 import secrets
-from collections.abc import Iterator
+import stat
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from beltdyn.errors import ModelError
 
+MARK = "beltdyn"
+"""What pictures and pages say of who made them."""
+
+_MARKED = 4096
+"""Bytes at the start and at the end of a file among which the mark is sought."""
+
+_FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
+
 
 @contextmanager
-def atomic_path(path: Path) -> Iterator[Path]:
+def atomic_path(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> Iterator[Path]:
     """Give a temporary path, and move what was written there to `path` when all went well.
 
     Parameters
     ----------
     path : Path
-        The file to be written; one that exists is replaced.
+        The file to be written; of a symbolic link that to which it leads.
+    is_ours : callable
+        Tells whether a regular file that exists was written by beltdyn, and so may be replaced.
+    overwrite : bool
+        Replace any regular file.
 
     Yields
     ------
@@ -26,12 +40,14 @@ def atomic_path(path: Path) -> Iterator[Path]:
     Raises
     ------
     ModelError
-        If the file cannot be written.
+        If the file cannot be written, or would replace one that is not ours.
     """
-    temporary = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
+    require_replaceable(path, is_ours, overwrite)
+    target = path.resolve()
+    temporary = target.with_name(f".{target.stem}.{secrets.token_hex(4)}{target.suffix}")
     try:
         yield temporary
-        temporary.replace(path)
+        temporary.replace(target)
     except OSError as error:
         raise ModelError(unwritable(path, error)) from error
     finally:
@@ -39,14 +55,69 @@ def atomic_path(path: Path) -> Iterator[Path]:
             temporary.unlink(missing_ok=True)
 
 
-def unwritable(path: Path, error: OSError) -> str:
+def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> None:
+    """Make sure that nothing is lost where a file is to be written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    is_ours : callable
+        Tells whether a regular file that exists was written by beltdyn.
+    overwrite : bool
+        Whether any regular file may be replaced.
+
+    Raises
+    ------
+    ModelError
+        If there is a file that is not ours, or something else than a file.
+    """
+    try:
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError) as error:
+        raise ModelError(unwritable(path, error)) from error
+    if not stat.S_ISREG(mode):
+        kind = "folder" if stat.S_ISDIR(mode) else "device or a pipe"
+        raise ModelError(f"{path} cannot be written (it is a {kind}, not a file). Choose another name.")
+    if not overwrite and not is_ours(path):
+        raise ModelError(
+            f"{path} is there already, and is not a file that beltdyn wrote for this purpose, or is damaged: it would "
+            "be lost. Choose another name, or replace it with --force (in Python: overwrite=True)."
+        )
+
+
+def is_marked(path: Path, mark: str = MARK) -> bool:
+    """Tell whether a file says that beltdyn made it.
+
+    Parameters
+    ----------
+    path : Path
+        A regular file.
+    mark : str
+        What it holds near its start or its end.
+
+    Returns
+    -------
+    bool
+        False too if it cannot be read.
+    """
+    with suppress(OSError), path.open("rb") as file:
+        start = file.read(_MARKED)
+        file.seek(max(path.stat().st_size - _MARKED, 0))
+        return mark.encode() in start or mark.encode() in file.read()
+    return False
+
+
+def unwritable(path: Path, error: Exception) -> str:
     """Say why a file cannot be written and what to do about it.
 
     Parameters
     ----------
     path : Path
         The file.
-    error : OSError
+    error : Exception
         What the operating system answered.
 
     Returns
@@ -54,7 +125,10 @@ def unwritable(path: Path, error: OSError) -> str:
     str
         The message.
     """
-    reason = os.strerror(error.errno) if error.errno else str(error)
+    number = getattr(error, "errno", None)
+    if number in _FULL:
+        return f"{path} cannot be written ({os.strerror(number)}). Make room, or write to another disk."
+    reason = os.strerror(number) if number else str(error)
     return f"{path} cannot be written ({reason}). Choose a file in a folder that exists and may be written to."
 
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +14,9 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, OPTIONAL, T
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_OURS = ("drive", "status")
+"""Global attributes that every result has."""
 
 
 def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> "xr.Dataset":
@@ -71,7 +75,7 @@ def open_dataset(path: Path) -> "xr.Dataset":
     known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
     needed = [name for name in known if OPTIONAL.isdisjoint(known[name].dims) or not OPTIONAL.isdisjoint(dataset.dims)]
     missing = [name for name in needed if name not in dataset.variables]
-    missing += [name for name in ("drive", "status") if name not in dataset.attrs]
+    missing += [name for name in _OURS if name not in dataset.attrs]
     if missing:
         dataset.close()
         if "drive" in dataset.attrs and "status" in dataset.attrs:
@@ -95,6 +99,26 @@ def _with_parts(dataset: "xr.Dataset") -> "xr.Dataset":
     places = dataset["nodal_coordinates"].isel(coordinate=slice(len(AXIS_NAMES))).drop_vars("coordinate")
     places = places.rename(coordinate="axis").assign_coords(axis=dataset["axis"])
     return dataset.assign(node_position=places.assign_attrs(VARIABLES["node_position"].attributes))
+
+
+def is_result(path: Path) -> bool:
+    """Tell whether a file is a result of beltdyn.
+
+    Parameters
+    ----------
+    path : Path
+        A regular file.
+
+    Returns
+    -------
+    bool
+        False too if it cannot be read.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            return all(name in file.attrs for name in _OURS)
+    except (OSError, RuntimeError, ValueError, KeyError):
+        return False
 
 
 def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:

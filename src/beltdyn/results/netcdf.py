@@ -2,11 +2,11 @@
 
 Dimensions and coordinates are made by h5netcdf, which knows the conventions of NetCDF4; variables are made and
 outputs appended by h5py, which is quicker. Both keep to HDF5's earliest format: it has no consistency flags, so that
-a file whose writer was killed opens like any other. ``time`` is extended last and on its own, after everything else
-has reached the file: its length is the number of complete outputs. What is left is a kill within the milliseconds in
-which HDF5 splits a node of a chunk index: one of several hundred writers without pause was lost.
+a file whose writer was killed opens like any other. All of them write into memory: what they change reaches the disk
+as a whole or not at all (`staged_file`). ``time`` has a length of its own: the number of complete outputs.
 """
 
+import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -19,23 +19,96 @@ from numpy.typing import NDArray
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
 from beltdyn.results.size import chunk_rows
+from beltdyn.results.staged_file import RESERVE, StagedFile, identity
 
 _FORMAT = "earliest"
 
 
-def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
-    """Write a file that holds everything but outputs.
+class GrowingFile:
+    """A file to which outputs are appended; it is closed and readable between any two of them.
 
     Parameters
     ----------
     path : Path
-        The file.
+        Where to write the file, with everything but outputs.
     layout : Layout
         Names and reference coordinates.
     attributes : mapping
         Global attributes.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
     """
-    with h5netcdf.File(path, "w", libver=_FORMAT) as file:
+
+    def __init__(self, path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
+        path.write_bytes(_contents(layout, attributes) + bytes(RESERVE))
+        self._identity = identity(path.stat())
+        self._outputs = dict.fromkeys(TIMES, 0)
+
+    def append(self, path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Write outputs.
+
+        Parameters
+        ----------
+        path : Path
+            Where the file is now.
+        arrays : mapping
+            An array for every variable that the file holds, each with one row for each new output; ``time`` comes last.
+
+        Raises
+        ------
+        OSError
+            If the file is not there, or the disk does not take them; what was written before stays as it is.
+        """
+        *variables, time = arrays.items()
+        for some in (variables, [time]):
+            with self._open(path) as staged:
+                with h5py.File(staged, "r+", libver=_FORMAT) as file:
+                    for name, values in some:
+                        _extend(file, name, self._outputs[RECORDED[name].dims[0]], values)
+                staged.commit()
+        for name in TIMES:
+            self._outputs[name] += len(arrays[name])
+
+    def finish(self, path: Path, attributes: Mapping[str, Any]) -> None:
+        """Cut what an interrupted `append` has left, and set global attributes.
+
+        Parameters
+        ----------
+        path : Path
+            Where the file is now.
+        attributes : mapping
+            Global attributes to set or to replace.
+
+        Raises
+        ------
+        OSError
+            If the file is not there, or cannot be written.
+        """
+        with self._open(path) as staged:
+            with h5py.File(staged, "r+", libver=_FORMAT) as file:
+                for name, dataset in file.items():
+                    if dataset.maxshape[0] is None:
+                        dataset.resize(self._outputs[RECORDED[name].dims[0]], axis=0)
+            with h5netcdf.File(staged, "r+", libver=_FORMAT) as file:
+                file.attrs.update(attributes)
+            staged.commit(reserve=0)
+
+    def _open(self, path: Path) -> StagedFile:
+        """Open the file, if it is still the one that was created."""
+        file = StagedFile(path)
+        if file.identity() != self._identity:
+            file.close()
+            raise OSError("another file has taken its place")
+        return file
+
+
+def _contents(layout: Layout, attributes: Mapping[str, Any]) -> bytes:
+    """A file that holds everything but outputs."""
+    memory = io.BytesIO()
+    with h5netcdf.File(memory, "w", libver=_FORMAT) as file:
         file.dimensions = {**dict.fromkeys(TIMES), **layout.sizes}
         for name, values in layout.coordinates.items():
             _create_coordinate(file, name, values)
@@ -46,50 +119,11 @@ def create(path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
             )
             created.attrs.update(time.attributes)
         file.attrs.update(attributes)
-    with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
+    with h5py.File(memory, "r+", libver=_FORMAT) as file:
         for name, variable in layout.recorded.items():
             if name not in TIMES:
                 _create_variable(file, name, variable, layout.shape(variable, 1)[1:])
-
-
-def append(path: Path, starts: Mapping[str, int], arrays: Mapping[str, NDArray[Any]]) -> None:
-    """Write outputs behind those that the file holds.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    starts : mapping
-        Number of outputs in the file along each of `TIMES`.
-    arrays : mapping
-        An array for every variable that the file holds, each with one row for each new output; ``time`` comes last.
-    """
-    with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
-        *variables, time = arrays.items()
-        for name, values in variables:
-            _extend(file, name, starts[RECORDED[name].dims[0]], values)
-        file.flush()
-        _extend(file, time[0], starts["time"], time[1])
-
-
-def finish(path: Path, outputs: Mapping[str, int], attributes: Mapping[str, Any]) -> None:
-    """Cut what an interrupted `append` has left, and set global attributes.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    outputs : mapping
-        Number of complete outputs along each of `TIMES`.
-    attributes : mapping
-        Global attributes to set or to replace.
-    """
-    with h5py.File(path, "r+", libver=_FORMAT, locking=False) as file:
-        for name, dataset in file.items():
-            if dataset.maxshape[0] is None:
-                dataset.resize(outputs[RECORDED[name].dims[0]], axis=0)
-    with h5netcdf.File(path, "r+", libver=_FORMAT, locking=False) as file:
-        file.attrs.update(attributes)
+    return memory.getvalue()
 
 
 def _create_coordinate(file: h5netcdf.File, name: str, values: NDArray[Any]) -> None:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.errors import BeltdynError
+from beltdyn.errors import ModelError, OutputError
 from beltdyn.results import netcdf
-from beltdyn.results.atomic import atomic_path, unwritable
-from beltdyn.results.dataset import build_dataset, checked_chunk, open_dataset
+from beltdyn.results.atomic import atomic_path, require_replaceable, unwritable
+from beltdyn.results.dataset import build_dataset, checked_chunk, is_result, open_dataset
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import TIMES
+from beltdyn.results.lock import OutputLock
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,27 +94,42 @@ class MemoryRecorder:
 class FileRecorder:
     """Writes outputs to a NetCDF4 file, which is closed and readable between any two of them.
 
+    No other recorder can write to that file until this one is closed.
+
     Parameters
     ----------
     path : Path or str
-        The file; one that exists is replaced.
+        The file; a result file that exists is replaced.
     layout : Layout
         Names and reference coordinates of what is recorded.
     attributes : mapping
         Global attributes of the dataset.
+    overwrite : bool
+        Replace any regular file.
 
     Raises
     ------
     ModelError
-        If the file cannot be written.
+        If the file cannot be written, is being written by another run, or would replace one that is no result.
     """
 
-    def __init__(self, path: Path | str, layout: Layout, attributes: Mapping[str, Any]) -> None:
+    def __init__(
+        self, path: Path | str, layout: Layout, attributes: Mapping[str, Any], overwrite: bool = False
+    ) -> None:
         self.path = Path(path)
         self._layout = layout
-        self._outputs = dict.fromkeys(TIMES, 0)
-        with atomic_path(self.path) as temporary:
-            netcdf.create(temporary, layout, {**attributes, "status": "running"})
+        self._target = self.path.resolve()
+        require_replaceable(self.path, lambda _: True)
+        try:
+            self._lock = OutputLock(self._target)
+        except OSError as error:
+            raise ModelError(unwritable(self.path, error)) from error
+        try:
+            with atomic_path(self.path, is_result, overwrite) as temporary:
+                self._file = netcdf.GrowingFile(temporary, layout, {**attributes, "status": "running"})
+        except BaseException:
+            self._lock.release()
+            raise
 
     def append(self, chunk: Chunk) -> None:
         """Take outputs; see `Recorder.append`.
@@ -123,29 +138,29 @@ class FileRecorder:
         ------
         ValueError
             If a name is missing or unknown, or a shape is wrong.
-        BeltdynError
-            If the file can no longer be written.
+        OutputError
+            If the file can no longer be written; it keeps what it holds.
         """
         arrays = checked_chunk(self._layout, chunk)
         try:
-            netcdf.append(self.path, self._outputs, arrays)
+            self._file.append(self._target, arrays)
         except OSError as error:
-            raise BeltdynError(unwritable(self.path, error)) from error
-        for name in TIMES:
-            self._outputs[name] += len(arrays[name])
+            raise OutputError(unwritable(self.path, error)) from error
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
         """Take the end of the simulation; see `Recorder.close`.
 
         Raises
         ------
-        BeltdynError
-            If the file can no longer be written.
+        OutputError
+            If the file can no longer be written; it keeps what it holds.
         """
         try:
-            netcdf.finish(self.path, self._outputs, {**attributes, "status": status})
+            self._file.finish(self._target, {**attributes, "status": status})
         except OSError as error:
-            raise BeltdynError(unwritable(self.path, error)) from error
+            raise OutputError(unwritable(self.path, error)) from error
+        finally:
+            self._lock.release()
 
     def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far, read when it is used; see `Recorder.dataset`."""

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.results.atomic import atomic_path, make_folder
+from beltdyn.results.atomic import atomic_path, make_folder, require_replaceable
 from beltdyn.results.balance import LOSSES
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIABLES
@@ -66,11 +67,20 @@ _PULLEY_SUMMARY = (
 _SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N]", "belt speed [m/s]")
 _LOSS_SUMMARY = ("cause", "power [W]", "share of the power put in [1]", "energy since the start [J]")
 
+_FIRST_HEADINGS = {
+    **dict.fromkeys(("pulleys.csv", "spans.csv", "energy.csv", "tensioners.csv"), "time [s]"),
+    "contact.csv": "belt_coordinate [m]",
+    "pulley_summary.csv": _PULLEY_SUMMARY[0],
+    "span_summary.csv": _SPAN_SUMMARY[0],
+    "losses.csv": _LOSS_SUMMARY[0],
+}
+"""Every table -> how it starts."""
+
 Column = tuple[str, NDArray[Any]]
 Table = tuple[Sequence[str], Iterable[Sequence[Any]]]
 
 
-def write_csv(run: Run, folder: Path | str) -> list[Path]:
+def write_csv(run: Run, folder: Path | str, overwrite: bool = False) -> list[Path]:
     """Write tables: pulleys, spans, energy and tensioners over time, contact at the last output, and the summary.
 
     Every file has one line of headings, such as ``pulley_speed driver [rad/s]``, and numbers with
@@ -82,6 +92,8 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
         The run.
     folder : Path or str
         Where to write; made if need be.
+    overwrite : bool
+        Replace any regular files, and not only tables of ours.
 
     Returns
     -------
@@ -92,9 +104,10 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
     Raises
     ------
     ModelError
-        If the run holds no output, or a file cannot be written.
+        If the run holds no output, a file cannot be written, or would replace one that is no such table.
     """
     run.require_output()
+    require_tables(folder, overwrite)
     folder = make_folder(Path(folder))
     dataset = _with_derived(run)
     over_time = {"pulleys": _PULLEYS, "spans": _SPANS, "energy": _ENERGY, "tensioners": _TENSIONERS}
@@ -105,7 +118,34 @@ def write_csv(run: Run, folder: Path | str) -> list[Path]:
     }
     tables["contact.csv"] = _table(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT)))
     tables |= _summaries(summarize(run), run)
-    return [_write(folder / name, *table) for name, table in tables.items()]
+    return [_write(folder / name, overwrite, *table) for name, table in tables.items()]
+
+
+def require_tables(folder: Path | str, overwrite: bool = False) -> None:
+    """Make sure that tables in a folder would replace nothing but tables of ours.
+
+    Parameters
+    ----------
+    folder : Path or str
+        The folder, which may not exist yet.
+    overwrite : bool
+        Whether any regular files may be replaced.
+
+    Raises
+    ------
+    ModelError
+        If there is another file.
+    """
+    for name in _FIRST_HEADINGS:
+        require_replaceable(Path(folder) / name, _is_table, overwrite)
+
+
+def _is_table(path: Path) -> bool:
+    """Tell whether a file starts with the heading that its namesake of ours has."""
+    heading = f"{_FIRST_HEADINGS[path.name]},".encode()
+    with suppress(OSError), path.open("rb") as file:
+        return file.read(len(heading)) == heading
+    return False
 
 
 def _summaries(summary: Summary, run: Run) -> dict[str, Table]:
@@ -150,8 +190,11 @@ def _table(columns: Iterable[Column]) -> Table:
     return headings, zip(*values, strict=True)
 
 
-def _write(path: Path, headings: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
-    with atomic_path(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+def _write(path: Path, overwrite: bool, headings: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
+    with (
+        atomic_path(path, _is_table, overwrite) as temporary,
+        temporary.open("w", newline="", encoding="utf-8") as file,
+    ):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(headings)
         writer.writerows([value if isinstance(value, str) else f"{value:.10g}" for value in row] for row in rows)

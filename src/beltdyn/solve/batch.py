@@ -11,15 +11,17 @@ from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wai
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from multiprocessing.synchronize import Event
+from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from threading import Lock, Thread, current_thread, main_thread
-from types import ModuleType
+from threading import Event, Lock, Thread, current_thread, main_thread
+from time import sleep
+from types import FrameType, ModuleType
 from typing import TYPE_CHECKING
 
-from beltdyn.errors import BeltdynError, ConvergenceError
+from beltdyn.errors import BeltdynError, SimulationError
 from beltdyn.model import Drive
 from beltdyn.results import Run, Summary, summarize
+from beltdyn.signals import ENDING
 from beltdyn.solve.compilation import compile_kernels, usable_cores
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import simulate
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from ctypes import Array, c_double
 
 _POLL = 0.2  # s
+_GRACE = 2.0  # s
 _SPAWN = multiprocessing.get_context("spawn")
 _THREADS = "OMP_NUM_THREADS"
 """What OpenBLAS and MKL ask for their number of threads."""
@@ -58,6 +61,7 @@ def simulate_all(
     drives: Mapping[Path, Drive] | Mapping[str, Drive],
     progress: Callable[[BatchProgress], None] | None = None,
     jobs: int | None = None,
+    overwrite: bool = False,
 ) -> dict[Path, Ending]:
     """Simulate drives side by side, each by one thread of a process of its own.
 
@@ -73,6 +77,8 @@ def simulate_all(
         Called at the beginning, and several times a second while simulations are on their way.
     jobs : int, optional
         How many at a time; by default as many as there are cores.
+    overwrite : bool
+        Replace any regular files by the results, and not only earlier results.
 
     Returns
     -------
@@ -92,7 +98,7 @@ def simulate_all(
     if waiting:
         _compile(waiting[0][1], stop)
     while waiting and not stop.is_set():
-        endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), stop, tell)
+        endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), overwrite, stop, tell)
         waiting = [(file, drive) for file, drive in waiting if file not in endings]
     return {file: endings.get(file, Ending("not started")) for file in files}
 
@@ -107,7 +113,7 @@ def _longest_first(drives: Mapping[Path, Drive]) -> list[tuple[Path, Drive]]:
     return sorted(drives.items(), key=size, reverse=True)
 
 
-def _compile(drive: Drive, stop: Event) -> None:
+def _compile(drive: Drive, stop: SharedEvent) -> None:
     system = drive_system(drive)
     try:
         compile_kernels(system, laid(system, drive.path))
@@ -116,13 +122,17 @@ def _compile(drive: Drive, stop: Event) -> None:
 
 
 def _run_pool(
-    drives: Sequence[tuple[Path, Drive]], jobs: int, stop: Event, tell: Callable[[Mapping[Path, float], int], None]
+    drives: Sequence[tuple[Path, Drive]],
+    jobs: int,
+    overwrite: bool,
+    stop: SharedEvent,
+    tell: Callable[[Mapping[Path, float], int], None],
 ) -> dict[Path, Ending]:
     """Simulate in a pool of processes; if one of these is killed, what had not begun by then has no ending yet."""
     parts = _SPAWN.RawArray("d", [math.nan] * len(drives))
     with ProcessPoolExecutor(jobs, _SPAWN, _start_worker, (stop, parts)) as pool:
         with _bare_workers():
-            futures = [pool.submit(_simulate, place, file, drive) for place, (file, drive) in enumerate(drives)]
+            futures = [pool.submit(_simulate, place, *one, overwrite) for place, one in enumerate(drives)]
         try:
             pending = set(futures)
             while pending:
@@ -170,12 +180,13 @@ def _bare_workers() -> Iterator[None]:
 
 # In the processes
 
-_stop: Event
+_stop: SharedEvent
 _parts: "Array[c_double]"
 _working = Lock()
+_leaving = Event()
 
 
-def _start_worker(stop: Event, parts: "Array[c_double]") -> None:
+def _start_worker(stop: SharedEvent, parts: "Array[c_double]") -> None:
     """Keep what is shared with the parent.
 
     Parameters
@@ -187,7 +198,9 @@ def _start_worker(stop: Event, parts: "Array[c_double]") -> None:
     """
     global _stop, _parts
     _stop, _parts = stop, parts
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
     warnings.simplefilter("ignore")
     Thread(target=_follow_parent, daemon=True).start()
 
@@ -202,27 +215,50 @@ def _follow_parent() -> None:
             os._exit(1)
 
 
-def _simulate(place: int, file: Path, drive: Drive) -> Ending:
+def _leave(number: int, frame: FrameType | None) -> None:
+    """End the simulation on its way, and then the process."""
+    _leaving.set()
+    Thread(target=_exit_when_told, daemon=True).start()
+
+
+def _exit_when_told() -> None:
+    """End the process when the simulation has closed its file and the parent has had time to hear of it."""
+    with _working:
+        sleep(_GRACE)
+        os._exit(1)
+
+
+def _simulate(place: int, file: Path, drive: Drive, overwrite: bool) -> Ending:
     """Simulate a drive into a file."""
     if _stop.is_set():
         return Ending("not started")
+    if _leaving.is_set():
+        Event().wait()  # another process takes it
     _parts[place] = 0.0
 
     def heed(progress: Progress) -> None:
         """Tell the parent, and end the simulation when it says so."""
         _parts[place] = progress.time / progress.duration
-        if _stop.is_set():
+        if _stop.is_set() or _leaving.is_set():
             raise KeyboardInterrupt
 
     try:
         with _working:
-            return _ended(simulate(drive, file, heed))
-    except ConvergenceError as error:
-        return replace(_ended(Run(None, drive, file)), error=str(error))
+            return _ended(simulate(drive, file, heed, overwrite))
+    except SimulationError as error:
+        return _kept(drive, file, str(error))
     except BeltdynError as error:
         return Ending("failed", str(error))
     except Exception as error:
         return Ending("failed", f"{type(error).__name__}: {error}")
+
+
+def _kept(drive: Drive, file: Path, error: str) -> Ending:
+    """How a simulation ended that could not go on, with what it left."""
+    try:
+        return replace(_ended(Run(None, drive, file)), error=error)
+    except (BeltdynError, OSError):  # its file was taken away
+        return Ending("failed", error)
 
 
 def _ended(run: Run) -> Ending:

@@ -20,6 +20,7 @@ from beltdyn.results import (
     Status,
     provenance,
 )
+from beltdyn.signals import uninterrupted
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.progress import Phase, Progress, Report
@@ -53,22 +54,32 @@ class Recording:
         Title of the dataset.
     progress
         Whom to tell.
+    overwrite
+        Replace any regular file, and not only earlier results.
 
     Raises
     ------
     ModelError
-        If the file cannot be written.
+        If the file cannot be written, or would replace one that is no result.
     """
 
     def __init__(
-        self, drive: Drive, system: System, output: Path | str | None, title: str, progress: Report | None
+        self,
+        drive: Drive,
+        system: System,
+        output: Path | str | None,
+        title: str,
+        progress: Report | None,
+        overwrite: bool = False,
     ) -> None:
         self.statistics = Statistics()
         self._drive, self._system, self._progress = drive, system, progress
         self._path = Path(output) if output is not None else None
         layout, attributes = result_layout(drive, system), provenance(drive.text, title)
         self._recorder: Recorder = (
-            FileRecorder(self._path, layout, attributes) if self._path else MemoryRecorder(layout, attributes)
+            FileRecorder(self._path, layout, attributes, overwrite)
+            if self._path
+            else MemoryRecorder(layout, attributes)
         )
         self._instants = drive.simulation.instants
         self._observer = Observer(drive, system, layout.belt_coordinate)
@@ -90,9 +101,13 @@ class Recording:
     ) -> bool:
         """Write what waits and close the results with their status."""
         interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
-        self._write()
-        status: Status = "interrupted" if interrupted else "completed" if kind is None else "failed"
-        self._recorder.close(status, self._attributes() | self._findings)
+        status: Status = "failed"
+        with uninterrupted():
+            try:
+                self._write()
+                status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+            finally:
+                self._recorder.close(status, self._attributes() | self._findings)
         return interrupted
 
     def prepare(self) -> None:
@@ -136,21 +151,26 @@ class Recording:
         return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
 
     def _write(self) -> None:
-        """Observe the states that wait, and record the outputs that lie in their steps."""
-        if self._waiting:
-            states = Chunk.join(self._waiting)
-            self._waiting.clear()
-            seen = self._observer.see(states)
-            if self._before is not None:
-                states = Chunk.join([self._before[0], states])
-                seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
-            self._before = states.last(), {name: values[-1:] for name, values in seen.items()}
-            end = self._instants.until(float(states.time[-1]))
-            for first in range(self._written, end, _BLOCK):
-                numbers = np.arange(first, min(first + _BLOCK, end))
-                self._recorder.append(self._outputs(states, seen, numbers))
-                self._written += len(numbers)
+        """Record what waits, as a whole even if a signal comes meanwhile."""
+        with uninterrupted():
+            if self._waiting:
+                self._record()
         self._last_write = time.perf_counter()
+
+    def _record(self) -> None:
+        """Record the outputs that lie in the steps to the states that wait."""
+        states = Chunk.join(self._waiting)
+        self._waiting.clear()
+        seen = self._observer.see(states)
+        if self._before is not None:
+            states = Chunk.join([self._before[0], states])
+            seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
+        self._before = states.last(), {name: values[-1:] for name, values in seen.items()}
+        end = self._instants.until(float(states.time[-1]))
+        for first in range(self._written, end, _BLOCK):
+            numbers = np.arange(first, min(first + _BLOCK, end))
+            self._recorder.append(self._outputs(states, seen, numbers))
+            self._written += len(numbers)
 
     def _outputs(self, states: Chunk, seen: Arrays, numbers: IntArray) -> Arrays:
         """Every recorded variable at some instants, by their numbers; fields at some of these."""

@@ -21,7 +21,9 @@ _DEEPEST_START = 0.1
 """Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
 
 
-def simulate(drive: Drive, output: Path | str | None = None, progress: Report | None = None) -> Run:
+def simulate(
+    drive: Drive, output: Path | str | None = None, progress: Report | None = None, overwrite: bool = False
+) -> Run:
     """Simulate a drive over time.
 
     Parameters
@@ -32,6 +34,8 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
         Result file (NetCDF4), written as the simulation goes; without one the results stay in memory.
     progress
         Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
 
     Returns
     -------
@@ -41,9 +45,11 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
     Raises
     ------
     ModelError
-        If the result file cannot be written, there is no room for it, or an integrator is not installed.
-    ConvergenceError
-        If the simulation cannot go on; what was computed is kept in the file, with the status "failed".
+        If the result file cannot be written, is being written by another run, or would replace a file that is no
+        result; there is no room for it; or an integrator is not installed.
+    SimulationError
+        If the simulation cannot go on (`ConvergenceError`) or the disk is full (`OutputError`); what was computed is
+        kept in the file, with the status "failed".
 
     Examples
     --------
@@ -54,7 +60,7 @@ def simulate(drive: Drive, output: Path | str | None = None, progress: Report | 
     """
     require_room(drive, Path(output) if output is not None else None)
     system, settings = drive_system(drive), drive.simulation
-    with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress) as recording:
+    with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress, overwrite) as recording:
         recording.prepare()
         state = laid(system, drive.path)
         if settings.start == "equilibrium":

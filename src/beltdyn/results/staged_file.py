@@ -1,0 +1,192 @@
+"""A file that is changed as a whole or not at all, whatever the disk says.
+
+HDF5 writes through this object into memory.  `StagedFile.commit` then writes what is new behind the old end of the
+file, which may fail without harm, and last the few bytes that change before it, which need no more space.  HDF5 itself
+never meets a full disk: it would leave a file that cannot be read, and crash.
+"""
+
+import io
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+RESERVE = 1 << 16
+"""Bytes that a growing file holds behind its contents, so that its end can be recorded on a full disk."""
+
+_BLOCK = 16384
+
+
+class StagedFile:
+    """What h5py reads and writes in place of a file.
+
+    Parameters
+    ----------
+    path : Path
+        A file that exists.
+
+    Raises
+    ------
+    OSError
+        If it cannot be opened for reading and writing.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("r+b", buffering=0)
+        self._length = os.fstat(self._file.fileno()).st_size
+        self._blocks: dict[int, bytearray] = {}
+        self._changed: set[int] = set()
+        self._end = self._length
+        self._place = 0
+
+    def __enter__(self) -> Self:
+        """Begin; the file is closed at the end, and changes that were not committed are dropped."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file, and drop what was not committed."""
+        self._file.close()
+
+    def identity(self) -> tuple[int, int]:
+        """What tells the open file from any other."""
+        return identity(os.fstat(self._file.fileno()))
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Move to a place from the start, from where it is, or from the end."""
+        self._place = offset + (0, self._place, self._end)[whence]
+        return self._place
+
+    def tell(self) -> int:
+        """Place in the file."""
+        return self._place
+
+    def read(self, size: int) -> bytes:
+        """Bytes at the place."""
+        buffer = bytearray(size)
+        return bytes(buffer[: self.readinto(memoryview(buffer))])
+
+    def readinto(self, buffer: memoryview) -> int:
+        """Fill a buffer with what was staged, or else with what the file holds."""
+        buffer = memoryview(buffer).cast("B")  # h5py gives a view of its own kind
+        count = max(min(len(buffer), self._end - self._place), 0)
+        for place, start, stop in _pieces(self._place, count):
+            target = buffer[place + start - self._place : place + stop - self._place]
+            target[:] = self._block(place)[start:stop]
+        self._place += count
+        return count
+
+    def write(self, data: memoryview) -> int:
+        """Stage bytes at the place."""
+        data = memoryview(data).cast("B")
+        for place, start, stop in _pieces(self._place, len(data)):
+            piece = data[place + start - self._place : place + stop - self._place]
+            if stop - start == _BLOCK:
+                self._blocks[place] = bytearray(piece)
+            else:
+                self._block(place)[start:stop] = piece
+            self._changed.add(place)
+        self._place += len(data)
+        self._end = max(self._end, self._place)
+        return len(data)
+
+    def truncate(self, size: int) -> int:
+        """Stage a new end."""
+        self._end = size
+        return size
+
+    def flush(self) -> None:
+        """Keep waiting: `commit` writes."""
+
+    def commit(self, reserve: int = RESERVE) -> None:
+        """Write what was staged.
+
+        Parameters
+        ----------
+        reserve : int
+            Bytes to hold behind the new contents.
+
+        Raises
+        ------
+        OSError
+            If the disk does not take it; the contents are the old ones then.
+        """
+        old, new = self._length, max(self._length, self._end + reserve)
+        runs = self._changed_runs(new)
+        before = [(place, data[: old - place]) for place, data in runs if place < old]
+        behind = [(max(place, old), data[max(old - place, 0) :]) for place, data in runs if place + len(data) > old]
+        last = max((place + len(data) for place, data in behind), default=old)
+        as_it_was = [(place, self._stored(place, len(data))) for place, data in before]
+        try:
+            _write_all(self._file, [*behind, (last, bytes(new - last))])
+            _write_all(self._file, before)
+        except OSError:
+            with suppress(OSError):
+                _write_all(self._file, as_it_was)
+            with suppress(OSError):
+                self._file.truncate(old)
+            raise
+        if not reserve:
+            self._file.truncate(self._end)
+
+    def _changed_runs(self, end: int) -> list[tuple[int, bytes]]:
+        """What was written, in runs without a gap, up to an end."""
+        runs: list[tuple[int, bytearray]] = []
+        for place in sorted(self._changed):
+            if runs and runs[-1][0] + len(runs[-1][1]) == place:
+                runs[-1][1].extend(self._blocks[place])
+            else:
+                runs.append((place, self._blocks[place].copy()))
+        return [(place, bytes(data[: end - place])) for place, data in runs if place < end]
+
+    def _block(self, place: int) -> bytearray:
+        """A block as it is now."""
+        if place not in self._blocks:
+            self._blocks[place] = bytearray(self._stored(place, _BLOCK).ljust(_BLOCK, b"\0"))
+        return self._blocks[place]
+
+    def _stored(self, place: int, size: int) -> bytes:
+        """What the file holds."""
+        if place >= self._length:
+            return b""
+        self._file.seek(place)
+        data = b""
+        while len(data) < size and (more := self._file.read(size - len(data))):
+            data += more
+        return data
+
+
+def identity(status: os.stat_result) -> tuple[int, int]:
+    """What tells a file from any other, whatever its name.
+
+    Parameters
+    ----------
+    status : os.stat_result
+        From `os.stat`.
+
+    Returns
+    -------
+    device, number : int
+    """
+    return status.st_dev, status.st_ino
+
+
+def _pieces(place: int, count: int) -> Iterator[tuple[int, int, int]]:
+    """Blocks that a stretch of bytes lies in: the place of each, and where in it the stretch begins and ends."""
+    for block in range(place - place % _BLOCK, place + count, _BLOCK):
+        yield block, max(place - block, 0), min(place + count - block, _BLOCK)
+
+
+def _write_all(file: io.FileIO, pieces: list[tuple[int, bytes]]) -> None:
+    """Write at places, to the last byte: on a full disk the system may take a part before it refuses."""
+    for place, data in pieces:
+        file.seek(place)
+        left = memoryview(data)
+        while left:
+            left = left[file.write(left) or 0 :]
