@@ -36,7 +36,7 @@ def simulated(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[tuple[list[
     def end(*endings: Ending) -> list[tuple[list[Path], Any]]:
         asked: list[tuple[list[Path], Any]] = []
 
-        def simulate_all(drives: Mapping[Path, Drive], _: object, jobs: int | None) -> dict[Path, Ending]:
+        def simulate_all(drives: Mapping[Path, Drive], _: object, jobs: int | None, force: bool) -> dict[Path, Ending]:
             asked.append((list(drives), jobs))
             return dict(zip(drives, endings, strict=True))
 
@@ -131,7 +131,7 @@ def test_results_over_a_drive_file(refuse: Refuse, files: list[Path], simulated:
 
 
 def test_output_that_is_a_file(refuse: Refuse, files: list[Path]) -> None:
-    assert "cannot be made" in refuse(words(files, "-o", str(files[0])))
+    assert "cannot be written (Not a directory)" in refuse(words(files, "-o", str(files[0])))
 
 
 def test_warnings_are_errors_where_strict(

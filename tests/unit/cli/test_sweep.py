@@ -31,7 +31,7 @@ def test_a_sweep_says_which_figures_to_draw(
 ) -> None:
     simulated: list[Any] = []
 
-    def simulate(drive: Drive, path: Path, _: object) -> Run:
+    def simulate(drive: Drive, path: Path, *_: object) -> Run:
         simulated.extend([drive, path])
         return run
 

@@ -1,0 +1,84 @@
+"""What may be replaced by a file of ours, and what may not."""
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import h5py
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.results import FileRecorder, Layout, open_run
+from beltdyn.results.atomic import MARK, is_marked
+
+
+def make_text(path: Path) -> None:
+    path.write_text("time,torque\n0,1\n")
+
+
+def make_foreign_hdf5(path: Path) -> None:
+    with h5py.File(path, "w") as file:
+        file["measured"] = [1.0, 2.0]
+
+
+def make_empty(path: Path) -> None:
+    path.touch()
+
+
+REGULAR = (make_text, make_foreign_hdf5, make_empty)
+
+
+@pytest.mark.parametrize("make", REGULAR)
+def test_only_results_are_replaced(
+    tmp_path: Path, layout: Layout, attributes: Any, make: Callable[[Path], None]
+) -> None:
+    path = tmp_path / "mine"
+    make(path)
+    before = path.read_bytes()
+    with pytest.raises(ModelError, match=r"mine is there already, and is not a file that beltdyn wrote.*--force"):
+        FileRecorder(path, layout, attributes)
+    assert path.read_bytes() == before
+    for overwrite in (True, False):  # a result now
+        FileRecorder(path, layout, attributes, overwrite).close("completed", {})
+        assert open_run(path).status == "completed"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes are a matter of POSIX")
+@pytest.mark.parametrize("overwrite", [False, True])
+def test_pipes_devices_and_folders_are_never_replaced(
+    tmp_path: Path, layout: Layout, attributes: Any, overwrite: bool
+) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "folder").mkdir()
+    for path in (tmp_path / "pipe", tmp_path / "folder", Path(os.devnull)):
+        with pytest.raises(ModelError, match=r"cannot be written \(it is a (device or a pipe|folder), not a file\)"):
+            FileRecorder(path, layout, attributes, overwrite)
+    assert (tmp_path / "pipe").is_fifo()
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["folder", "pipe"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_links_are_followed(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    """They stay, and what they lead to obeys the rule."""
+    link, target = tmp_path / "link.nc", tmp_path / "target.nc"
+    link.symlink_to(target)
+    for _ in range(2):
+        FileRecorder(link, layout, attributes).close("completed", {})
+        assert link.is_symlink()
+        assert open_run(target).status == "completed"
+    make_text(target)
+    with pytest.raises(ModelError, match="not a file that beltdyn wrote"):
+        FileRecorder(link, layout, attributes)
+    assert link.is_symlink()
+    make_text(target)
+
+
+def test_marks_are_found_at_both_ends(tmp_path: Path) -> None:
+    path, filler = tmp_path / "file", b"\0" * 10_000
+    for data, marked in ((b"", False), (filler, False), (MARK.encode() + filler, True), (filler + MARK.encode(), True)):
+        path.write_bytes(data)
+        assert is_marked(path) is marked
+    assert not is_marked(tmp_path)

@@ -1,0 +1,60 @@
+"""A result file has one writer; the lock goes with its process."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError, OutputError
+from beltdyn.results import FileRecorder, Layout, open_run
+
+WRITER = Path(__file__).with_name("writer_process.py")
+
+
+def test_second_writer_is_refused(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    """By any name of the file; and nothing is changed by the attempt."""
+    first = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    before = first.path.read_bytes()
+    (tmp_path / "folder").mkdir()
+    for name in (tmp_path / "result.nc", tmp_path / "folder" / ".." / "result.nc"):
+        with pytest.raises(ModelError, match=r"result\.nc is being written by another run.*Wait"):
+            FileRecorder(name, layout, attributes)
+    assert first.path.read_bytes() == before
+    first.close("completed", {})
+    FileRecorder(tmp_path / "result.nc", layout, attributes).close("completed", {})
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["folder", "result.nc"]
+
+
+def test_lock_of_a_killed_process_is_gone(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    path = tmp_path / "result.nc"
+    command = [sys.executable, str(WRITER), str(path), "7"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "ready\n"
+        with pytest.raises(ModelError, match="being written by another run"):
+            FileRecorder(path, layout, attributes)
+        process.kill()
+    recorder = FileRecorder(path, layout, attributes)
+    recorder.close("completed", {})
+    assert open_run(path).status == "completed"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_rows_never_go_into_another_file(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    """As where the result was moved away, and another one moved to its place."""
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    other = FileRecorder(tmp_path / "other.nc", layout, attributes)
+    other.close("completed", {})
+    other.path.replace(recorder.path)
+    before = recorder.path.read_bytes()
+    with pytest.raises(OutputError, match="another file has taken its place"):
+        recorder.append(make_chunk(np.arange(3.0)))
+    with pytest.raises(OutputError, match="another file has taken its place"):
+        recorder.close("completed", {})
+    assert recorder.path.read_bytes() == before
