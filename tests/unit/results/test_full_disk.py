@@ -29,7 +29,7 @@ class Filling:
         self.recorder = FileRecorder(path, layout, {"drive": ""})
 
     def append(self) -> None:
-        numbers = np.arange(self.outputs, self.outputs + OUTPUTS) % 100
+        numbers = np.arange(self.outputs, self.outputs + OUTPUTS)
         rows = {name: self.layout.shape(variable, OUTPUTS) for name, variable in self.layout.recorded.items()}
         shaped = {name: numbers.reshape(-1, *[1] * (len(row) - 1)) for name, row in rows.items()}
         self.recorder.append({name: np.broadcast_to(shaped[name], row) for name, row in rows.items()})
@@ -59,7 +59,7 @@ def fill(path: Path, layout: Layout) -> int:
         assert int(dataset.attrs["steps"]) == 1200
         for name in dataset.data_vars:
             rows = dataset[name].values.T
-            np.testing.assert_array_equal(rows, np.broadcast_to(np.arange(start) % 100, rows.shape))
+            np.testing.assert_array_equal(rows, np.broadcast_to(np.arange(start).astype(rows.dtype), rows.shape))
     with xr.open_dataset(path) as plain:
         plain.load()
     path.unlink()
