@@ -15,7 +15,7 @@ from beltdyn.results.atomic import MARK, is_marked
 
 
 def make_text(path: Path) -> None:
-    path.write_text("time,torque\n0,1\n")
+    path.write_text("time,torque\n0,1\n", encoding="utf-8")
 
 
 def make_foreign_hdf5(path: Path) -> None:
