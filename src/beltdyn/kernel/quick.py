@@ -1,7 +1,8 @@
 """Compilation in a third of the time, by way of Numba's internals.
 
 Numba optimises a kernel and turns it into machine code before it links it into its callers, which do so again.
-Here kernels take each other in before optimisation; only those that Python calls are optimised, whole, and kept.
+Here a kernel is linked into its callers before optimisation.  Only the kernels that Python calls are optimised, each
+with all that it calls, and kept on disk.
 """
 
 import gc

@@ -89,7 +89,7 @@ class Run:
 
     @contextmanager
     def recorded(self) -> Iterator[Recorded]:
-        """What was recorded, in the way that is quickest to come by."""
+        """What was recorded: the dataset if it is in memory, or else the open file, which is quicker to read."""
         if self._dataset is not None:
             yield self._dataset
             return

@@ -1,7 +1,7 @@
-"""The one door to compiled code that solves the equations of motion.
+"""The single compiled entry point of everything that solves the equations of motion.
 
 A kernel that Python calls is compiled whole, with all that it calls.  Linearising, for statics and for starts, and
-stepping through time share most of their code: behind one door it is compiled once.
+stepping through time share most of their code; with a single entry point it is compiled once.
 """
 
 from typing import Final, NamedTuple

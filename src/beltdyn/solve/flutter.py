@@ -19,7 +19,7 @@ from beltdyn.system.arrays import NODE, FloatArray, System
 _SATURATED = 0.99
 """Friction over its limit from which a point counts as sliding: outputs inside steps are interpolated."""
 _ELEMENTS = 1
-"""Length of belt that must slide in one piece, in elements: a mesh carries no shorter waves."""
+"""Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
 _PERIODS = 10.0
 """How long a vibration goes on where sliding pauses."""
 _SAMPLES = 16

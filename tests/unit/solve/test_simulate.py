@@ -113,9 +113,18 @@ def test_a_drive_at_rest_in_equilibrium_stays_there(drive: Drive, change: Change
     assert moved < 1e-9  # rounding; the driver starts after 50 ms
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
-def test_choice_of_integrator(change: Change, integrator: str) -> None:
+@pytest.mark.parametrize(
+    ("integrator", "kind"),
+    [
+        ("generalized_alpha", GeneralizedAlpha),
+        ("cvode", StandardIntegrator),
+        ("ida", StandardIntegrator),
+        ("bdf", StandardIntegrator),
+        ("radau", StandardIntegrator),
+    ],
+)
+def test_choice_of_integrator(change: Change, integrator: str, kind: type) -> None:
     chosen = choose_integrator(change(simulation={"integrator": integrator, "rtol": 1e-4, "max_step": 0.1}))
-    assert isinstance(chosen, GeneralizedAlpha if integrator == "generalized_alpha" else StandardIntegrator)
+    assert type(chosen) is kind
     assert (chosen.rtol, chosen.max_step) == (1e-4, 0.1)
     assert getattr(chosen, "name", "generalized_alpha") == integrator

@@ -45,13 +45,38 @@ def test_tension(fine: Drive, seen: tuple[float, Observations]) -> None:
     np.testing.assert_allclose(seen[1].belt_tension[0], expected, rtol=0.05)  # spread of a cubic belt over its arcs
 
 
+@pytest.mark.parametrize("seen", [0.0], ids=["at rest"], indirect=True)
 def test_hub_loads_at_rest_are_twice_the_tension(seen: tuple[float, Observations]) -> None:
-    speed, here = seen
+    here = seen[1]
     twice = 2.0 * here.span_tension[0]
     expected = np.stack([twice * [1.0, -1.0], [0.0, 0.0]], axis=1)
-    if speed == 0.0:
-        np.testing.assert_allclose(here.hub_force[0], expected, atol=2e-3 * twice[0])  # shear of bent spans
-        np.testing.assert_allclose(here.pulley_torque, 0.0, atol=1e-9)
+    np.testing.assert_allclose(here.hub_force[0], expected, atol=2e-3 * twice[0])  # shear of bent spans
+    np.testing.assert_allclose(here.pulley_torque, 0.0, atol=1e-9)
+
+
+def test_the_hubs_take_the_power_that_contact_loses(seen: tuple[float, Observations]) -> None:
+    """At rest nothing; of a belt in balance that shifts as a whole, the springs of contact take no power."""
+    speed, here = seen
+    lost = float(here.friction_power.sum() + here.contact_damping_power.sum())
+    assert lost == 0.0 if speed == 0.0 else lost > 1.0
+    assert speed * here.hub_force[0, :, 0].sum() == pytest.approx(lost, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("arm", ["point", "rim"])
+def test_friction_turns_a_pulley_with_the_arm_of_the_model(fine: Drive, arm: str) -> None:
+    """A rim that runs through a belt at rest drives it by friction; both arms differ by the penetration."""
+    system = drive_system(fine.replace(contact=fine.contact.replace(moment_arm=arm)))
+    state = find_equilibrium(system, laid(system, fine.path)).state
+    velocity = np.zeros_like(state.velocity)
+    velocity[NODE * system.nodes + 1] = 50.0
+    here = see(system, state.position, velocity)
+    # power that the pulley gives is what friction takes, since the belt stands
+    assert -50.0 * here.pulley_torque[0, 1] == pytest.approx(here.friction_power[0, 1], rel=1e-12)
+    forces = system._replace(law=system.law._replace(arm_to_rim=not system.law.arm_to_rim))
+    other = see(forces, state.position, velocity)
+    ratio = float(here.pulley_torque[0, 1] / other.pulley_torque[0, 1])
+    depth = install(fine).penetrations[1] / fine.radii[1]
+    assert ratio - 1.0 == pytest.approx(depth if arm == "rim" else -depth, rel=0.05)  # the ends of the arc
 
 
 def test_wrap_angles(fine: Drive, seen: tuple[float, Observations]) -> None:

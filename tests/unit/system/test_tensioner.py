@@ -62,10 +62,19 @@ def test_the_nominal_place_is_the_pulleys_center(tensioners: Records) -> None:
     assert tensioner_place(tensioners, 0, 0.0)[:2] == pytest.approx(center, abs=1e-15)
 
 
-def test_an_arm_keeps_its_length(tensioners: Records) -> None:
-    if tensioners.rotary[0]:
-        place = np.array(tensioner_place(tensioners, 0, 1.1)[:2]) - tensioners.origin[0]
-        assert np.linalg.norm(place) == pytest.approx(tensioners.arm[0], rel=1e-15)
+@pytest.mark.parametrize("name", ["ccw", "cw"])
+def test_an_arm_keeps_its_length(name: str) -> None:
+    arm = arrays(name)
+    place = np.array(tensioner_place(arm, 0, 1.1)[:2]) - arm.origin[0]
+    assert np.linalg.norm(place) == pytest.approx(arm.arm[0], rel=1e-15)
+
+
+@pytest.mark.parametrize("name", ["sliding", "bare"])
+def test_a_slide_keeps_to_its_line(name: str) -> None:
+    slide = arrays(name)
+    moved = np.array(tensioner_place(slide, 0, 1.1)[:2]) - slide.origin[0]
+    assert moved == pytest.approx(1.1 * slide.direction[0], rel=1e-15)
+    assert np.linalg.norm(slide.direction[0]) == pytest.approx(1.0, rel=1e-15)
 
 
 def test_the_coordinate_lengthens_the_path(tensioners: Records) -> None:
