@@ -123,8 +123,10 @@ def test_a_drive_at_rest_in_equilibrium_stays_there(drive: Drive, change: Change
         ("radau", StandardIntegrator),
     ],
 )
-def test_choice_of_integrator(change: Change, integrator: str, kind: type) -> None:
+def test_choice_of_integrator(
+    change: Change, integrator: str, kind: type[GeneralizedAlpha | StandardIntegrator]
+) -> None:
     chosen = choose_integrator(change(simulation={"integrator": integrator, "rtol": 1e-4, "max_step": 0.1}))
-    assert type(chosen) is kind
+    assert isinstance(chosen, kind)
     assert (chosen.rtol, chosen.max_step) == (1e-4, 0.1)
     assert getattr(chosen, "name", "generalized_alpha") == integrator
