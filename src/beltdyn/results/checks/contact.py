@@ -15,7 +15,7 @@ DEEPEST_OF_RADIUS, DEEPEST_OF_THICKNESS = 0.1, 0.5
 """Largest penetrations over the radius and over the belt's thickness that pass without a warning."""
 
 _INSTANTS = 40
-"""Outputs at which places of contact are looked at, at most."""
+"""Outputs of fields at which places of contact are looked at, at most."""
 
 
 def slack_spans(evidence: Evidence) -> Iterator[Finding]:
@@ -44,14 +44,14 @@ def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
 def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys into which the belt sinks so far that the softness of the contact shapes the result."""
     drive, recorded = evidence.drive, evidence.recorded
-    rows = np.unique(np.linspace(0, len(evidence.time) - 1, _INSTANTS).round().astype(int))
-    place, touched, centers = (
-        np.asarray(recorded[name][rows]) for name in ("contact_position", "contact_pulley", "pulley_center")
-    )
+    instants = np.asarray(recorded["field_time"])
+    rows = np.unique(np.linspace(0, len(instants) - 1, _INSTANTS).round().astype(int))
+    place, touched = (np.asarray(recorded[name][rows]) for name in ("contact_position", "contact_pulley"))
+    centers = np.asarray(recorded["pulley_center"][np.searchsorted(evidence.time, instants[rows])])
     for number, (pulley, radius) in enumerate(zip(drive.pulleys, drive.radii.tolist(), strict=True)):
         away = np.hypot(*np.moveaxis(place - centers[:, number, None], -1, 0))
         depths = np.where(touched == number, radius - away, 0.0)
-        depth, time = float(depths.max()), float(evidence.time[rows[int(depths.max(axis=1).argmax())]])
+        depth, time = float(depths.max()), float(instants[rows[int(depths.max(axis=1).argmax())]])
         most = min(DEEPEST_OF_RADIUS * radius, DEEPEST_OF_THICKNESS * drive.belt.thickness)
         if depth > most:
             yield Finding(
