@@ -2,7 +2,7 @@
 
 Against: the elastic catenary with the material law of the element, N = EA (g^2 - 1) g / 2 at the stretch g, whose
 half span and sag are integrals over the reference length s of g H / T and g w s / T with T = sqrt(H^2 + (w s)^2); and
-the parabola w l^2 / 8H of a taut belt.
+the parabola w l^2 / 8H of a taut belt; and its swinging by Irvine's equation.
 """
 
 from collections.abc import Callable
@@ -10,13 +10,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
+from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_section, belt_system
 from beltdyn.system.state import State
+from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import stretch
 
 FloatArray = NDArray[np.float64]
@@ -90,3 +93,31 @@ def test_a_taut_belt_sags_as_a_parabola(
     parabola = belt.mass_per_length * GRAVITY * span**2 / (8.0 * pull)
     measured(sag=sag, parabola=parabola)
     assert sag == pytest.approx(parabola, rel=4.0 * (parabola / span) ** 2 + pull / belt.axial_stiffness)
+
+
+@pytest.mark.parametrize(("span", "waves"), [(1.02, 1), (1.005, 1), (0.997, 2)])
+def test_a_sagging_belt_swings_as_irvine_has_it(
+    along: Callable[[System, FloatArray, FloatArray], State], measured: Callable[..., None], span: float, waves: int
+) -> None:
+    """Lowest eigenvalue about the equilibrium, short of terms (w l / T)^2 and T / EA.
+
+    From lambda = 2 pi on the antisymmetric swing comes first, of two waves.
+    """
+    belt, system = hang(32)
+    pull, exact, angles = catenary(belt, span)
+    state = find_equilibrium(system, along(system, exact, angles)).state
+    free = ~system.supports.fixed.ravel()
+    vibrations = Vibrations(system)
+    stiffness, _, mass = (
+        vibrations.matrix(values).toarray()[: free.size, : free.size][np.ix_(free, free)]
+        for values in vibrations.tangents(0.0, state.position, np.zeros_like(state.position))
+    )
+    found = float(np.sqrt(eigh(stiffness, mass, eigvals_only=True)[0])) / (2.0 * np.pi)
+    stretched = belt.mass_per_length * belt.length / span
+    parameter = sag_parameter(stretched * GRAVITY, span, pull, belt.axial_stiffness)
+    expected = lowest_frequency(span, pull, stretched, sag_parameter=parameter)
+    straight = lowest_frequency(span, pull, stretched)
+    measured(lambda_squared=parameter, found=found, irvine=expected, straight=straight)
+    tolerance = (stretched * GRAVITY * span / pull) ** 2 / 4.0 + pull / belt.axial_stiffness
+    assert found == pytest.approx(expected, rel=tolerance)
+    assert (parameter > 4.0 * np.pi**2) == (waves == 2)

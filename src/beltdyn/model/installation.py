@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
 from beltdyn.model.rest import carriers_of, come_to_rest
+from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import tension as tension_of
 
 FloatArray = NDArray[np.float64]
@@ -35,7 +36,7 @@ class Installation:
     hub_loads : ndarray, shape (n, 2), N
         Force of the belt on each pulley, T (u_out - u_in), of size 2 T sin(wrap angle / 2).
     span_frequencies : ndarray, shape (n,), Hz
-        Lowest frequency at which each span swings across, with the bending stiffness of the belt.
+        Lowest frequency at which each span swings across, with the bending stiffness of the belt and its sag.
     """
 
     strain: float
@@ -99,10 +100,20 @@ def install(drive: Drive) -> Installation:
 
 
 def _span_frequencies(drive: Drive, path: Path, tension: float) -> FloatArray:
-    """First frequency of simply supported spans, 1 / (2 l) sqrt(T / m (1 + E I (pi / l)^2 / T)), Hz.
+    """First frequencies of spans, Hz; see `theory.sagging_span`.
 
-    The mass of a metre, m, is that of the stretched belt.
+    The mass of a metre is that of the stretched belt.
     """
-    wave = np.pi / path.span_lengths
-    mass = drive.belt.mass_per_length * drive.belt.length / path.length
-    return np.asarray(wave * np.sqrt((tension + drive.belt.bending_stiffness * wave**2) / mass) / (2 * np.pi))
+    belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt.length / path.length
+    across = np.abs(path.span_directions @ np.array([-drive.gravity[1], drive.gravity[0]]))
+    found = [
+        lowest_frequency(
+            length,
+            tension,
+            mass,
+            bending=belt.bending_stiffness,
+            sag_parameter=sag_parameter(mass * gravity, length, tension, belt.axial_stiffness),
+        )
+        for length, gravity in zip(path.span_lengths.tolist(), across.tolist(), strict=True)
+    ]
+    return np.array(found)
