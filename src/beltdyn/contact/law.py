@@ -1,12 +1,6 @@
 """Constants of the contact between belt and pulleys, and the state of one pulley as contact sees it."""
 
-from typing import Final, NamedTuple
-
-FORCE_SLOPE: Final = 0
-"""Friction law of the paper: the friction force grows with slope nu_s until the Coulomb limit (Fig. 3)."""
-
-COEFFICIENT_SLOPE: Final = 1
-"""Friction law of Leamy and Wasfy: the friction coefficient grows linearly up to a creep velocity."""
+from typing import NamedTuple
 
 
 class ContactLaw(NamedTuple):
@@ -19,9 +13,9 @@ class ContactLaw(NamedTuple):
     friction: float
     """Coulomb coefficient mu."""
     friction_law: int
-    """`FORCE_SLOPE` or `COEFFICIENT_SLOPE`."""
+    """Number of the friction law in `beltdyn.contact.friction.LAWS`."""
     creep: float
-    """nu_s in kg/(m s) for `FORCE_SLOPE`, the creep velocity in m/s for `COEFFICIENT_SLOPE`."""
+    """Parameter of the friction law: nu_s in kg/(m s), or the creep velocity in m/s."""
     may_pull: bool
     """Whether f_n may become negative, as Eq. 17 is printed."""
     follow_zone: bool

@@ -124,14 +124,11 @@ def _penetration_warnings(drive: Drive, installation: Installation) -> list[str]
 
 def _creep_warnings(drive: Drive, installation: Installation) -> list[str]:
     """Compare the slip velocity at which friction is fully used with one that time steps can follow."""
-    fastest, slope = drive.contact.creep_velocity, drive.contact.creep_rate_factor
-    remedy = f"raise contact.creep_velocity to {_SLOWEST_CREEP:g} m/s"
-    if slope is not None:
-        strongest = float(np.max(drive.frictions * installation.tension / drive.radii))
-        most = strongest / _SLOWEST_CREEP
-        fastest, remedy = strongest / slope, f"lower contact.creep_rate_factor below {most:.2g}"
-    if fastest is None or not 0 < fastest < _SLOWEST_CREEP:
+    law, pressures = drive.contact.law, installation.tension / drive.radii
+    fastest = float(np.max(law.saturation(pressures, drive.frictions, drive.contact.creep)))
+    if not 0 < fastest < _SLOWEST_CREEP:
         return []
+    remedy = law.softened(float(np.max(drive.frictions * pressures)), _SLOWEST_CREEP)
     return [
         f"friction is fully used at a slip velocity of {fastest:.1e} m/s, less than {_SLOWEST_CREEP:g} m/s: time steps "
         f"follow it, and a run takes long. For a fast one, {remedy}."

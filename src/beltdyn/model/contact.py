@@ -4,10 +4,11 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from beltdyn.contact.friction import LAWS, FrictionLaw
 from beltdyn.model.part import Part, computed
 from beltdyn.model.quantity import Count, CreepRate, Length, LineDamping, LineStiffness, Ratio, Speed
 
-_SLOPE_OF_LAW = {"force_slope": "creep_rate_factor", "coefficient_slope": "creep_velocity"}
+_LAWS = {law.name: law for law in LAWS}
 
 
 class Contact(Part):
@@ -67,7 +68,7 @@ class Contact(Part):
 
     @model_validator(mode="after")
     def _has_the_slope_of_its_law(self) -> Self:
-        for law, key in _SLOPE_OF_LAW.items():
+        for law, key in ((law.name, law.parameter) for law in LAWS):
             given = getattr(self, key) is not None
             if law == self.friction_law and not given:
                 raise ValueError(f'{key} is missing: the friction law "{law}" needs it. Give {key}')
@@ -77,3 +78,13 @@ class Contact(Part):
                     f'Remove it, or set friction_law = "{law}"'
                 )
         return self
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The friction law."""
+        return _LAWS[self.friction_law]
+
+    @property
+    def creep(self) -> float:
+        """Parameter of the friction law: `creep_rate_factor` in kg/(m s), or `creep_velocity` in m/s."""
+        return float(getattr(self, self.law.parameter))

@@ -6,7 +6,7 @@ Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.model import Contact, Drive
+from beltdyn.model import Drive
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.integer]
@@ -108,7 +108,7 @@ def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:
 def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, drive: Drive) -> FloatArray:
     """Slip velocity beyond creep: what is left of it when the friction law's creep v_c is taken away.
 
-    v_c is the slip velocity at which |f_t| reaches mu f_n: mu f_n / nu_s, or the creep velocity of the drive file.
+    v_c is the slip velocity at which |f_t| reaches mu f_n, which the friction law knows.
     The result is sign(v_t) max(|v_t| - v_c, 0) where the belt presses on a pulley, and zero elsewhere.
 
     Parameters
@@ -120,16 +120,9 @@ def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: Int
     drive : Drive
         Friction.
     """
-    creep = _creep_velocity(normal, drive.frictions[touched], drive.contact)
+    creep = drive.contact.law.saturation(normal, drive.frictions[touched], drive.contact.creep)
     beyond = np.sign(slip_velocity) * np.maximum(np.abs(slip_velocity) - creep, 0.0)
     return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
-
-
-def _creep_velocity(normal: FloatArray, friction: FloatArray, contact: Contact) -> FloatArray | float:
-    """Slip velocity at which friction is fully used, m/s."""
-    if contact.creep_velocity is not None:
-        return contact.creep_velocity
-    return friction * normal / (contact.creep_rate_factor or np.inf)
 
 
 def sliding_shares(sliding: FloatArray, pressed: NDArray[np.bool_], cell: FloatArray) -> FloatArray:

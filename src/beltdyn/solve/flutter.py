@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.contact.friction import LAWS
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import NODE, FloatArray, System
 
-_SATURATED = 0.99
-"""Friction over its limit from which a point counts as sliding: outputs inside steps are interpolated."""
 _ELEMENTS = 1
 """Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
 _PERIODS = 10.0
@@ -113,8 +112,8 @@ class FlutterWatch:
         """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""
         system = self._system
         normal, friction = seen["normal_force"], system.pulleys.friction[seen["contact_pulley"]]
-        points = (normal > 0.0) & (friction > 0.0)
-        points &= np.abs(seen["friction_force"]) >= _SATURATED * friction * normal
+        saturation = LAWS[system.law.friction_law].saturation(normal, friction, system.law.creep)
+        points = (normal > 0.0) & (friction > 0.0) & (np.abs(seen["slip_velocity"]) >= saturation)
         result = np.zeros(len(points))
         needed = _ELEMENTS * system.control.shape[1] * system.contact.points.size
         some = np.flatnonzero(np.count_nonzero(points, axis=1) > needed)

@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.ancf.section import Section
-from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw
+from beltdyn.contact.friction import LAWS
+from beltdyn.contact.law import ContactLaw
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.layout import radii as effective_radii
@@ -192,16 +193,13 @@ def contact_points(contact: Contact | None) -> Quadrature:
 def _contact_law(contact: Contact | None) -> ContactLaw:
     """Constants of contact; a law that is never used where there is none."""
     if contact is None:
-        return ContactLaw(1.0, 0.0, 0.0, FORCE_SLOPE, 1.0, False, True, False)
-    by_force = contact.friction_law == "force_slope"
-    creep = contact.creep_rate_factor if by_force else contact.creep_velocity
-    assert creep is not None
+        return ContactLaw(1.0, 0.0, 0.0, 0, 1.0, False, True, False)
     return ContactLaw(
         stiffness=contact.stiffness,
         damping=contact.damping,
         friction=contact.friction,
-        friction_law=FORCE_SLOPE if by_force else COEFFICIENT_SLOPE,
-        creep=creep,
+        friction_law=LAWS.index(contact.law),
+        creep=contact.creep,
         may_pull=contact.normal_law == "published",
         follow_zone=contact.sampling == "distributed" and contact.integration == "zone",
         arm_to_rim=contact.moment_arm == "rim",

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from beltdyn.contact.law import COEFFICIENT_SLOPE, FORCE_SLOPE, ContactLaw, Wheel
+from beltdyn.contact.friction import LAWS
+from beltdyn.contact.law import ContactLaw, Wheel
 
 FloatArray = NDArray[np.float64]
 
@@ -17,9 +18,9 @@ def wheel() -> Wheel:
     return Wheel(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0)
 
 
-@pytest.fixture(scope="session", params=[FORCE_SLOPE, COEFFICIENT_SLOPE], ids=["force_slope", "coefficient_slope"])
+@pytest.fixture(scope="session", params=range(len(LAWS)), ids=[law.name for law in LAWS])
 def law(request: pytest.FixtureRequest) -> ContactLaw:
-    creep = 300.0 if request.param == FORCE_SLOPE else 0.4
+    creep = {"creep_rate_factor": 300.0, "creep_velocity": 0.4}[LAWS[request.param].parameter]
     return ContactLaw(1e6, 40.0, 0.5, request.param, creep, may_pull=False, follow_zone=True, arm_to_rim=False)
 
 

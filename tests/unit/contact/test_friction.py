@@ -5,16 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import friction_force
-from beltdyn.contact.law import FORCE_SLOPE, ContactLaw
+from beltdyn.contact.friction import LAWS, friction_force
+from beltdyn.contact.law import ContactLaw
 
 SLIPS = st.floats(-5.0, 5.0)
 NORMALS = st.floats(0.0, 1e4)
 
 
 def break_away(law: ContactLaw, normal: float) -> float:
-    """Slip velocity at which the Coulomb limit is reached."""
-    return law.friction * normal / law.creep if law.friction_law == FORCE_SLOPE else law.creep
+    """Slip velocity at which the Coulomb limit is reached, as the law tells it."""
+    return float(LAWS[law.friction_law].saturation(normal, law.friction, law.creep))
 
 
 @given(SLIPS, NORMALS)

@@ -56,9 +56,10 @@ def watch(system: System, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Flut
         pulley = np.full((count, points), -1)
         pulley[:, : points // 2] = 0
         normal = np.where(pulley == 0, 300.0, 0.0)
-        friction = part * system.pulleys.friction[0] * normal
-        friction[np.arange(points) >= np.asarray(pieces)[:, None]] *= 0.9
-        seen = {"normal_force": normal, "friction_force": -friction, "contact_pulley": pulley}
+        saturation = system.pulleys.friction[0] * normal / system.law.creep  # the paper's law
+        slip = -part * saturation
+        slip[np.arange(points) >= np.asarray(pieces)[:, None]] *= 0.9
+        seen = {"normal_force": normal, "slip_velocity": slip, "contact_pulley": pulley}
         for first in range(0, count, chunk):
             some = slice(first, first + chunk)
             result.take(time[some], position[some], velocity[some], {name: seen[name][some] for name in seen})

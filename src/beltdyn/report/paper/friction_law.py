@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beltdyn.contact.friction import friction_force
-from beltdyn.contact.law import FORCE_SLOPE, ContactLaw
+from beltdyn.contact.law import ContactLaw
 from beltdyn.model import Drive
 from beltdyn.plot.style import color, dash, new_figure
 from beltdyn.published import two_pulley
@@ -69,7 +69,7 @@ def _friction_coefficient() -> float:
 
 def _friction(slip: FloatArray, factor: float) -> FloatArray:
     """Friction force of the kernel, N/m."""
-    law = ContactLaw(1e7, 10.0, _friction_coefficient(), FORCE_SLOPE, factor, True, False, False)
+    law = ContactLaw(1e7, 10.0, _friction_coefficient(), 0, factor, True, False, False)
     return np.array([friction_force(float(value), _NORMAL, law)[0] for value in slip])
 
 
