@@ -64,7 +64,8 @@ class GeneralizedAlpha:
             output_interval=task.instants.interval,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
-        march = new_march(0.0, first_step, start.position, start.velocity)
+        profiles = system.profiles.table.size - 1
+        march = new_march(0.0, first_step, start.position, start.velocity, profiles)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
         yield Chunk.start(start)

@@ -14,7 +14,9 @@ from math import inf, isfinite, sqrt
 from typing import Final, NamedTuple
 
 from beltdyn.kernel import kernel
-from beltdyn.solve.march import ITERATIONS, SLOWEST, March, Settings
+from beltdyn.solve.alpha_impulse import add_missed_impulses
+from beltdyn.solve.alpha_method import Method
+from beltdyn.solve.march import ITERATIONS, SLOWEST, March, Settings, allowed_error
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
@@ -34,17 +36,6 @@ _NEAR: Final = 3.0
 """The loads are those before the last change, which must be below this many times what Newton's method may leave."""
 
 
-class Method(NamedTuple):
-    """Coefficients of the method for one spectral radius."""
-
-    am: float
-    af: float
-    gamma: float
-    beta: float
-    error: float
-    """Local error of the position over h^2 (A1 - A0)."""
-
-
 class Step(NamedTuple):
     """A step that is tried."""
 
@@ -54,15 +45,6 @@ class Step(NamedTuple):
     """Change of the velocity over that of the position, 1/s."""
     by_acceleration: float
     """Change of the acceleration over that of the position, 1/s^2."""
-
-
-@kernel
-def method_of(rho: float) -> Method:
-    """Coefficients for the spectral radius rho at infinite frequency (Chung and Hulbert 1993)."""
-    am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
-    gamma = 0.5 + af - am
-    beta = 0.25 * (gamma + 0.5) ** 2
-    return Method(am, af, gamma, beta, abs(beta + 0.5 * (am - af) - 1.0 / 6.0))
 
 
 @kernel
@@ -127,11 +109,6 @@ def try_step(
 
 
 @kernel
-def allowed_error(settings: Settings, length: float) -> float:
-    """Local error of the position that a step of a length (s) should have, m."""
-    return settings.velocity_tolerance * min(length, settings.long_step)
-
-
 @kernel(inline=True)
 def _predict(system: System, method: Method, march: March, length: float) -> Step:
     """Overwrite the trial state by that of a constant A."""
@@ -140,6 +117,7 @@ def _predict(system: System, method: Method, march: March, length: float) -> Ste
         march.trial[0, i] = march.position[i] + length * march.velocity[i] + 0.5 * length * length * a
         march.trial[1, i] = march.velocity[i] + length * a
         march.trial[2, i] = (a - method.af * march.acceleration[i]) / (1.0 - method.af)
+    add_missed_impulses(system, method, march, length)
     step = Step(
         march.clock[0] + length,
         method.gamma / (method.beta * length),

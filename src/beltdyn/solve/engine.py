@@ -12,9 +12,10 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
 from beltdyn.solve import generalized_alpha
 from beltdyn.solve.march import March, Settings, Steps, empty_steps, new_march
-from beltdyn.system.arrays import FloatArray, System
+from beltdyn.system.arrays import POWERS, FloatArray, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
+from beltdyn.system.missed_action import jump_work
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
 from beltdyn.system.ring_matrix import solve_ring, substitute
 
@@ -199,7 +200,7 @@ def _serve(
 ) -> bool:
     """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
     size = motion[0].size
-    march = new_march(request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
+    march = new_march(request.time, 0.0, np.zeros(size), np.zeros(size), 0)._replace(multipliers=multipliers)
     march.trial[:3] = motion
     solved = serve(system, request, _NO_SETTINGS, march, equations, empty_steps(0, size))[0] == 1
     for changed, vector in zip(motion, march.trial, strict=False):
@@ -225,7 +226,10 @@ def restart(system: System, march: March, equations: Equations) -> None:
         If the mass matrix is singular.
     """
     after = float(np.nextafter(march.clock[0], np.inf))
+    speeds = march.velocity.copy()
     if not accelerate(system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations):
         raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
     march.auxiliary[:] = march.acceleration
+    march.lagged[:] = np.nan
+    march.work[POWERS.index("driver_work")] += jump_work(system, speeds, march.velocity)
     march.power[:] = equations.loads.power

@@ -12,9 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
-from beltdyn.solve.alpha_step import Method, allowed_error, method_of, try_step
-from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps
+from beltdyn.solve.alpha_impulse import follow_profiles
+from beltdyn.solve.alpha_method import Method, method_of
+from beltdyn.solve.alpha_step import try_step
+from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
+from beltdyn.solve.step_bound import resolved_length
 from beltdyn.system.arrays import NODE, System
+from beltdyn.system.missed_action import Motion, missed_work
 from beltdyn.system.motion import Equations
 
 FloatArray = NDArray[np.float64]
@@ -78,7 +82,7 @@ def advance(
     for _ in range(budget):
         if clock[0] >= stop or (filled == steps.time.size and filled > 0):
             break
-        step = _next_step(clock, settings, stop)
+        step = resolved_length(system, settings, motion_of(march), _next_step(clock, settings, stop))
         iterations = try_step(system, settings, method, march, step, equations)
         if iterations == 0:
             march.counts[FAILED] += 1
@@ -92,7 +96,7 @@ def advance(
                 factor /= STRETCH
             else:
                 march.counts[STEPS] += 1
-                _accept(march, equations, step, stop)
+                _accept(system, method, march, equations, step, stop)
                 filled = _keep(march, step, steps, filled)
             clock[1] = min(settings.max_step, factor * step)
         if clock[1] < _SMALLEST_STEP:
@@ -129,11 +133,14 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
 
 
 @kernel(inline=True)
-def _accept(march: March, equations: Equations, step: float, stop: float) -> None:
+def _accept(system: System, method: Method, march: March, equations: Equations, step: float, stop: float) -> None:
     """Move to the end of the step."""
     power = equations.loads.power
+    end = Motion(march.clock[0] + step, march.trial[0], march.trial[1], march.trial[2])
+    missed_work(system, motion_of(march), end, march.impulse, march.missed)
+    follow_profiles(system, method, march, step)
     for k in range(power.size):
-        march.work[k] += 0.5 * step * (march.power[k] + power[k])
+        march.work[k] += 0.5 * step * (march.power[k] + power[k]) + march.missed[k]
         march.power[k] = power[k]
     for i in range(march.position.size):
         march.position[i], march.velocity[i] = march.trial[0, i], march.trial[1, i]

@@ -5,7 +5,9 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, POWERS, FloatArray
+from beltdyn.system.missed_action import Motion
 
 IntArray = NDArray[np.int64]
 
@@ -50,6 +52,12 @@ class March(NamedTuple):
     """Time integrals of the powers in the loads, J, shape (7,)."""
     power: FloatArray
     """These powers at the present time, W, shape (7,)."""
+    impulse: FloatArray
+    """Impulses on the bodies that the ends of the step in hand miss, from `missed_impulses`, shape (2, 6 N + D)."""
+    lagged: FloatArray
+    """What the method makes of each profile, as A is of the acceleration; nan after a jump; shape (profiles,)."""
+    missed: FloatArray
+    """Works that the powers at its ends miss, from `missed_work`, J, shape (7,)."""
     trial: FloatArray
     """Position, velocity, acceleration and A at the end of the step that is tried, shape (4, 6 N + D)."""
     counts: IntArray
@@ -71,6 +79,18 @@ class Steps(NamedTuple):
     """Shape (k, 7)."""
 
 
+@kernel
+def allowed_error(settings: Settings, length: float) -> float:
+    """Local error of the position that a step of a length (s) should have, m."""
+    return settings.velocity_tolerance * min(length, settings.long_step)
+
+
+@kernel
+def motion_of(march: March) -> Motion:
+    """The motion at the beginning of the next step."""
+    return Motion(march.clock[0], march.position, march.velocity, march.acceleration)
+
+
 def empty_steps(count: int, size: int) -> Steps:
     """Make room for steps.
 
@@ -90,7 +110,7 @@ def empty_steps(count: int, size: int) -> Steps:
     )
 
 
-def new_march(time: float, step: float, position: FloatArray, velocity: FloatArray) -> March:
+def new_march(time: float, step: float, position: FloatArray, velocity: FloatArray, profiles: int) -> March:
     """Begin an integration.
 
     Parameters
@@ -99,6 +119,8 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
         Where to begin, and the first step to try, s.
     position, velocity : ndarray, shape (6 N + D,)
         State to begin from; copied.
+    profiles
+        Number of functions of time.
 
     Returns
     -------
@@ -115,6 +137,9 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
         multipliers=np.zeros(NODE),
         work=np.zeros(len(POWERS)),
         power=np.zeros(len(POWERS)),
+        impulse=np.zeros((2, size)),
+        lagged=np.full(profiles, np.nan),
+        missed=np.zeros(len(POWERS)),
         trial=np.zeros((4, size)),
         counts=np.zeros(4, dtype=np.int64),
     )

@@ -42,6 +42,12 @@ def profile_value(profiles: Profiles, number: int, time: float) -> tuple[float, 
 
 
 @kernel
+def after_jump(time: float) -> float:
+    """The next number after an instant (s): there a profile that jumps at the instant has jumped."""
+    return float(np.nextafter(time, np.inf))
+
+
+@kernel
 def profile_angle(profiles: Profiles, number: int, time: float) -> float:
     """Integral of a profile from time zero, without harmonics: the angle of a mean speed.
 
@@ -70,6 +76,30 @@ def profile_angle(profiles: Profiles, number: int, time: float) -> float:
     wave = sin(half) / half if half != 0.0 else 1.0
     mean = constant + 0.5 * slope * since + amplitude * wave * cos(0.5 * omega * (begin + time) + phase)
     return float(profiles.segment[k].angle + mean * since)
+
+
+@kernel
+def profile_bend(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
+    """Where a profile bends: its next kink, and the angular frequency of the wave that it is until then.
+
+    Parameters
+    ----------
+    profiles
+        The profiles; harmonics are left out.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    kink, frequency : float
+        s, infinite after the last kink; rad/s, zero where the profile is straight.
+    """
+    k = _segment(profiles, number, after_jump(time))
+    last = k + 1 == profiles.table[number + 1].segment
+    _, _, amplitude, omega, _ = profiles.segment[k].coefficients
+    return np.inf if last else profiles.segment[k + 1].start, abs(omega) if amplitude != 0.0 else 0.0
 
 
 @kernel

@@ -33,14 +33,21 @@ def shaft_torque(
     """
     total, by_angle, by_speed = profile_value(profiles, pulley, time)[0], 0.0, 0.0
     for load in range(torques.first[pulley], torques.first[pulley + 1]):
-        torque, slope = _characteristic(torques, load, speed)
-        factor, change = _harmonic_factor(torques, load, angle)
         schedule = torques.table[load].schedule
         scale = profile_value(profiles, schedule, time)[0] if schedule >= 0 else 1.0
-        total += scale * torque * factor
-        by_angle += scale * torque * change
-        by_speed += scale * slope * factor
+        torque, by_theta, by_omega = load_torque(torques, load, angle, speed)
+        total += scale * torque
+        by_angle += scale * by_theta
+        by_speed += scale * by_omega
     return total, by_angle, by_speed
+
+
+@kernel
+def load_torque(torques: Torques, load: int, angle: float, speed: float) -> tuple[float, float, float]:
+    """Torque of a load without its schedule, N m, and its derivatives with respect to angle and speed."""
+    torque, slope = _characteristic(torques, load, speed)
+    factor, change = _harmonic_factor(torques, load, angle)
+    return torque * factor, torque * change, slope * factor
 
 
 @kernel

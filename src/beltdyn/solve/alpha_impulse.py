@@ -1,0 +1,116 @@
+"""The impulses of what is prescribed over time, exact whatever the step.
+
+The equations of motion hold at the ends of a step and know the torques there only.  Generalised-alpha makes of the
+values x of a torque or a schedule the impulse h ((1 - gamma) X0 + gamma X1), where X follows x as A follows the
+acceleration; the rest of the integral of x is added here.
+"""
+
+from math import isnan
+
+from beltdyn.kernel import kernel
+from beltdyn.solve.alpha_method import Method
+from beltdyn.solve.march import March, motion_of
+from beltdyn.system.arrays import NODE, System
+from beltdyn.system.excitation import after_jump, profile_value
+from beltdyn.system.machine_arrays import FRICTION_CLUTCH, NO_SCHEDULE
+from beltdyn.system.missed_action import missed_impulses
+from beltdyn.system.shaft_torque import load_torque
+
+
+@kernel
+def add_missed_impulses(system: System, method: Method, march: March, length: float) -> None:
+    """Let the impulses that a step misses act on the free bodies of the trial state, evenly over the step.
+
+    Parameters
+    ----------
+    system
+        The system.
+    method
+        Coefficients.
+    march
+        Its trial position and velocity are changed, and its impulses overwritten.
+    length
+        Length of the step, s.
+    """
+    missed_impulses(system, motion_of(march), length, march.impulse)
+    first = NODE * system.nodes
+    for k in range(2):
+        for body in range(system.bodies.size):
+            _push(system, march, body, march.impulse[k, first + body], length)
+    for p in range(system.pulleys.size):
+        body = system.pulleys[p].shaft
+        if system.bodies[body].unknown >= 0:
+            _push(system, march, body, _lag_of_shaft(system, method, march, p, length), length)
+    for number in range(system.couplings.size):
+        link = system.couplings[number]
+        if link.kind == FRICTION_CLUTCH and link.schedule != NO_SCHEDULE:
+            lag = lag_of(system, method, march, link.schedule, length)
+            rate = march.velocity[first + link.front] - march.velocity[first + link.back]
+            locking, capacity, _ = link.constants
+            if locking * abs(rate) < capacity:
+                lag = 0.0  # it may stick, and then its capacity does not matter
+            elif rate < 0.0:
+                lag = -lag
+            _push(system, march, link.front, -capacity * lag, length)
+            _push(system, march, link.back, capacity * lag, length)
+
+
+@kernel
+def follow_profiles(system: System, method: Method, march: March, length: float) -> None:
+    """Bring what the method makes of the profiles to the end of a step.
+
+    Parameters
+    ----------
+    system
+        The system.
+    method
+        Coefficients.
+    march
+        At the beginning of the step; `lagged` is changed.
+    length
+        Length of the step, s.
+    """
+    for number in range(march.lagged.size):
+        march.lagged[number] = _follow(system, method, march, number, length)[3]
+
+
+@kernel(inline=True)
+def _push(system: System, march: March, body: int, impulse: float, length: float) -> None:
+    """Change the trial state of a free body by an angular impulse that acts evenly over the step."""
+    if impulse != 0.0 and system.bodies[body].unknown >= 0:
+        i, gain = NODE * system.nodes + body, impulse / system.bodies[body].inertia
+        march.trial[0, i] += 0.5 * length * gain
+        march.trial[1, i] += gain
+
+
+@kernel(inline=True)
+def _lag_of_shaft(system: System, method: Method, march: March, pulley: int, length: float) -> float:
+    """What the method leaves of the impulses of a shaft's torque and loads, N m s."""
+    torques = system.torques
+    i = NODE * system.nodes + system.pulleys[pulley].shaft
+    impulse = lag_of(system, method, march, pulley, length)
+    for load in range(torques.first[pulley], torques.first[pulley + 1]):
+        schedule = torques.table[load].schedule
+        if schedule != NO_SCHEDULE:
+            torque = load_torque(torques, load, march.position[i], march.velocity[i])[0]
+            impulse += torque * lag_of(system, method, march, schedule, length)
+    return impulse
+
+
+@kernel
+def lag_of(system: System, method: Method, march: March, number: int, length: float) -> float:
+    """Integral of the straight line between the ends of a profile over a step, less what the method makes of it."""
+    before, after, followed, follows = _follow(system, method, march, number, length)
+    return length * (0.5 * (before + after) - (1.0 - method.gamma) * followed - method.gamma * follows)
+
+
+@kernel(inline=True)
+def _follow(
+    system: System, method: Method, march: March, number: int, length: float
+) -> tuple[float, float, float, float]:
+    """Values of a profile at the ends of a step, and what the method makes of them."""
+    before = profile_value(system.profiles, number, after_jump(march.clock[0]))[0]
+    after = profile_value(system.profiles, number, march.clock[0] + length)[0]
+    followed = before if isnan(march.lagged[number]) else march.lagged[number]
+    follows = ((1.0 - method.af) * after + method.af * before - method.am * followed) / (1.0 - method.am)
+    return before, after, followed, follows

@@ -1,0 +1,79 @@
+"""How long a step may be so that nothing prescribed comes and goes inside it."""
+
+from typing import Final
+
+import numpy as np
+
+from beltdyn.kernel import kernel
+from beltdyn.solve.march import Settings, allowed_error
+from beltdyn.system.arrays import System
+from beltdyn.system.missed_action import Motion, missed_action
+
+_SHORTEST: Final = 1e-7
+"""What happens within this time (s) is an impulse to any belt."""
+_BISECTIONS: Final = 3
+
+
+@kernel
+def resolved_length(system: System, settings: Settings, motion: Motion, wanted: float) -> float:
+    """Shorten a step until what its ends miss moves no rim by more than the local error allowed.
+
+    Parameters
+    ----------
+    system
+        Belt, bodies, supports.
+    settings
+        Tolerances.
+    motion
+        Beginning of the step.
+    wanted
+        Its length, s.
+
+    Returns
+    -------
+    float
+        Length of the step, s.
+    """
+    length = wanted
+    for source in range(system.pulleys.size + system.couplings.size):
+        length = _resolve(system, settings, source, motion, length)
+    return length
+
+
+@kernel(inline=True)
+def _resolve(system: System, settings: Settings, source: int, motion: Motion, wanted: float) -> float:
+    """Shorten a step until the angle or impulse of one source that its ends miss is allowed."""
+    if is_resolved(system, settings, source, motion, wanted):
+        return wanted
+    length = 0.5 * wanted
+    while length > _SHORTEST and not is_resolved(system, settings, source, motion, length):
+        length *= 0.5
+    part = 0.5 * length
+    for _ in range(_BISECTIONS):
+        if is_resolved(system, settings, source, motion, length + part):
+            length += part
+        part *= 0.5
+    return max(length, min(wanted, _SHORTEST))
+
+
+@kernel
+def is_resolved(system: System, settings: Settings, source: int, motion: Motion, length: float) -> bool:
+    """Whether the ends of a step see enough of what a source does in between."""
+    allowed = allowed_error(settings, length)
+    if source >= system.pulleys.size:
+        link = system.couplings[source - system.pulleys.size]
+        front, back = _impulse(system, link.front, allowed, length), _impulse(system, link.back, allowed, length)
+        limit = min(front, back)
+    else:
+        body = system.pulleys[source].shaft
+        free = system.bodies[body].unknown >= 0
+        limit = _impulse(system, body, allowed, length) if free else allowed / system.bodies[body].reach
+    return missed_action(system, source, motion, length, limit)[0] <= limit
+
+
+@kernel(inline=True)
+def _impulse(system: System, body: int, allowed: float, length: float) -> float:
+    """Angular impulse that moves the rim of a body by an allowed length within a step; any on a prescribed body."""
+    if system.bodies[body].unknown < 0:
+        return np.inf
+    return float(allowed * system.bodies[body].inertia / (system.bodies[body].reach * length))

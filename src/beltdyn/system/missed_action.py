@@ -1,0 +1,250 @@
+"""What acts on the shafts inside a time step, beside what a method of integration sees at the ends of the step.
+
+A step that ends on both sides of a pulse, or on the same phase of a wave, sees nothing of it.  What is prescribed is
+known everywhere: speeds, torques and schedules over time, and loads over speed and angle as far as the motion of the
+step is known beforehand.  With d(t) the difference between an action and the straight line between its values at the
+ends of the step, the step misses the integral of d: an angle of a prescribed speed, an angular impulse of a torque.
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.kernel import kernel
+from beltdyn.system.arrays import NODE, System
+from beltdyn.system.coupling import coupling_torque
+from beltdyn.system.excitation import after_jump, prescribed_motion, profile_bend, profile_value
+from beltdyn.system.machine_arrays import NO_SCHEDULE, TABLE
+from beltdyn.system.shaft_torque import shaft_torque
+
+FloatArray = NDArray[np.float64]
+
+_PARTS: Final = 4
+"""A step that holds a wave is seen in so many parts at least,"""
+_PHASE: Final = 0.4
+"""and the wave in parts of this phase, rad: the trapezoidal rule then errs by 1.3 % of it."""
+_FINEST: Final = 1e-6
+"""Shortest part of a step that is looked at, over the step."""
+
+
+class Motion(NamedTuple):
+    """The motion at the beginning of a step, from which its inside is extrapolated."""
+
+    time: float
+    position: FloatArray
+    """Coordinates, shape (6 N + D,), and their rates."""
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
+@kernel
+def missed_action(system: System, source: int, motion: Motion, length: float, limit: float) -> tuple[float, float]:
+    """Integral over a step of an action less the straight line between its values at the ends.
+
+    Parameters
+    ----------
+    system
+        The system.
+    source
+        A pulley, whose shaft has a prescribed speed or torques; or the number of pulleys and that of a coupling.
+    motion
+        Beginning of the step.
+    length
+        Length of the step, s.
+    limit
+        The search ends where the integral gets larger than this.
+
+    Returns
+    -------
+    largest, whole : float
+        Largest absolute integral from the beginning of the step to any instant in it, and the integral over the whole
+        step: rad for a prescribed speed, N m s else.
+    """
+    end = motion.time + length
+    time = next_instant(system, source, motion, motion.time, length)
+    if time >= end:
+        return 0.0, 0.0
+    first = action_at(system, source, motion, after_jump(motion.time))
+    slope = (action_at(system, source, motion, end) - first) / length
+    before, earlier, whole, largest = 0.0, motion.time, 0.0, 0.0
+    while True:
+        deviation, part = 0.0, time - earlier
+        if time < end:
+            deviation = action_at(system, source, motion, time) - first - slope * (time - motion.time)
+        if before * deviation < 0.0:
+            largest = max(largest, abs(whole + 0.5 * part * before * before / (before - deviation)))
+        whole += 0.5 * part * (before + deviation)
+        largest = max(largest, abs(whole))
+        if time >= end or largest > limit:
+            return largest, whole
+        before, earlier = deviation, time
+        time = next_instant(system, source, motion, time, length)
+
+
+@kernel
+def missed_impulses(system: System, motion: Motion, length: float, impulse: FloatArray) -> None:
+    """Angular impulses on the bodies that the ends of a step miss.
+
+    Parameters
+    ----------
+    system
+        The system.
+    motion
+        Beginning of the step.
+    length
+        Length of the step, s.
+    impulse : ndarray, shape (2, 6 N + D)
+        Overwritten by those of torques on the shafts, and those of couplings, in the places of the bodies, N m s.
+    """
+    impulse[:] = 0.0
+    first = NODE * system.nodes
+    for p in range(system.pulleys.size):
+        body = system.pulleys[p].shaft
+        if system.bodies[body].unknown >= 0:
+            impulse[0, first + body] += missed_action(system, p, motion, length, np.inf)[1]
+    for number in range(system.couplings.size):
+        whole = missed_action(system, system.pulleys.size + number, motion, length, np.inf)[1]
+        impulse[1, first + system.couplings[number].front] -= whole
+        impulse[1, first + system.couplings[number].back] += whole
+
+
+@kernel
+def missed_work(
+    system: System,
+    motion: Motion,
+    end: Motion,
+    impulse: FloatArray,
+    work: FloatArray,
+) -> None:
+    """Works over a step that the trapezoidal rule for the powers at its ends misses.
+
+    The impulse of torques on a free shaft does its work at the mean speed of the step, and the driver of a prescribed
+    body does what the kinetic energy of the body changes by.
+
+    Parameters
+    ----------
+    system
+        The system.
+    motion, end
+        Beginning and end of the step.
+    impulse : ndarray, shape (2, 6 N + D)
+        From `missed_impulses`.
+    work : ndarray, shape (7,)
+        Overwritten, in the order of `POWERS`, J.
+    """
+    work[:] = 0.0
+    first, length = NODE * system.nodes, end.time - motion.time
+    for body in range(system.bodies.size):
+        i = first + body
+        before, after = motion.velocity[i], end.velocity[i]
+        mean = 0.5 * (before + after)
+        work[6] -= impulse[1, i] * mean
+        if system.bodies[body].unknown >= 0:
+            work[1] += impulse[0, i] * mean
+        else:
+            power = before * motion.acceleration[i] + after * end.acceleration[i]
+            gain = mean * (after - before) - 0.5 * length * power
+            work[0] += system.bodies[body].inertia * gain - impulse[1, i] * mean
+    for p in range(system.pulleys.size):
+        i = first + system.pulleys[p].shaft
+        if system.bodies[system.pulleys[p].shaft].unknown >= 0:
+            before = extrapolated_torque(system, p, motion, after_jump(motion.time))
+            after = extrapolated_torque(system, p, end, end.time)
+            work[1] -= 0.25 * length * (after - before) * (end.velocity[i] - motion.velocity[i])
+
+
+def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
+    """Work that drivers do where prescribed speeds jump.
+
+    Parameters
+    ----------
+    system
+        The system.
+    before, after : ndarray, shape (6 N + D,)
+        Velocities before and after the jump.
+
+    Returns
+    -------
+    float
+        The change of the kinetic energy of prescribed bodies, J.
+    """
+    first = NODE * system.nodes
+    inertia = np.where(system.bodies.unknown < 0, system.bodies.inertia, 0.0)
+    return float(0.5 * inertia @ (after[first:] ** 2 - before[first:] ** 2))
+
+
+@kernel
+def action_at(system: System, source: int, motion: Motion, time: float) -> float:
+    """Prescribed speed, torque on a shaft or torque of a coupling at an instant of a step."""
+    first = NODE * system.nodes
+    if source >= system.pulleys.size:
+        number = source - system.pulleys.size
+        front, back = first + system.couplings[number].front, first + system.couplings[number].back
+        twist = motion.position[front] - motion.position[back]
+        rate = motion.velocity[front] - motion.velocity[back]
+        return coupling_torque(system.profiles, system.couplings, number, time, twist, rate)[0]
+    if system.bodies[system.pulleys[source].shaft].unknown < 0:
+        return prescribed_motion(system.profiles, source, time)[1]
+    return extrapolated_torque(system, source, motion, time)
+
+
+@kernel
+def extrapolated_torque(system: System, pulley: int, motion: Motion, time: float) -> float:
+    """Torque on a free shaft at an instant (s), with its motion extrapolated."""
+    i, since = NODE * system.nodes + system.pulleys[pulley].shaft, time - motion.time
+    speed = motion.velocity[i] + since * motion.acceleration[i]
+    angle = motion.position[i] + 0.5 * since * (motion.velocity[i] + speed)
+    return shaft_torque(system.profiles, system.torques, pulley, time, angle, speed)[0]
+
+
+@kernel
+def next_instant(system: System, source: int, motion: Motion, time: float, length: float) -> float:
+    """Next instant at which an action must be looked at: a kink, a part of a wave, or the end of the step."""
+    profiles, end = system.profiles, motion.time + length
+    if source >= system.pulleys.size:
+        schedule = system.couplings[source - system.pulleys.size].schedule
+        kink, frequency = profile_bend(profiles, schedule, time) if schedule != NO_SCHEDULE else (end, 0.0)
+    else:
+        kink, frequency = profile_bend(profiles, source, time)
+        body = system.pulleys[source].shaft
+        if system.bodies[body].unknown < 0:
+            mean = abs(profile_value(profiles, source, time)[0])
+            for h in range(profiles.table[source].harmonic, profiles.table[source + 1].harmonic):
+                frequency = max(frequency, profiles.harmonic[h].order * mean)
+        else:
+            i = NODE * system.nodes + body
+            rate = motion.acceleration[i]
+            speed = motion.velocity[i] + (time - motion.time) * rate
+            for load in range(system.torques.first[source], system.torques.first[source + 1]):
+                at, wave = _load_bend(system, load, time, speed, rate)
+                kink, frequency = min(kink, at), max(frequency, wave)
+    if frequency > 0.0:
+        kink = min(kink, time + min(length / _PARTS, _PHASE / frequency))
+    return min(end, max(kink, time + _FINEST * length))
+
+
+@kernel(inline=True)
+def _load_bend(system: System, load: int, time: float, speed: float, rate: float) -> tuple[float, float]:
+    """Next instant at which a load has a kink, s, and the angular frequency of its waves, rad/s."""
+    torques = system.torques
+    kink, frequency = np.inf, 0.0
+    if torques.table[load].schedule != NO_SCHEDULE:
+        kink, frequency = profile_bend(system.profiles, torques.table[load].schedule, time)
+    for h in range(torques.table[load].harmonic, torques.table[load + 1].harmonic):
+        frequency = max(frequency, torques.harmonic[h].order * abs(speed))
+    if torques.table[load].kind == TABLE and rate != 0.0:
+        first, last = torques.table[load].point, torques.table[load + 1].point
+        while first < last:  # the first point above the speed
+            middle = (first + last) // 2
+            if torques.point[middle].speed > speed:
+                last = middle
+            else:
+                first = middle + 1
+        if rate < 0.0:
+            last -= 1
+            if last >= torques.table[load].point and torques.point[last].speed >= speed:
+                last -= 1
+        if torques.table[load].point <= last < torques.table[load + 1].point:
+            kink = min(kink, time + (torques.point[last].speed - speed) / rate)
+    return kink, frequency
