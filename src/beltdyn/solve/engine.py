@@ -12,7 +12,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
 from beltdyn.solve import generalized_alpha
 from beltdyn.solve.march import March, Settings, Steps, empty_steps, new_march
-from beltdyn.system.arrays import POWERS, FloatArray, System
+from beltdyn.system.arrays import DRIVER_WORK, FloatArray, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.missed_action import jump_work
@@ -231,5 +231,5 @@ def restart(system: System, march: March, equations: Equations) -> None:
         raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
     march.auxiliary[:] = march.acceleration
     march.lagged[:] = np.nan
-    march.work[POWERS.index("driver_work")] += jump_work(system, speeds, march.velocity)
+    march.work[DRIVER_WORK] += jump_work(system, speeds, march.velocity)
     march.power[:] = equations.loads.power

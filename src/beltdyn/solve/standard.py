@@ -12,9 +12,12 @@ import numpy as np
 
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.instants import SAME
+from beltdyn.solve.march import Settings
+from beltdyn.solve.step_bound import resolved_length
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import FloatArray
+from beltdyn.system.arrays import FloatArray, System
 from beltdyn.system.first_order import FirstOrder
+from beltdyn.system.missed_action import Motion
 
 Name = Literal["cvode", "ida", "bdf", "radau"]
 
@@ -24,6 +27,10 @@ _ROOM = 64
 _RELATIVE = 1e-9
 _PART = 0.02
 """Error that one step may make, over that of the run: the errors of steps add up."""
+_FIRST_STEP = 1e-4
+"""About the first step of a solver at most, s."""
+_GROWTH = 10.0
+"""Most that solvers lengthen a step by."""
 _HUGE = 1e30
 _HIGHEST_A_STABLE_ORDER = 2
 """Of the backward differentiation formulas: higher orders feed the belt's fast vibrations, which nothing damps."""
@@ -52,16 +59,19 @@ class StandardIntegrator:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
         tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, _POSITION_TIME)
+        bound = _StepBound(task.system, _PART * self.rtol * task.velocity_scale)
         y, time = equations.pack(task.start), 0.0
         yield Chunk.start(task.start)
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy
+            equations.jump(float(np.nextafter(time, np.inf)), y)
             solver: _Solver = make(_Leg(self, equations, tolerances, time, y, stop))
+            bound.restart()
             while solver.time < stop:
                 before = solver.time
                 try:
-                    solver.step()
+                    solver.step(min(stop, bound.end(before, *equations.unpack(solver.y)[:2])))
                 except _SolverError as error:
                     raise self._give_up(before, error) from error
                 task.statistics.steps += solver.time > before  # SUNDIALS returns once more where it has interpolated
@@ -100,6 +110,30 @@ class _Leg:
         return float(np.nextafter(self.start, np.inf))
 
 
+class _StepBound:
+    """How far a step may reach without missing what is prescribed."""
+
+    def __init__(self, system: System, velocity_tolerance: float) -> None:
+        self._system = system
+        self._settings = Settings(0.0, velocity_tolerance, 0.0, np.inf)
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin anew, with small steps."""
+        self._before: tuple[float, FloatArray] | None = None
+        self._last = _FIRST_STEP
+
+    def end(self, time: float, position: FloatArray, velocity: FloatArray) -> float:
+        """Farthest end of a step from a state at a time, s."""
+        acceleration = np.zeros_like(velocity)
+        if self._before is not None and time > self._before[0]:
+            self._last = time - self._before[0]
+            acceleration = (velocity - self._before[1]) / self._last
+        self._before = time, velocity.copy()
+        motion = Motion(time, position.copy(), velocity.copy(), acceleration)
+        return time + resolved_length(self._system, self._settings, motion, _GROWTH * self._last)
+
+
 class _SolverError(Exception):
     """A library's solver has given up; the message is its own."""
 
@@ -108,9 +142,11 @@ class _Solver(Protocol):
     """A library's solver on its way from one stop to the next."""
 
     time: float
+    y: FloatArray
+    """Unknowns at this time."""
 
-    def step(self) -> None:
-        """Take one step of the solver's own choice."""
+    def step(self, farthest: float) -> None:
+        """Take one step of the solver's own choice that ends before an instant (s), or on it."""
 
     def at(self, time: float) -> FloatArray:
         """Unknowns at an instant of the last step, s."""
@@ -135,16 +171,17 @@ class _SciPy:
         )
         if kind is BDF:  # which takes no largest order, but none whose error it thinks huge
             self._solver.error_const[_HIGHEST_A_STABLE_ORDER + 1] = _HUGE
-        self.time = leg.start
+        self.time, self.y, self._longest = leg.start, leg.y, self._solver.max_step
 
-    def step(self) -> None:
+    def step(self, farthest: float) -> None:
+        self._solver.max_step = min(self._longest, farthest - self.time)
         try:
             message = self._solver.step()
         except ValueError as error:  # infinite forces
             raise _SolverError(str(error)) from error
         if self._solver.status == "failed":
             raise _SolverError(message)
-        self.time = float(self._solver.t)
+        self.time, self.y = float(self._solver.t), self._solver.y
 
     def at(self, time: float) -> FloatArray:
         return np.asarray(self._solver.dense_output()(time))
@@ -166,13 +203,13 @@ class _Sundials:
         else:
             self._solver = _ida(leg.equations, options)
             self._solver.init_step(leg.begin, leg.y, leg.equations.rates(leg.begin, leg.y))
-        self.time, self._stop = leg.start, leg.stop
+        self.time, self.y, self._stop = leg.start, leg.y, leg.stop
 
-    def step(self) -> None:
-        result = self._solver.step(self._stop, method="onestep", tstop=self._stop)
+    def step(self, farthest: float) -> None:
+        result = self._solver.step(self._stop, method="onestep", tstop=farthest)
         if not result.success:
             raise _SolverError(result.message)
-        self.time = float(np.ravel(result.t)[-1])
+        self.time, self.y = float(np.ravel(result.t)[-1]), np.array(np.atleast_2d(result.y)[-1])
 
     def at(self, time: float) -> FloatArray:
         return np.array(np.atleast_2d(self._solver.step(time).y)[-1])

@@ -177,3 +177,5 @@ POWERS = (
     "coupling_loss",
 )
 """Powers integrated over time by a run, by the name of their integral."""
+
+DRIVER_WORK = POWERS.index("driver_work")

@@ -5,10 +5,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.system.arrays import NODE, POWERS, FloatArray, RingMatrix, System
+from beltdyn.system.arrays import DRIVER_WORK, NODE, POWERS, FloatArray, RingMatrix, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
+from beltdyn.system.missed_action import jump_work
 from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
@@ -51,6 +52,13 @@ class FirstOrder:
         acceleration = np.zeros(self._half)
         for k, instant in enumerate(time):
             prescribe(self._system, float(instant), position[k], velocity[k], acceleration)
+
+    def jump(self, time: float, y: FloatArray) -> None:
+        """Bring prescribed bodies to their motion at a time (s) in unknowns, and count the work that it takes."""
+        position, velocity, work = self.unpack(y)
+        before = velocity.copy()
+        prescribe(self._system, time, position, velocity, np.zeros(self._half))
+        work[DRIVER_WORK] += jump_work(self._system, before, velocity)
 
     def tolerances(self, velocity: float, time: float) -> FloatArray:
         """Absolute tolerances of the unknowns.
