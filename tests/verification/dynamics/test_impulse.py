@@ -1,0 +1,206 @@
+"""What is prescribed acts whatever the step: impulses against momenta in closed form, for every kind of excitation.
+
+A pulley far from the belt, with 0.1 m and 0.4 kg m^2, of which everything is known.  Local errors of 0.01 m/s are
+allowed, and steps grow to tenths of a second unless something shortens them.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from beltdyn.model import Belt, Drive, Pulley
+from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.instants import Instants
+from beltdyn.solve.standard import StandardIntegrator
+from beltdyn.solve.trajectory import Chunk, Statistics, Task
+from beltdyn.system.arrays import DRIVER_WORK, POWERS
+from beltdyn.system.build import belt_system
+from beltdyn.system.state import State, straight
+
+INERTIA, RADIUS, VELOCITY, RTOL = 0.4, 0.1, 10.0, 1e-3
+ALLOWED = RTOL * VELOCITY / RADIUS
+"""Speed that the tolerance allows to be wrong, rad/s."""
+WIDTHS = [1e-4, 1e-3, 1e-2, 0.1, 1.0]
+ROUNDING = 1e-8
+"""Shortest pulses of some thousand segments are sums of large numbers."""
+TORQUE_WORK, COUPLING_LOSS = POWERS.index("torque_work"), POWERS.index("coupling_loss")
+
+
+class End(NamedTuple):
+    """How a run ended."""
+
+    speeds: Any
+    angles: Any
+    work: Any
+    steps: int
+
+
+Follow = Callable[..., End]
+
+
+@pytest.fixture(scope="module")
+def follow(drive: Drive) -> Follow:
+    """Follow a far pulley for two seconds from given speeds of its bodies."""
+
+    def run(speeds: tuple[float, ...] = (0.0,), integrator: Any = None, **keys: Any) -> End:
+        belt = Belt(**drive.belt.model_dump() | {"elements": 3})
+        pulley = Pulley(**{"name": "far", "center": (0.0, 50.0), "radius": RADIUS, "inertia": INERTIA} | keys)
+        system = belt_system(belt, [pulley], drive.contact)
+        count, rest = len(speeds), straight(system)
+        velocity = rest.velocity.copy()
+        velocity[-count:] = speeds
+        task = Task(
+            system,
+            State(rest.position, velocity, rest.acceleration),
+            Instants(0.01, 2.0),
+            _breakpoints(pulley),
+            VELOCITY,
+            Statistics(),
+        )
+        chunk = Chunk.join(list((integrator or GeneralizedAlpha(0.6, RTOL))(task)))
+        return End(chunk.velocity[-1, -count:], chunk.position[-1, -count:], chunk.work[-1], task.statistics.steps)
+
+    return run
+
+
+def _breakpoints(pulley: Pulley) -> list[float]:
+    return [t for profile in pulley.profiles for t in profile.breakpoints()]
+
+
+def pulse(width: float, number: int, height: float) -> dict[str, Any]:
+    """A triangle anywhere between two outputs."""
+    start = float(np.random.default_rng(number).uniform(0.0, 2.0 - width))
+    return {"kind": "table", "times": [start, start + 0.3 * width, start + width], "values": [0.0, height, 0.0]}
+
+
+@pytest.mark.parametrize("impulse", [0.4, 40.0, -4000.0])
+@pytest.mark.parametrize("width", WIDTHS)
+def test_pulse_of_a_torque(follow: Follow, width: float, impulse: float) -> None:
+    """The momentum is the impulse, and the work is the kinetic energy."""
+    for number in range(3):
+        end = follow(torque=pulse(width, number, 2.0 * impulse / width))
+        assert INERTIA * end.speeds[0] == pytest.approx(impulse, rel=ROUNDING)
+        assert end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * end.speeds[0] ** 2, rel=1e-3)
+        assert end.steps < 1000
+
+
+@pytest.mark.parametrize("share", [0.02, 0.2, 0.9])
+@pytest.mark.parametrize("height", [1.0, 1e3])
+def test_pulses_in_step_with_the_outputs(follow: Follow, share: float, height: float) -> None:
+    """What steps miss of one pulse would add up with a thousand that all come at the same instant of an output."""
+    begin = 0.3e-3 + 2e-3 * np.arange(999)
+    times = (begin[:, None] + share * 2e-3 * np.array([0.0, 0.5, 1.0])).ravel()
+    end = follow(torque={"kind": "table", "times": list(times), "values": [0.0, height, 0.0] * 999})
+    assert INERTIA * end.speeds[0] == pytest.approx(999 * 0.5 * height * share * 2e-3, rel=ROUNDING)
+    assert end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * end.speeds[0] ** 2, rel=1e-4)
+
+
+def test_a_measured_signal_of_100_000_points_is_quick(follow: Follow) -> None:
+    """Noise that the tolerance need not follow costs no steps, and its impulse is exact."""
+    times = np.linspace(0.0, 2.0, 100_001)
+    values = np.random.default_rng(0).normal(0.5, 1.0, times.size)
+    end = follow(torque={"kind": "table", "times": list(times), "values": list(values)})
+    assert INERTIA * end.speeds[0] == pytest.approx(float(np.trapezoid(values, times)), rel=ROUNDING)
+    assert end.steps < 1000
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_pulse_of_a_schedule(follow: Follow, width: float) -> None:
+    """A load of dry friction, switched on by a pulse while the pulley turns at 100 rad/s."""
+    load = {"kind": "resistance", "constant": 20.0, "schedule": pulse(width, 1, 1.0)}
+    end = follow((100.0,), load=[load])
+    assert INERTIA * (100.0 - end.speeds[0]) == pytest.approx(20.0 * 0.5 * width, rel=ROUNDING)
+    assert -end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * (100.0**2 - end.speeds[0] ** 2), rel=1e-3)
+
+
+@pytest.mark.parametrize("width", WIDTHS[:-1])
+def test_pulse_of_a_clutch(follow: Follow, width: float) -> None:
+    """It takes momentum from the rim to the body behind, and loses the rest of the energy."""
+    clutch = {"kind": "friction_clutch", "capacity": 20.0, "locking_damping": 5.0, "inertia": 0.1}
+    end = follow((100.0, 0.0), hub=[clutch | {"schedule": pulse(width, 2, 1.0)}])
+    assert INERTIA * (100.0 - end.speeds[0]) == pytest.approx(20.0 * 0.5 * width, rel=1e-6)
+    assert 0.1 * end.speeds[1] == pytest.approx(20.0 * 0.5 * width, rel=1e-6)
+    lost = 0.5 * INERTIA * (100.0**2 - end.speeds[0] ** 2) - 0.5 * 0.1 * end.speeds[1] ** 2
+    assert end.work[COUPLING_LOSS] == pytest.approx(lost, rel=1e-2)
+
+
+@pytest.mark.parametrize("turns", [10.0, 100.0, 333.3])
+def test_wave_of_a_load_over_the_angle(follow: Follow, turns: float) -> None:
+    """The work over the angle is the kinetic energy, also with whole turns between outputs."""
+    torque, order, amplitude, start = 2.0, 3.0, 0.8, 2.0 * np.pi * turns
+    load = {"kind": "table", "speeds": [-1e4, 1e4], "torques": [torque, torque]}
+    end = follow((start,), load=[load | {"harmonics": [{"order": order, "amplitude": amplitude, "phase": 0.4}]}])
+    swing = np.sin(order * end.angles[0] + 0.4) - np.sin(0.4)
+    work = torque * (end.angles[0] + amplitude / order * swing)
+    speed = np.sqrt(start**2 + 2.0 * work / INERTIA)
+    assert end.speeds[0] == pytest.approx(speed, abs=ALLOWED)
+    assert end.speeds[0] > start + 5.0
+    assert end.work[TORQUE_WORK] == pytest.approx(work, rel=2e-3)
+
+
+@pytest.mark.parametrize("spike", [400.0, -0.95 * 40.0])
+def test_spike_of_a_torque_over_the_speed(follow: Follow, spike: float) -> None:
+    """Crossed within a few steps: the time for each piece of the speed is known."""
+    base, low, width = 40.0, 50.0, 2.0
+    load = {"kind": "table", "torques": [0.0, spike, spike, 0.0]}
+    load["speeds"] = [low, low + 1e-6, low + width, low + width + 1e-6]
+    end = follow(torque={"kind": "constant", "value": base}, load=[load])
+    left = 2.0 - INERTIA * low / base - INERTIA * width / (base + spike)
+    assert end.speeds[0] == pytest.approx(low + width + base / INERTIA * left, abs=ALLOWED)
+    assert abs(end.speeds[0] - base / INERTIA * 2.0) > 10 * ALLOWED
+
+
+def damped(speed: dict[str, Any], **keys: Any) -> dict[str, Any]:
+    """A shaft of prescribed speed that drags the rim along by a damper of 0.4 N m s/rad."""
+    damper = {"kind": "isolator", "stiffness": 1e-9, "damping": INERTIA, "inertia": 0.3}
+    return {"speed": speed, "hub": [damper]} | keys
+
+
+@pytest.mark.parametrize("width", WIDTHS[:-1])
+def test_pulse_of_a_speed(follow: Follow, width: float) -> None:
+    """The rim answers the angle of the pulse, with a time constant of 1 s; the driver's work is stored or lost."""
+    height = 20.0 / width
+    table = pulse(width, 3, height)
+    end = follow((0.0, 0.0), **damped(table))
+    rise, fall = (np.diff(table["values"]) / np.diff(table["times"])).tolist()
+    bends = zip(table["times"], (rise, fall - rise, -fall), strict=True)
+    speed = sum(bend * (2.0 - time - 1.0 + np.exp(time - 2.0)) for time, bend in bends)
+    assert end.speeds[0] == pytest.approx(float(speed), abs=ALLOWED)
+    assert end.angles[1] == pytest.approx(0.5 * width * height)
+    gained = 0.5 * INERTIA * end.speeds[0] ** 2
+    assert end.work[DRIVER_WORK] - end.work[COUPLING_LOSS] == pytest.approx(gained, abs=0.01 * end.work[DRIVER_WORK])
+
+
+@pytest.mark.parametrize("rate", [100.0, 200.0])
+def test_harmonics_of_a_speed_in_step_with_the_outputs(follow: Follow, rate: float) -> None:
+    """Seen at the outputs alone, the speed would be the largest of its wave."""
+    mean = 2.0 * np.pi * rate
+    end = follow(
+        (0.0, mean), **damped({"kind": "constant", "value": mean}, harmonics=[{"order": 1.0, "amplitude": 0.2}])
+    )
+    assert end.speeds[0] == pytest.approx(mean * (1.0 - np.exp(-2.0)), abs=ALLOWED)
+
+
+def test_work_where_a_prescribed_speed_bends_and_jumps(follow: Follow) -> None:
+    """The driver of a body alone does what its kinetic energy changes by."""
+    zigzag = {"kind": "table", "times": [0.1003, 0.2111, 0.7123], "values": [0.0, 30.0, -12.0]}
+    assert follow((0.0,), speed=zigzag).work[DRIVER_WORK] == pytest.approx(0.5 * INERTIA * 12.0**2, rel=1e-9)
+    jump = {"kind": "step", "time": 0.7003, "before": 5.0, "value": 30.0}
+    for integrator in (None, StandardIntegrator("bdf", RTOL)):
+        end = follow((0.0,), integrator, speed=jump)
+        assert end.work[DRIVER_WORK] == pytest.approx(0.5 * INERTIA * 30.0**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["cvode", "ida", "bdf", "radau"])
+@pytest.mark.parametrize("width", [1e-4, 1e-2])
+def test_standard_integrators_see_pulses(follow: Follow, name: Any, width: float) -> None:
+    if name in ("cvode", "ida"):
+        pytest.importorskip("sksundae")
+    integrator = StandardIntegrator(name, RTOL)
+    torque = follow((0.0,), integrator, torque=pulse(width, 4, 2.0 * 40.0 / width))
+    assert torque.speeds[0] == pytest.approx(40.0 / INERTIA, abs=ALLOWED)
+    speed = follow((0.0, 0.0), integrator, **damped(pulse(width, 4, 20.0 / width)))
+    exact = follow((0.0, 0.0), **damped(pulse(width, 4, 20.0 / width)))
+    assert speed.speeds[0] == pytest.approx(exact.speeds[0], abs=ALLOWED)
