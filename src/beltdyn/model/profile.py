@@ -61,6 +61,16 @@ class Profile(Part, Generic[Value]):
         elapsed = np.where(k == 0, 0.0, t - starts[k])
         return np.asarray(c0 + c1 * elapsed + amplitude * np.cos(omega * t + phase))
 
+    def largest(self, duration: float) -> float:
+        """Largest absolute value from time zero to a time, s.
+
+        It is at an end, or at the start of a piece, before or after a jump: within a piece all kinds are monotonic.
+        """
+        starts = self.segments()[0]
+        ends = np.concatenate([[0.0, duration], starts[(starts > 0.0) & (starts < duration)]])
+        after = np.nextafter(ends, np.inf)
+        return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= duration]])))))
+
 
 class Constant(Profile[Value], Generic[Value]):
     """The same value at all times."""

@@ -215,14 +215,14 @@ def velocity_scale(drive: Drive) -> float:
         m/s; rims are driven by a prescribed speed, or by a motor up to its synchronous speed.  The second is strain at
         rest times the speed of axial waves, the velocity of a belt end that is let go.
     """
-    times = np.linspace(0.0, drive.simulation.duration, 1001)
-    rims = [radius * _driven_speed(pulley, times) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
+    duration = drive.simulation.duration
+    rims = [radius * _driven_speed(pulley, duration) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
     wave = float(np.sqrt(drive.belt.axial_stiffness / drive.belt.mass_per_length))
     return float(max(*rims, install(drive).strain * wave, 0.0))
 
 
-def _driven_speed(pulley: Pulley, times: FloatArray) -> float:
-    """Largest speed at which a pulley's shaft is driven, rad/s; zero where it is not."""
+def _driven_speed(pulley: Pulley, duration: float) -> float:
+    """Largest speed at which a pulley's shaft is driven within a time (s), rad/s; zero where it is not."""
     if pulley.speed is not None:
-        return float(np.max(np.abs(pulley.speed.at(times))))
+        return pulley.speed.largest(duration)
     return max((abs(load.synchronous_speed) for load in pulley.load if isinstance(load, Motor)), default=0.0)

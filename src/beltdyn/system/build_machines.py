@@ -161,19 +161,17 @@ def _segments(profile: Profile | None) -> tuple[FloatArray, FloatArray, FloatArr
         return np.array([-np.inf]), np.zeros((1, 5)), np.zeros(1)
     start, segment = profile.segments()
     begin = np.concatenate([[0.0], start[1:]])
-    angle = np.zeros(len(start))
-    for k in range(len(start) - 1):
-        angle[k + 1] = angle[k] + _integral(segment[k], begin[k], start[k + 1])
+    angle = np.concatenate([[0.0], np.cumsum(_integrals(segment[:-1], begin[:-1], start[1:]))])
     zero = max(int(np.searchsorted(start, 0.0, side="left")) - 1, 0)
-    return start, segment, angle - angle[zero] - _integral(segment[zero], begin[zero], 0.0)
+    return start, segment, angle - angle[zero] - _integrals(segment[zero], begin[zero], np.zeros(()))
 
 
-def _integral(segment: FloatArray, begin: float, end: float) -> float:
-    """Integral of a segment from its begin to an instant."""
-    constant, slope, amplitude, omega, phase = segment
+def _integrals(segments: FloatArray, begin: FloatArray, end: FloatArray) -> FloatArray:
+    """Integrals of segments, shape (..., 5), from where they begin to an instant each."""
+    constant, slope, amplitude, omega, phase = np.moveaxis(segments, -1, 0)
     since = end - begin
     wave = np.sinc(0.5 * omega * since / np.pi) * np.cos(0.5 * omega * (begin + end) + phase)
-    return float(since * (constant + 0.5 * slope * since + amplitude * wave))
+    return np.asarray(since * (constant + 0.5 * slope * since + amplitude * wave))
 
 
 def _torques(pulleys: Sequence[Pulley]) -> Torques:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Belt, Drive, Pulley
+from beltdyn.model.instants import Instants
 from beltdyn.solve.alpha_march import GeneralizedAlpha
-from beltdyn.solve.instants import Instants
 from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.arrays import DRIVER_WORK, POWERS
