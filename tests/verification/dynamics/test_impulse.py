@@ -38,6 +38,7 @@ class End(NamedTuple):
 
 
 Follow = Callable[..., End]
+Measured = Callable[..., None]
 
 
 @pytest.fixture(scope="module")
@@ -77,10 +78,14 @@ def pulse(width: float, number: int, height: float) -> dict[str, Any]:
 
 @pytest.mark.parametrize("impulse", [0.4, 40.0, -4000.0])
 @pytest.mark.parametrize("width", WIDTHS)
-def test_pulse_of_a_torque(follow: Follow, width: float, impulse: float) -> None:
+def test_pulse_of_a_torque(follow: Follow, measured: Measured, width: float, impulse: float) -> None:
     """The momentum is the impulse, and the work is the kinetic energy."""
     for number in range(3):
         end = follow(torque=pulse(width, number, 2.0 * impulse / width))
+        energy = 0.5 * INERTIA * end.speeds[0] ** 2
+        measured(
+            momentum=INERTIA * end.speeds[0] / impulse - 1, work=end.work[TORQUE_WORK] / energy - 1, steps=end.steps
+        )
         assert INERTIA * end.speeds[0] == pytest.approx(impulse, rel=ROUNDING)
         assert end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * end.speeds[0] ** 2, rel=1e-3)
         assert end.steps < 1000
@@ -88,12 +93,14 @@ def test_pulse_of_a_torque(follow: Follow, width: float, impulse: float) -> None
 
 @pytest.mark.parametrize("share", [0.02, 0.2, 0.9])
 @pytest.mark.parametrize("height", [1.0, 1e3])
-def test_pulses_in_step_with_the_outputs(follow: Follow, share: float, height: float) -> None:
+def test_pulses_in_step_with_the_outputs(follow: Follow, measured: Measured, share: float, height: float) -> None:
     """What steps miss of one pulse would add up with a thousand that all come at the same instant of an output."""
     begin = 0.3e-3 + 2e-3 * np.arange(999)
     times = (begin[:, None] + share * 2e-3 * np.array([0.0, 0.5, 1.0])).ravel()
     end = follow(torque={"kind": "table", "times": list(times), "values": [0.0, height, 0.0] * 999})
-    assert INERTIA * end.speeds[0] == pytest.approx(999 * 0.5 * height * share * 2e-3, rel=ROUNDING)
+    impulse = 999 * 0.5 * height * share * 2e-3
+    measured(momentum=INERTIA * end.speeds[0] / impulse - 1, steps=end.steps)
+    assert INERTIA * end.speeds[0] == pytest.approx(impulse, rel=ROUNDING)
     assert end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * end.speeds[0] ** 2, rel=1e-4)
 
 
