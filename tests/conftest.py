@@ -18,6 +18,7 @@ from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 from beltdyn.results.contact_scalars import contact_scalars
 from beltdyn.results.friction_work import FrictionWork
 from beltdyn.results.mechanics import cells
+from beltdyn.results.schema import FILTERED
 
 FloatArray = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
@@ -211,8 +212,12 @@ def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
     touched, normal, slip, places, centers = (outputs[name] for name in names)
     work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt.length), layout.elements)
     done = work.take(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
+    scalars = contact_scalars(drive, layout.belt_coordinate, touched, normal, slip, places, centers)
+    seen = outputs | scalars
     return {
-        **contact_scalars(drive, layout.belt_coordinate, touched, normal, slip, places, centers),
+        **scalars,
+        **{f"filtered_{name}": seen[name] for name in FILTERED if name in seen},
+        "filtered_time": outputs["time"],
         **{
             f"friction_work_on_{place}": np.diff(each, axis=0, prepend=0.0 * each[:1])
             for place, each in zip(("arc", "belt"), done, strict=True)

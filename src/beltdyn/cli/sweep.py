@@ -51,14 +51,15 @@ def sweep(
         Replace that file even if it is no result of an earlier run.
     """
     from beltdyn.model import load
+    from beltdyn.results.schema import PASS_BAND
 
     path = output or file.with_name(f"{file.stem}-sweep.nc")
     require_output(path, (file,), csv=False, force=force)
     drive = run_up(load(file), pulley, *_numbers(start, end, duration))
     finished = simulate_to(drive, path, force)
     if finished.outputs:
-        highest = 0.5 / drive.simulation.output_interval
-        show(f"Spectra reach {highest:.4g} Hz, half the rate of outputs. Draw them with:")
+        highest = PASS_BAND / drive.simulation.output_interval
+        show(f"Spectra reach {highest:.4g} Hz; shorten simulation.output_interval for more. Draw them with:")
         show(f'  beltdyn plot {path} --figures waterfall,orders --pulley "{pulley}"')
     return ended(finished)
 

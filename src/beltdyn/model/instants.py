@@ -50,6 +50,8 @@ class Instants:
 
     def until(self, time: float) -> int:
         """How many lie before a time (s) or on it."""
+        if time < -SAME:
+            return 0
         if time >= self.end - SAME:
             return self.count
         return min(self.count - 1, int(np.floor((time + SAME) / self.interval)) + 1)

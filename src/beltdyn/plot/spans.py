@@ -64,7 +64,8 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     run.require_output()
     time = run.dataset["time"].values
     start = 0.5 * (time[0] + time[-1]) if start is None else start
-    spectrum = derived.amplitude_spectrum(run.dataset["span_tension"].sel(time=slice(start, end)))
+    tension = run.dataset["filtered_span_tension"].sel(filtered_time=slice(start, end))
+    spectrum = derived.amplitude_spectrum(tension)
     ax = axes_or_new(ax)
     for number, name in enumerate(spectrum["span"].values):
         amplitude = spectrum[1:, number]

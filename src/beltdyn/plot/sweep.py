@@ -12,6 +12,8 @@ from beltdyn.results import Run, derived
 _RPM = 30.0 / np.pi
 _DECADES = 1e-3
 _STRONGEST = 5
+_HARMONICS = (1, 2, 3)
+"""Multiples of the frequency at which elements pass that are marked."""
 _DISTANCE = 0.4
 """Orders nearer to each other than this are one, and lower ones a trend."""
 
@@ -21,6 +23,9 @@ def waterfall(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:
     """Draw short-time spectra of a variable over the speed of a pulley.
+
+    Dashed lines are where elements of the mesh pass, and twice and three times as often: what lies on them belongs to
+    the mesh. Variables that are recorded for spectra are drawn up to where their filter keeps amplitudes.
 
     Parameters
     ----------
@@ -62,6 +67,7 @@ def waterfall(
     figure = ax.get_figure()
     assert figure is not None
     figure.colorbar(mesh, ax=ax, label=f"Amplitude [{unit(amplitude)}]")
+    _mark_elements(ax, derived.element_order(run.drive, number), amplitude)
     ax.set(xlabel=label(amplitude["frequency"]), ylabel=f"Speed of {run.drive.pulleys[number].name} [rpm]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.grid(visible=False)
@@ -73,6 +79,9 @@ def orders(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:
     """Draw the amplitudes of the strongest orders of a pulley's rotation over its speed.
+
+    Orders at which elements of the mesh pass are named, and drawn thin and grey. Variables that are recorded for
+    spectra are drawn up to the speed at which their filter keeps the order.
 
     Parameters
     ----------
@@ -104,7 +113,9 @@ def orders(
     speed = _RPM * amplitude["speed"]
     for line, place in enumerate(_strongest(amplitude)):
         order = float(amplitude["order"][place])
-        ax.plot(speed, amplitude[:, place], color=color(line), linestyle=dash(line), label=f"order {order:.3g}")
+        of_mesh = _multiple(order, derived.element_order(run.drive, number))
+        name, tint = f"order {order:.3g}{', of the mesh' * of_mesh}", "0.6" if of_mesh else color(line)
+        ax.plot(speed, amplitude[:, place], label=name, color=tint, linestyle=dash(line), lw=0.8 if of_mesh else None)
     ax.set(xlabel=f"Speed of {run.drive.pulleys[number].name} [rpm]", ylabel=f"Amplitude [{unit(amplitude)}]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.set_ylim(bottom=0.0)
@@ -116,10 +127,28 @@ def _strongest(amplitude: xr.DataArray) -> list[int]:
     """Numbers of the orders that stand out most at some speed, ascending."""
     from scipy.signal import find_peaks
 
-    highest = np.where(amplitude["order"] < _DISTANCE, 0.0, amplitude.max("speed").values)
+    highest = np.where(amplitude["order"] < _DISTANCE, 0.0, amplitude.max("speed").fillna(0.0).values)
     apart = max(1, round(_DISTANCE / float(amplitude["order"][1])))
     peaks, _ = find_peaks(highest, distance=apart)
     return sorted(peaks[np.argsort(highest[peaks])[::-1][:_STRONGEST]].tolist())
+
+
+def _multiple(order: float, elements: float) -> bool:
+    """Whether an order is one, two or three times that at which elements pass."""
+    return any(abs(order - k * elements) < _DISTANCE for k in _HARMONICS)
+
+
+def _mark_elements(ax: Axes, elements: float, amplitude: xr.DataArray) -> None:
+    """Draw lines where elements pass."""
+    speed, highest = amplitude["speed"].values, float(amplitude["frequency"][-1])
+    for k in _HARMONICS:
+        frequency = k * elements * speed / (2.0 * np.pi)
+        shown = frequency <= highest
+        if np.any(shown):
+            ax.plot(frequency[shown], _RPM * speed[shown], color="w", linestyle="--", linewidth=0.8)
+            place = frequency[shown][-1], _RPM * speed[shown][-1]
+            words = "elements pass" if k == 1 else f"{k} ×"
+            ax.annotate(words, place, (-3, -3), "data", "offset points", color="w", fontsize=8, ha="right", va="top")
 
 
 def names_of(run: Run, variable: str) -> list[str]:
@@ -142,7 +171,9 @@ def names_of(run: Run, variable: str) -> list[str]:
     ModelError
         If there is no such variable.
     """
-    known = [str(name) for name, values in run.dataset.data_vars.items() if values.ndim == 2]
+    known = [
+        str(name) for name, values in run.dataset.data_vars.items() if values.ndim == 2 and values.dims[0] == "time"
+    ]
     named = [name for name in known if run.dataset[name].dims[1] in run.dataset.coords]
     if variable not in named:
         raise ModelError(f"variable = {variable!r} is not known over time. Those are: {', '.join(named)}.")
@@ -151,11 +182,12 @@ def names_of(run: Run, variable: str) -> list[str]:
 
 
 def _series(run: Run, variable: str, of: str | int) -> xr.DataArray:
-    """One variable over time, with the name of what it belongs to."""
+    """One variable over time, filtered if it was recorded so, with the name of what it belongs to."""
     run.require_output()
     names = names_of(run, variable)
     if of in names:
         of = names.index(str(of))
     if not isinstance(of, int) or not 0 <= of < len(names):
         raise ModelError(f"of = {of!r} is not in this drive. Choose one of {', '.join(names)}.")
-    return run.dataset[variable][:, of].assign_attrs(of=names[of])
+    filtered = f"filtered_{variable}"
+    return run.dataset[filtered if filtered in run.dataset else variable][:, of].assign_attrs(of=names[of])

@@ -86,10 +86,10 @@ def open_dataset(path: Path) -> "xr.Dataset":
         raise ModelError(
             f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
         )
-    times, field_times = (dataset[name].values for name in reversed(TIMES))
+    times = dataset["time"].values
     complete = int(np.count_nonzero(np.isfinite(times)))
     last = times[complete - 1] if complete else -np.inf
-    result = _with_parts(dataset.isel(time=slice(complete), field_time=slice(np.count_nonzero(field_times <= last))))
+    result = _with_parts(dataset.isel({name: slice(np.count_nonzero(dataset[name].values <= last)) for name in TIMES}))
     result.set_close(dataset.close)
     return result
 

@@ -31,7 +31,7 @@ class Recorder(Protocol):
         ----------
         chunk : mapping
             An array for every name in `Layout.recorded`, each with one row for each new output along its first
-            dimension, ``time`` or ``field_time``.
+            dimension, one of `schema.TIMES`.
 
         Raises
         ------

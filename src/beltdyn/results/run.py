@@ -57,7 +57,7 @@ class Run:
     @property
     def fields(self) -> "xr.Dataset":
         """Everything at the instants at which fields along the belt were recorded, with ``time`` for these alone."""
-        dataset = self.dataset
+        dataset = self.dataset.drop_dims("filtered_time")
         along_belt = [name for name, variable in dataset.data_vars.items() if "field_time" in variable.dims]
         others = dataset.drop_vars([*along_belt, "field_time"]).sel(time=dataset["field_time"].values)
         fields = dataset[along_belt].rename(field_time="time")
@@ -84,7 +84,7 @@ class Run:
         self.require_output()
         times = self.dataset["field_time"].values
         number = -1 if time is None else int(np.argmin(np.abs(times - time)))
-        instant = self.dataset.isel(field_time=number).sel(time=times[number])
+        instant = self.dataset.drop_dims("filtered_time").isel(field_time=number).sel(time=times[number])
         return instant.drop_vars("field_time")
 
     @contextmanager

@@ -55,6 +55,7 @@ COORDINATES = MappingProxyType(
     {
         "time": Variable(("time",), "s", "Time"),
         "field_time": Variable(("field_time",), "s", "Time of what is recorded along the belt"),
+        "filtered_time": Variable(("filtered_time",), "s", "Time of what is recorded for spectra"),
         "pulley": Variable(("pulley",), "1", "Pulley", "str"),
         "span": Variable(("span",), "1", "Span, from pulley to pulley", "str"),
         "tensioner": Variable(("tensioner",), "1", "Tensioner, by the pulley it carries", "str"),
@@ -68,60 +69,84 @@ COORDINATES = MappingProxyType(
 )
 """Coordinates of the dataset by name; those along a dimension of size zero are left out."""
 
+_OUTPUTS = {
+    "pulley_speed": Variable(_PULLEY, "rad/s", "Pulley speed"),
+    "pulley_angle": Variable(_PULLEY, "rad", "Pulley angle"),
+    "shaft_speed": Variable(_PULLEY, "rad/s", "Shaft speed"),
+    "shaft_angle": Variable(_PULLEY, "rad", "Shaft angle"),
+    "pulley_torque": Variable(_PULLEY, "N m", "Torque of the belt on the pulley"),
+    "shaft_torque": Variable(_PULLEY, "N m", "Torque on the pulley's shaft"),
+    "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
+    "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
+    "pulley_center": Variable((*_PULLEY, "axis"), "m", "Center of the pulley"),
+    "sliding_speed": Variable(_PULLEY, "m/s", "Velocity at which the whole arc slides", SHORT),
+    "sliding_share": Variable(_PULLEY, "1", "Share of the arc that slides", SHORT),
+    "friction_power": Variable(_PULLEY, "W", "Power lost in friction"),
+    "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
+    "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position"),
+    "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed"),
+    "node_position": Variable(("field_time", "node", "axis"), "m", "Node position"),
+    "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
+    "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT),
+    "belt_tension": Variable(_ELEMENT, "N", "Belt tension"),
+    "tension_variation": Variable(_ELEMENT, "N", "Variation of the tension within an element", SHORT),
+    "span_tension": Variable(_SPAN, "N", "Span tension"),
+    "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
+    "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT),
+    "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT),
+    "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
+    "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
+    "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point", SHORT),
+    "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8"),
+    "friction_work_on_arc": Variable(_ARC, "J", "Work of friction since the output before, on the arc", SHORT),
+    "friction_work_on_belt": Variable(
+        ("field_time", "pulley", "element"), "J", "Work of friction since the output before, on the belt", SHORT
+    ),
+    "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
+    "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
+    "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy"),
+    "spring_energy": Variable(_OVER_TIME, "J", "Energy of tensioners and couplings"),
+    "potential_energy": Variable(_OVER_TIME, "J", "Potential energy of weight"),
+    "driver_work": Variable(_OVER_TIME, "J", "Work of the drivers"),
+    "torque_work": Variable(_OVER_TIME, "J", "Work of the applied torques"),
+    "friction_loss": Variable(_OVER_TIME, "J", "Loss in friction"),
+    "damping_loss": Variable(_OVER_TIME, "J", "Loss in contact damping"),
+    "material_loss": Variable(_OVER_TIME, "J", "Loss in material damping"),
+    "tensioner_loss": Variable(_OVER_TIME, "J", "Loss in tensioners"),
+    "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
+    "energy_closure": Variable(_OVER_TIME, "1", "Closure error of the energy account"),
+    "step_size": Variable(_OVER_TIME, "s", "Time step"),
+}
+
+FILTERED = (
+    *("pulley_speed", "shaft_speed", "pulley_torque", "shaft_torque", "tensioner_position"),
+    *("span_tension", "belt_speed", "mid_span_displacement"),
+)
+"""Variables that are recorded for spectra too, through a low-pass filter, with ``filtered_`` before their names."""
+
+FILTER_REACH = 12
+"""Reach of that filter before and after an output, in intervals of outputs."""
+
+PASS_BAND = 0.5 - 1.5 / FILTER_REACH
+"""Highest frequency, over the rate of outputs, whose amplitude the filter keeps to 0.1 %."""
+
+STOP_BAND = 1.0 - PASS_BAND
+"""Frequency, over the rate of outputs, from which on it leaves less than a thousandth: these would fold back below
+`PASS_BAND`."""
+
 VARIABLES = MappingProxyType(
-    {
-        "pulley_speed": Variable(_PULLEY, "rad/s", "Pulley speed"),
-        "pulley_angle": Variable(_PULLEY, "rad", "Pulley angle"),
-        "shaft_speed": Variable(_PULLEY, "rad/s", "Shaft speed"),
-        "shaft_angle": Variable(_PULLEY, "rad", "Shaft angle"),
-        "pulley_torque": Variable(_PULLEY, "N m", "Torque of the belt on the pulley"),
-        "shaft_torque": Variable(_PULLEY, "N m", "Torque on the pulley's shaft"),
-        "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
-        "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
-        "pulley_center": Variable((*_PULLEY, "axis"), "m", "Center of the pulley"),
-        "sliding_speed": Variable(_PULLEY, "m/s", "Velocity at which the whole arc slides", SHORT),
-        "sliding_share": Variable(_PULLEY, "1", "Share of the arc that slides", SHORT),
-        "friction_power": Variable(_PULLEY, "W", "Power lost in friction"),
-        "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
-        "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position"),
-        "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed"),
-        "node_position": Variable(("field_time", "node", "axis"), "m", "Node position"),
-        "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
-        "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT),
-        "belt_tension": Variable(_ELEMENT, "N", "Belt tension"),
-        "tension_variation": Variable(_ELEMENT, "N", "Variation of the tension within an element", SHORT),
-        "span_tension": Variable(_SPAN, "N", "Span tension"),
-        "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
-        "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT),
-        "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT),
-        "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
-        "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
-        "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point", SHORT),
-        "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8"),
-        "friction_work_on_arc": Variable(_ARC, "J", "Work of friction since the output before, on the arc", SHORT),
-        "friction_work_on_belt": Variable(
-            ("field_time", "pulley", "element"), "J", "Work of friction since the output before, on the belt", SHORT
-        ),
-        "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
-        "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
-        "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy"),
-        "spring_energy": Variable(_OVER_TIME, "J", "Energy of tensioners and couplings"),
-        "potential_energy": Variable(_OVER_TIME, "J", "Potential energy of weight"),
-        "driver_work": Variable(_OVER_TIME, "J", "Work of the drivers"),
-        "torque_work": Variable(_OVER_TIME, "J", "Work of the applied torques"),
-        "friction_loss": Variable(_OVER_TIME, "J", "Loss in friction"),
-        "damping_loss": Variable(_OVER_TIME, "J", "Loss in contact damping"),
-        "material_loss": Variable(_OVER_TIME, "J", "Loss in material damping"),
-        "tensioner_loss": Variable(_OVER_TIME, "J", "Loss in tensioners"),
-        "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
-        "energy_closure": Variable(_OVER_TIME, "1", "Closure error of the energy account"),
-        "step_size": Variable(_OVER_TIME, "s", "Time step"),
+    _OUTPUTS
+    | {
+        f"filtered_{name}": Variable(
+            ("filtered_time", *_OUTPUTS[name].dims[1:]), _OUTPUTS[name].units, _OUTPUTS[name].long_name, SHORT
+        )
+        for name in FILTERED
     }
 )
 """Data variables of the dataset by name; those with a dimension of size zero are left out."""
 
-TIMES = ("field_time", "time")
-"""Dimensions along which results grow: instants of what is recorded along the belt, and of all else."""
+TIMES = ("field_time", "filtered_time", "time")
+"""Dimensions along which results grow: of what is recorded along the belt, of what is filtered, and of all else."""
 
 DERIVED = ("node_position",)
 """Variables that are parts of others: they are in no file, and added when it is opened."""

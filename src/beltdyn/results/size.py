@@ -40,7 +40,7 @@ def expected_bytes(drive: Drive) -> int:
         Bytes of its file, to about a tenth; files grow by pieces of up to 32 kB for each variable.
     """
     instants, sizes = drive.simulation.instants, _sizes(drive)
-    counts = {"time": instants.count, "field_time": instants.fields}
+    counts = {"time": instants.count, "field_time": instants.fields, "filtered_time": instants.count}
     return _HEADER + sum(
         _variable_bytes(variable, tuple(sizes[dim] for dim in variable.dims[1:]), counts[variable.dims[0]])
         for variable in RECORDED.values()

@@ -20,7 +20,9 @@ from beltdyn.results import (
     Status,
     provenance,
 )
+from beltdyn.results.schema import FILTER_REACH, FILTERED
 from beltdyn.signals import uninterrupted
+from beltdyn.solve.band_limit import BandLimit
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.progress import Phase, Progress, Report
@@ -82,6 +84,8 @@ class Recording:
             else MemoryRecorder(layout, attributes)
         )
         self._instants = drive.simulation.instants
+        self._filter = BandLimit(self._instants.interval)
+        self._filtered = FILTER_REACH
         self._observer = Observer(drive, system, layout.belt_coordinate)
         self._findings: dict[str, float] = {}
         self._waiting: list[Chunk] = []
@@ -162,6 +166,7 @@ class Recording:
         states = Chunk.join(self._waiting)
         self._waiting.clear()
         seen = self._observer.see(states)
+        self._take_for_spectra(states, seen)
         if self._before is not None:
             states = Chunk.join([self._before[0], states])
             seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
@@ -176,6 +181,7 @@ class Recording:
         """Every recorded variable at some instants, by their numbers; fields at some of these."""
         instants = self._instants[numbers]
         moments = {"time": instants, "field_time": instants[self._instants.has_fields(numbers)]}
+        for_spectra = self._for_spectra()
         places = {name: states.locate(moment) for name, moment in moments.items()}
         dims = {name: RECORDED[name].dims[0] for name in seen}
         result = {name: interpolated(values, *places[dims[name]]) for name, values in seen.items()}
@@ -184,13 +190,35 @@ class Recording:
             before = self._done.get(name, done[:1])
             result[name] = np.diff(done, axis=0, prepend=before)
             self._done[name] = done[-1:] if len(done) else before
-        bodies, nodes = self._bodies(states, instants), self._nodes(states, moments["field_time"])
-        return {**result, **bodies, **nodes, **moments, "step_size": states.step[places["time"][0]]}
+        bodies, nodes = self._bodies(*states.at(instants)), self._nodes(states, moments["field_time"])
+        return {
+            **result,
+            **bodies,
+            **nodes,
+            **for_spectra,
+            **moments,
+            "step_size": states.step[places["time"][0]],
+        }
 
-    def _bodies(self, states: Chunk, instants: FloatArray) -> Arrays:
-        """Coordinates and speeds of bodies."""
+    def _take_for_spectra(self, states: Chunk, seen: Arrays) -> None:
+        """Hand what is recorded for spectra to the filter."""
+        known = seen | self._bodies(states.position, states.velocity)
+        self._channels = {name: known[name].shape[1] for name in FILTERED if name in known}
+        self._filter.take(states.time, np.hstack([known[name] for name in self._channels]))
+
+    def _for_spectra(self) -> Arrays:
+        """What is recorded for spectra: the next outputs for which all states that they need have come."""
+        end = min(self._instants.until(self._filter.known_until), self._filtered + _BLOCK)
+        instants = self._instants[np.arange(self._filtered, end)]
+        self._filtered += len(instants)
+        values = self._filter.at(instants)
+        columns = np.split(values, np.cumsum(list(self._channels.values()))[:-1], axis=1)
+        parts = zip(self._channels, columns, strict=True)
+        return {"filtered_time": instants, **{f"filtered_{name}": part for name, part in parts}}
+
+    def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
+        """Coordinates and speeds of bodies, from states of shape (k, 6 N + D)."""
         system = self._system
-        position, velocity = states.at(instants)
         nodes, pulleys = NODE * system.nodes, len(system.pulleys)
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}

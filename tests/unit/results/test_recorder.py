@@ -56,6 +56,7 @@ def test_tensioners_are_recorded_where_there_are_any(
     """In memory and in a file; without them nothing of theirs is there, and none is asked for."""
     tensioned = replace(layout, tensioners=("driven",))
     chunk = make_chunk(TIME) | {"tensioner_position": TIME[:, None], "tensioner_speed": 1.0 + 0.0 * TIME[:, None]}
+    chunk["filtered_tensioner_position"] = TIME[:, None]
     file, memory = FileRecorder(tmp_path / "tensioned.nc", tensioned, attributes), MemoryRecorder(tensioned, attributes)
     for recorder in (file, memory):
         recorder.append(chunk)
@@ -79,7 +80,7 @@ def test_result_that_lacks_the_place_of_its_tensioner_is_refused(
 
 def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
     with xr.open_dataset(result.path, engine="h5netcdf") as dataset:
-        assert dataset.encoding["unlimited_dims"] == {"time", "field_time"}
+        assert dataset.encoding["unlimited_dims"] == {"time", "field_time", "filtered_time"}
         assert dataset["time"].dtype == np.float64
         np.testing.assert_array_equal(dataset["time"], TIME)
         assert float(dataset["pulley_speed"].sel(pulley="driver")[-1]) == 12.0
@@ -88,7 +89,7 @@ def test_plain_xarray_opens_the_file(result: FileRecorder) -> None:
 
 def test_file_is_netcdf4_with_an_unlimited_time(result: FileRecorder, layout: Layout) -> None:
     with h5netcdf.File(result.path, "r") as file:
-        assert all(file.dimensions[name].isunlimited() for name in ("time", "field_time"))
+        assert all(file.dimensions[name].isunlimited() for name in ("time", "field_time", "filtered_time"))
         assert file.variables["nodal_coordinates"].dimensions == ("field_time", "node", "coordinate")
         assert all(file.variables[name].shape[0] == len(TIME) for name in layout.recorded)
 

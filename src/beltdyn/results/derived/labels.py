@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.run import Run
+from beltdyn.results.schema import TIMES
 
 
 def labelled(values: NDArray[Any], like: xr.DataArray, units: str, long_name: str) -> xr.DataArray:
@@ -45,7 +46,7 @@ def window(run: Run, start: float | None = None, end: float | None = None) -> xr
         If there is no output between the two.
     """
     run.require_output()
-    dataset = run.dataset.sel(time=slice(start, end), field_time=slice(start, end))
+    dataset = run.dataset.sel({name: slice(start, end) for name in TIMES})
     if dataset.sizes["time"] == 0:
         times = run.dataset["time"].values
         raise ModelError(

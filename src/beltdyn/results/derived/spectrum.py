@@ -7,6 +7,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.results.schema import PASS_BAND
 
 if TYPE_CHECKING:
     from scipy.signal import ShortTimeFFT
@@ -49,10 +51,11 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     """
     from scipy.signal import periodogram
 
-    time, even = _even(values["time"].values, values.values)
+    time, even = _even(instants_of(values), values.values)
     rate = (len(time) - 1) / (time[-1] - time[0])
     frequency, power = periodogram(even, rate, window, detrend="constant", scaling="spectrum", axis=0)
-    amplitude = np.sqrt(2.0 * power)
+    kept = frequency <= _highest(values, rate)
+    frequency, amplitude = frequency[kept], np.sqrt(2.0 * power[kept])
     dims = ("frequency", *values.dims[1:])
     coordinates: dict[Any, Any] = {name: values[name] for name in values.dims[1:] if name in values.coords}
     coordinates["frequency"] = ("frequency", frequency, {"units": "Hz", "long_name": "Frequency"})
@@ -82,11 +85,12 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
     ModelError
         If there are too few outputs, or the speed stays the same.
     """
-    time, even = _even(values["time"].values, values.values)
+    time, even = _even(instants_of(values), values.values)
     transform = _transform(max(_FEWEST, _OVERLAP * (len(time) // pieces)), (len(time) - 1) / (time[-1] - time[0]))
     middle, amplitude = _short_time(transform, even)
     turning = np.interp(time[0] + middle, speed["time"].values, np.abs(speed.values))
-    return _over_speed(values, amplitude, turning, "frequency", transform.f, "Hz", "Frequency")
+    kept = transform.f <= _highest(values, transform.fs)
+    return _over_speed(values, amplitude[:, kept], turning, "frequency", transform.f[kept], "Hz", "Frequency")
 
 
 def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, revolutions: int = 8) -> xr.DataArray:
@@ -121,7 +125,10 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     """
     from scipy.interpolate import CubicSpline
 
-    time, even = _even(values["time"].values, np.column_stack([values.values, np.abs(_turned(angle))]))
+    instants = instants_of(values)
+    highest = _highest(values, (len(instants) - 1) / np.ptp(instants)) if len(instants) > 1 else np.inf
+    turned = np.interp(instants, angle["time"].values, np.abs(_turned(angle)))
+    time, even = _even(instants, np.column_stack([values.values, turned]))
     turning = _longest_turning(np.gradient(even[:, 1], time))
     time, signal, turned = time[turning], even[turning, 0], even[turning, 1]
     turns = (turned[-1] - turned[0]) / (2.0 * np.pi)
@@ -138,7 +145,34 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     passed = [np.interp(center + side, turned, time) for side in (-np.pi, np.pi)]
     speed = 2.0 * np.pi / (passed[1] - passed[0])
     kept = transform.f <= largest
+    amplitude = np.where(transform.f * speed[:, None] / (2.0 * np.pi) <= highest, amplitude, np.nan)
     return _over_speed(values, amplitude[:, kept], speed, "order", transform.f[kept], "1", "Order")
+
+
+def element_order(drive: Drive, pulley: int) -> float:
+    """Give the order of a pulley's rotation at which elements of the mesh pass: how many do in one of its turns.
+
+    What stands out there and at its multiples belongs to the mesh, not to the drive.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    pulley : int
+        Number of the pulley.
+    """
+    turn = 2.0 * np.pi * float(drive.radii[pulley])
+    return drive.belt.elements * turn / drive.path.length
+
+
+def instants_of(values: xr.DataArray) -> FloatArray:
+    """Give the instants of a variable over time, s, whichever of the times of a result it is recorded at."""
+    return np.asarray(values[values.dims[0]].values)
+
+
+def _highest(values: xr.DataArray, rate: float) -> float:
+    """Highest frequency that a variable tells of, Hz: up to it the filter keeps amplitudes, if it is filtered."""
+    return PASS_BAND * rate if values.dims[0] == "filtered_time" else np.inf
 
 
 def _longest_turning(speed: FloatArray) -> slice:
