@@ -102,8 +102,10 @@ def install(drive: Drive) -> Installation:
 def _span_frequencies(drive: Drive, path: Path, tension: float) -> FloatArray:
     """First frequencies of spans, Hz; see `theory.sagging_span`.
 
-    The mass of a metre is that of the stretched belt.
+    The mass of a metre is that of the stretched belt. A slack belt does not swing: zero.
     """
+    if not tension > 0.0:
+        return np.zeros(path.count)
     belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt.length / path.length
     across = np.abs(path.span_directions @ np.array([-drive.gravity[1], drive.gravity[0]]))
     found = [
