@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from beltdyn.results import PulleySummary, Resolution, Run, SpanSummary, Summary
 
 _LARGEST_MARGIN = 100.0
+_LEAST_SHARE = 0.01
+"""Part of the power put in from which a shaft is named."""
 _NOTHING = 1e-9
 """Newtons, watts and metres a second that are rounding."""
 _RPM = 30.0 / math.pi
@@ -92,12 +94,19 @@ def _power(summary: "Summary") -> list[tuple[str, str]]:
         return []
     losses = ", ".join(f"{cause} {_number(power, 3)} W" for cause, power in balance.losses.items() if power != 0.0)
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
-    flows = f"{_number(balance.power_in)} W in, {_number(balance.power_out)} W out"
+    flows = f"{_number(balance.power_in)} W in{_givers(summary)}, {_number(balance.power_out)} W out"
     return [
         ("power", f"{flows}, {_number(balance.stored, 3)} W being stored"),
         ("efficiency", efficiency),
         ("losses", f"{_number(balance.lost, 3)} W: {losses}" if losses else "none"),
     ]
+
+
+def _givers(summary: "Summary") -> str:
+    """Which shafts put power in, where they are several."""
+    givers = [pulley for pulley in summary.pulleys if pulley.power > _LEAST_SHARE * summary.balance.power_in]
+    parts = ", ".join(f"{pulley.name} {_number(pulley.power)} W" for pulley in givers)
+    return f" ({parts})" if len(givers) > 1 else ""
 
 
 def _tensioners(summary: "Summary") -> list[tuple[str, str]]:

@@ -18,6 +18,8 @@ FloatArray = NDArray[np.float64]
 SHORTEST, LONGEST = 0.1, 0.5
 """Parts of the recorded time that the window of means is at least and at most."""
 
+_STANDS = 0.1
+"""Part of its waves in a turn of the belt below which a shaft counts as standing still."""
 _SAMPLES = 4096
 _ALIKE = 0.02
 """Mean square difference of what repeats from itself a period earlier, over its variance."""
@@ -76,7 +78,7 @@ def turn_window(recorded: Recorded, drive: Drive) -> Window:
         longest = min(LONGEST * elapsed, since_change)
         turn = _belt_turns(recorded, drive, time)
         element = Cycle(turn.phase * (drive.belt.links or drive.belt.elements), 1)
-        waves = tuple(_waves(recorded, drive, time))
+        waves = tuple(_waves(recorded, drive, turn))
         for cycles, turns in (((turn, *waves), 1), ((element, *waves), 0), ((turn,), 1), ((element,), 0)):
             window = Window(time, cycles, turns)
             begun = all(cycle.phase[-1] - cycle.phase[0] >= cycle.count for cycle in cycles)
@@ -92,17 +94,28 @@ def _belt_turns(recorded: Recorded, drive: Drive, time: FloatArray) -> Cycle:
     return Cycle(np.sign(way[-1] - way[0]) * way / drive.belt.length, 1)
 
 
-def _waves(recorded: Recorded, drive: Drive, time: FloatArray) -> Iterator[Cycle]:
+def _waves(recorded: Recorded, drive: Drive, turn: Cycle) -> Iterator[Cycle]:
     """Whole waves of harmonics over the angles of shafts, and periods of tables."""
+    time = np.asarray(recorded["time"], dtype=float)
     for number, pulley in enumerate(drive.pulleys):
         harmonics = [*pulley.harmonics, *(wave for load in pulley.load for wave in load.harmonics)]
         if harmonics:
             angle = np.asarray(recorded["shaft_angle"][:, number])
             forward = np.sign(angle[-1] - angle[0])
-            yield Cycle(forward * angle * _common_order(harmonics) / (2.0 * np.pi), 1)
+            phase = forward * angle * _common_order(harmonics) / (2.0 * np.pi)
+            yield Cycle(_without_rest(phase, turn.phase), 1)
     periods = {_repeats(profile, time) for profile in _profiles(drive)}
     for period in sorted(periods - {0.0}):
         yield Cycle(time / period, 1)
+
+
+def _without_rest(phase: FloatArray, turns: FloatArray) -> FloatArray:
+    """Let waves of a shaft that stands still go by as many in a turn of the belt as at the end: it makes none."""
+    waves, passed = np.diff(phase), np.diff(turns)
+    end = slice(-max(len(waves) // 10, 1), None)
+    ratio = waves[end].sum() / passed[end].sum() if passed[end].sum() > 0.0 else 0.0
+    going = np.where(waves > _STANDS * ratio * passed, waves, ratio * passed)
+    return np.concatenate([phase[:1], phase[0] + np.cumsum(going)])
 
 
 def _common_order(harmonics: Sequence[Harmonic]) -> float:

@@ -59,6 +59,13 @@ def test_no_load_no_efficiency(make_run: Callable[..., Run], capsys: pytest.Capt
     assert "none, nothing is taken out" in capsys.readouterr().out
 
 
+def test_several_shafts_that_put_power_in_are_named(
+    make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]
+) -> None:
+    show_summary(make_run(shaft_torque=np.tile([1.0, 2.0], (101, 1))))
+    assert "35.88 W in (driver 12 W, driven 23.88 W), 0 W out" in capsys.readouterr().out
+
+
 def test_nothing_in_a_table_is_cut_off(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, make_run: Callable[..., Run]
 ) -> None:

@@ -100,3 +100,13 @@ def test_speeds_are_angles_over_time(make_run: MakeRun, drive_text: str) -> None
     angle = np.column_stack([12.0 * time, 11.9 * time])
     run = running(make_run, steady(drive_text), 0.2, pulley_angle=angle, pulley_speed=np.full((OUTPUTS, 2), 12.0))
     assert summarize(run).pulleys[1].slip == pytest.approx(0.1 / 12.0)
+
+
+def test_a_shaft_that_stands_at_first_keeps_nothing_unknown(make_run: MakeRun, drive_text: str) -> None:
+    """As one behind a clutch: its harmonics do not make the windows before reach back to when it turns."""
+    time = np.linspace(0.0, 1.0, OUTPUTS)
+    angle = np.column_stack([40.0 * np.maximum(time - 0.6, 0.0), 40.0 * time])
+    run = running(make_run, steady(drive_text, HARMONICS), 0.1, shaft_angle=angle)
+    line = turn_window(run.dataset, run.drive).running_means(angle)
+    assert np.isfinite(line[time > 0.13]).all()
+    assert line[time < 0.4][-1, 0] == 0.0
