@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from random_drives import SEEDS, Judged, judge
 
 import beltdyn as bd
-from beltdyn.model import layer_lengths
-from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley, unequal_pulleys
+from beltdyn.model import ERROR_LIMITS, layer_lengths
+from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
 from beltdyn.report.distribution import distribution, find_peak, fit_line
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.simulate import choose_integrator
@@ -32,14 +33,6 @@ Changes = Mapping[str, Any]
 DRIVER, DRIVEN = 0, 1
 RULES = (("zone", 5), ("zone", 8), ("fixed", 5), ("fixed", 7), ("fixed", 11), ("fixed", 21), ("fixed", 31))
 COARSE_RULES = (("fixed", 5), ("fixed", 11), ("fixed", 21))
-RESOLVED = {
-    "case 1": (two_pulley(), 240, (12, 16, 20, 25, 30, 45, 60, 90)),
-    "case 1, $E$ = 1e9": (two_pulley(20, 1e9), 180, (20, 30, 60)),
-    "case 2, $\\nu_s$ = 1e4": (loaded_two_pulley(1e4), 120, (16, 20, 30, 45)),
-    "case 2, $\\nu_s$ = 1e5": (loaded_two_pulley(1e5), 120, (16, 20, 30, 45)),
-    "unequal radii": (unequal_pulleys(), 180, (20, 30, 60)),
-}
-"""Drives, their converged meshes, and coarser ones."""
 MEASUREMENTS: dict[str, Callable[[], Iterator[Row]]] = {}
 
 
@@ -333,7 +326,7 @@ def reduced_integration() -> Iterator[Row]:
                 f"{elements}",
                 *(f"{rms(speed_difference(run, converged)):.1e} rad/s" for run in runs),
                 *(f"{float(run.dataset['belt_tension'][-100:].mean()):.5g} N" for run in runs),
-                *(f"{max(run.resolution.force_errors):.2g}" for run in runs),
+                *(f"{ripple_of_force(run):.2g}" for run in runs),
             )
 
 
@@ -404,46 +397,50 @@ def contact_force_spread() -> Iterator[Row]:
 
 @measurement("resolution")
 def resolution() -> Iterator[Row]:
-    """What runs estimate of the errors of their meshes, beside the errors against converged meshes."""
+    """What runs of random drives estimate of the errors of their meshes, in %, and what these are."""
+    judged = list[Judged]()
+    yield "drive", "elements", *(f"{name}, estimated / true" for name in ERROR_LIMITS)
+    for seed in SEEDS:
+        judged += judge(seed)
+        for one in judged[-3:]:
+            errors = (f"{100 * one.estimated[name]:.2g} / {100 * one.true[name]:.2g}" for name in ERROR_LIMITS)
+            yield f"{seed}, {one.mesh}", f"{one.elements}", *errors
+    yield ()
     yield (
         "",
-        "elements",
-        "ripple of the normal force",
-        "its error",
-        "tension estimated too high by",
-        "it is",
-        "elements advised",
+        "limit",
+        "true error at most twice the estimate",
+        "largest true error over its estimate",
+        "estimate above the limit: at most ten times the true error",
+        "median of the true error over the estimate there",
+        "on the named mesh within the limit",
+        "largest there",
     )
-    for name, (drive, converged, meshes) in RESOLVED.items():
-        reference = bd.simulate(better(drive, converged, rtol=3e-4))
-        tension = mean_tension(reference)
-        for elements in meshes:
-            run = bd.simulate(better(drive, elements, rtol=3e-4))
-            yield (
-                name,
-                f"{elements}",
-                f"{max(run.resolution.force_errors):.2g}",
-                f"{max(force_errors(run, reference)):.2g}",
-                f"{run.resolution.tension_error:.1%}",
-                f"{mean_tension(run) / tension - 1:.1%}",
-                f"{run.resolution.elements}",
-            )
+    for name, limit in ERROR_LIMITS.items():
+        ratios = np.array([one.true[name] / one.estimated[name] for one in judged])
+        above = ratios[[one.estimated[name] > limit for one in judged]]
+        mesh = "for the tension" if name == "tension" else "for all"
+        named = np.array([one.true[name] for one in judged if one.mesh == mesh])
+        yield (
+            name,
+            f"{limit:.0%}",
+            f"{np.mean(ratios <= 2.0):.0%}",
+            f"{ratios.max():.2g}",
+            f"{np.mean(above >= 0.1):.0%}",
+            f"{np.median(above):.2g}",
+            f"{np.mean(named <= limit):.0%}",
+            f"{named.max():.2%}",
+        )
 
 
-def mean_tension(run: bd.Run) -> float:
-    """Mean tension of the belt in the last fifth of a run, N."""
-    tension = run.dataset["belt_tension"].values
-    return float(tension[-len(tension) // 5 :].mean())
-
-
-def force_errors(run: bd.Run, reference: bd.Run) -> list[float]:
-    """Normal force less the converged one at the place, root mean square in the middle of each arc, over its mean."""
-    errors = []
+def ripple_of_force(run: bd.Run) -> float:
+    """Normal force less a cubic along the middle of an arc, root mean square over the mean; the worst pulley's."""
+    ripples = []
     for pulley in range(len(run.drive.pulleys)):
-        (angle, force), (place, exact) = (normal_forces(one, pulley) for one in (run, reference))
-        trend = np.polynomial.Polynomial.fit(place, exact, 6)
-        errors.append(float(np.sqrt(np.mean((force - trend(angle)) ** 2)) / np.mean(exact)))
-    return errors
+        angle, force = normal_forces(run, pulley)
+        trend = np.polynomial.Polynomial.fit(angle, force, 3)
+        ripples.append(rms(force - trend(angle)) / float(np.mean(force)))
+    return max(ripples)
 
 
 def normal_forces(run: bd.Run, pulley: int) -> tuple[FloatArray, FloatArray]:

@@ -135,7 +135,6 @@ def _solver(summary: "Summary") -> list[tuple[str, str]]:
 
 
 def _mesh(resolution: "Resolution") -> str:
-    """The estimated errors of the mesh; without contact there are none of forces."""
-    known = [error for error in resolution.force_errors if math.isfinite(error)]
-    forces = f"contact forces ripple by {max(known):.1%} of their mean, " if known else ""
-    return f"{forces}tension is up to {resolution.tension_error:.1%} too high"
+    """The estimated errors of the mesh, of which some may not be known."""
+    errors = ", ".join(f"{name} {error:.1%}" for name, error in resolution.errors.items() if not math.isnan(error))
+    return f"errors of about: {errors}" if errors else "errors not known"

@@ -11,12 +11,14 @@ from beltdyn.model.load import LoadTable, Motor, Resistance
 from beltdyn.model.path import Path
 from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Harmonic, Profile, Ramp, Step, Table
 from beltdyn.model.pulley import Pulley
+from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, mesh_errors, unresolved
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.tensioner import FixedTensioner, MovingTensioner, RotaryTensioner, SlidingTensioner
 from beltdyn.model.toml_reader import json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
 
 __all__ = [
+    "ERROR_LIMITS",
     "Belt",
     "Constant",
     "Contact",
@@ -39,16 +41,20 @@ __all__ = [
     "Ramp",
     "Resistance",
     "RotaryTensioner",
+    "Running",
     "Simulation",
     "SlidingTensioner",
     "Step",
     "Table",
     "advise",
     "dumps",
+    "elements_needed",
     "install",
     "json_schema",
     "layer_lengths",
     "load",
     "loads",
+    "mesh_errors",
     "read_catalogue",
+    "unresolved",
 ]

@@ -7,7 +7,7 @@ import numpy as np
 
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
-from beltdyn.model.resolution import arc_angle, arc_error, elements_needed
+from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.model.tensioner import MovingTensioner
 from beltdyn.theory.stretch import stretch
 
@@ -136,19 +136,9 @@ def _creep_warnings(drive: Drive, installation: Installation) -> list[str]:
 
 
 def _mesh_warnings(drive: Drive, installation: Installation) -> list[str]:
-    """Compare the penetration with what an element misses the circle by; nodes alone do not miss it."""
-    if not installation.tension > 0 or drive.contact.sampling == "nodal":
+    """Judge the mesh as that of a drive that runs slowly with the tension at rest."""
+    if not installation.tension > 0:
         return []
-    needs = [
-        (elements_needed(drive.belt, radius, float(depth)), pulley, radius, depth)
-        for pulley, radius, depth in zip(drive.pulleys, drive.radii.tolist(), installation.penetrations, strict=True)
-    ]
-    needed, pulley, radius, depth = max(needs, key=lambda need: need[0])
-    if needed <= drive.belt.elements:
-        return []
-    return [
-        f'an element covers {math.degrees(arc_angle(drive.belt, radius)):.0f}° of "{pulley.name}" and misses '
-        f"its circle by {arc_error(drive.belt, radius):.1e} m, where the belt sinks in by {depth:.1e} m: "
-        f"contact forces will be uneven along the arc. For smooth ones, set belt.elements = {needed} or more; "
-        "speeds and torques need fewer."
-    ]
+    running = Running(installation.tension)
+    said = unresolved(mesh_errors(drive, running), elements_needed(drive, running))
+    return [" ".join(said).removesuffix(".") + "; speeds and torques need fewer."] if said else []

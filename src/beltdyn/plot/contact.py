@@ -69,8 +69,8 @@ def contact_forces(
     coordinate_unit = unit(run.dataset["belt_coordinate"])
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(instant['time']):.4g} s")
-    if not run.resolution.resolves(number):
-        reserve(ax, f"not resolved by {run.drive.belt.elements} elements")
+    if not run.resolution.resolves("peak pressure"):
+        reserve(ax, f"peaks not resolved by {run.drive.belt.elements} elements")
     return ax
 
 
@@ -111,8 +111,8 @@ def contact_pressure(run: Run, pulley: str | int, time: float | None = None, ax:
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     ax.set(xlabel="Angle from the inlet [°]", ylabel="On the belt [kPa]")
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(arc['time']):.4g} s")
-    if not run.resolution.resolves(number):
-        reserve(ax, f"not resolved by {run.drive.belt.elements} elements")
+    if not run.resolution.resolves("peak pressure"):
+        reserve(ax, f"peaks not resolved by {run.drive.belt.elements} elements")
     return ax
 
 

@@ -85,8 +85,8 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
         The axes.
     """
     ax = lines(run.dataset["span_tension"], axes_or_new(ax))
-    if not run.resolution.resolves_tension:
-        reserve(ax, f"up to {run.resolution.tension_error:.0%} too high with {run.drive.belt.elements} elements")
+    if not run.resolution.resolves("tension"):
+        reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.belt.elements} elements")
     return ax
 
 

@@ -12,6 +12,7 @@ from matplotlib.patches import Circle
 
 from beltdyn import plot
 from beltdyn.errors import ModelError
+from beltdyn.model import Drive
 from beltdyn.plot.gallery import _panels, _rows
 from beltdyn.results import Run, summarize
 from beltdyn.results.derived import slips
@@ -192,11 +193,8 @@ def test_figures_that_cannot_be_written_are_a_model_error(tmp_path: Path, run: R
     assert not any(path.name.startswith(".") for path in tmp_path.iterdir())
 
 
-def test_what_the_mesh_does_not_resolve_is_marked(make_run: Callable[..., Run], run: Run) -> None:
-    force, variation = run.dataset["normal_force"].values, run.dataset["tension_variation"].values
-    rippled = force * (1.0 + 0.3 * (-1.0) ** np.arange(force.shape[1]))
-    coarse = make_run(normal_force=rippled, tension_variation=4.0 * variation)
+def test_what_the_mesh_does_not_resolve_is_marked(run: Run, fine_drive: Drive) -> None:
     for draw in (lambda one: plot.contact_forces(one, "driver"), plot.span_tensions):
-        assert not draw(run).texts
-        (note,) = draw(coarse).texts
+        assert not draw(Run(run.dataset, fine_drive)).texts
+        (note,) = draw(run).texts
         assert "20 elements" in note.get_text()

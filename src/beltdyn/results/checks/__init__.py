@@ -11,7 +11,7 @@ from beltdyn.results.checks.ending import unfinished
 from beltdyn.results.checks.energy import open_account
 from beltdyn.results.checks.finding import Check, Evidence, Finding
 from beltdyn.results.checks.flutter import flutter
-from beltdyn.results.checks.mesh import unresolved
+from beltdyn.results.checks.mesh import unresolved_by_mesh
 from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
 from beltdyn.results.checks.sliding import near_gross_slip, near_gross_slip_before
 from beltdyn.results.checks.tensioners import stopped_tensioners
@@ -36,7 +36,7 @@ CHECKS: tuple[Check, ...] = (
     artificial_losses,
     flutter,
     stopped_tensioners,
-    unresolved,
+    unresolved_by_mesh,
 )
 """Every check, in the order in which its findings are shown."""
 

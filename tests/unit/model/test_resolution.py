@@ -1,0 +1,64 @@
+"""Errors of the mesh: limits of their formulas, and meshes that keep to their limits."""
+
+import pytest
+
+from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, mesh_errors, unresolved
+from beltdyn.model.resolution import element_angles
+
+
+@pytest.fixture(scope="module")
+def running(drive: Drive) -> Running:
+    return Running(install(drive).tension)
+
+
+def with_belt(drive: Drive, **changes: object) -> Drive:
+    return drive.replace(belt=drive.belt.replace(**changes))
+
+
+@pytest.mark.parametrize("name", ERROR_LIMITS)
+def test_the_named_mesh_has_twice_its_estimate_within_the_limit(drive: Drive, running: Running, name: str) -> None:
+    needed = elements_needed(drive, running)[name]
+    assert 2.0 * mesh_errors(drive, running, needed)[name] <= ERROR_LIMITS[name]
+    assert 2.0 * mesh_errors(drive, running, needed - 1)[name] > ERROR_LIMITS[name]
+
+
+def test_what_is_needed_does_not_depend_on_the_mesh(drive: Drive, running: Running) -> None:
+    needs = [elements_needed(with_belt(drive, elements=elements), running) for elements in (12, 24, 60)]
+    assert needs[0] == needs[1] == needs[2]
+
+
+def test_errors_of_fine_meshes_fall_with_their_orders(drive: Drive, running: Running) -> None:
+    coarse, fine = (mesh_errors(drive, running, elements) for elements in (4000, 8000))
+    ratios = {name: coarse[name] / fine[name] for name in coarse}
+    assert ratios["peak pressure"] == pytest.approx(8.0, rel=0.01)
+    for name in ("tension", "slip", "losses"):
+        assert ratios[name] == pytest.approx(32.0, rel=0.01)
+
+
+def test_speed_takes_pressure_from_the_pulleys(drive: Drive, running: Running) -> None:
+    """A belt that presses half as much and hardly bends sinks in over a length shorter by the root of two."""
+    soft = with_belt(drive, bending_factor=1e-6)
+    fast = Running(running.tension, 0.5 * running.tension)
+    slow_error, fast_error = (mesh_errors(soft, one, 4000)["peak pressure"] for one in (running, fast))
+    assert fast_error / slow_error == pytest.approx(2.0**1.5, rel=0.01)
+
+
+def test_a_link_counts_as_the_element_that_misses_the_circle_as_much(drive: Drive) -> None:
+    """R a^2 / 8 of a link over the angle a is R b^4 / 384 of an element over b."""
+    trusses = with_belt(drive, elements=60, discretization="truss")
+    beams = with_belt(drive, elements=30, discretization="three-node-beam")
+    link = drive.belt.length / (60 * drive.radii)
+    for chain in (trusses, beams):
+        angles = element_angles(chain, chain.belt.elements)
+        assert angles**4 / 384 == pytest.approx(link**2 / 8)
+        assert all(need % 3 == 0 for need in elements_needed(chain, Running(20.0)).values())
+
+
+def test_said_are_errors_and_meshes_from_the_most_demanding_on() -> None:
+    errors = dict.fromkeys(ERROR_LIMITS, 0.0) | {"tension": 0.123, "peak pressure": 2.0, "losses": float("nan")}
+    needed = dict.fromkeys(ERROR_LIMITS, 20) | {"tension": 47, "peak pressure": 90}
+    assert unresolved(errors, needed) == (
+        "the mesh does not resolve peak pressure (error above 100%), tension (error of about 12%).",
+        "Set belt.elements = 90 for peak pressure within 20%, 47 for tension within 1%.",
+    )
+    assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed) is None
