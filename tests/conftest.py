@@ -207,6 +207,7 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "material_loss": still,
         "tensioner_loss": still,
         "coupling_loss": still,
+        "numerical_loss": still,
         "energy_closure": still + 1e-4,
         "step_size": still + 1e-3,
     }

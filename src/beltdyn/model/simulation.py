@@ -34,7 +34,7 @@ class Simulation(Part):
     spectral_radius: Ratio = Field(
         0.6, ge=0, le=1, description="the spectral radius of generalized_alpha at infinite frequency, 0 to 1"
     )
-    rtol: Ratio = Field(1e-3, gt=0, lt=1, description="the relative tolerance of a time step, below 1")
+    rtol: Ratio = Field(1e-4, gt=0, lt=1, description="the relative tolerance of a time step, below 1")
     max_step: Time | None = Field(None, gt=0, description="the longest time step, in s")
     joint: Literal["shared_node", "multipliers"] = Field(
         "shared_node",

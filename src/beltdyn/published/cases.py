@@ -60,6 +60,7 @@ def two_pulley(elements: int = 20, youngs_modulus: float = 1e8, creep_rate_facto
     return drive.replace(
         belt=drive.belt.replace(elements=elements, youngs_modulus=youngs_modulus),
         contact=drive.contact.replace(integration="fixed", normal_law="published", creep_rate_factor=creep_rate_factor),
+        simulation=drive.simulation.replace(rtol=1e-3),
     )
 
 

@@ -15,6 +15,7 @@ LOSSES: Mapping[str, str] = {
     "material_loss": "belt material",
     "tensioner_loss": "tensioners",
     "coupling_loss": "couplings",
+    "numerical_loss": "time integration",
 }
 """Recorded works of the losses, and their causes in words."""
 

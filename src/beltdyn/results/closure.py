@@ -1,8 +1,9 @@
-"""How far the energy account of a run was open at the most."""
+"""How far the energy account of a run was open at the most, and what the time integrator took."""
 
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.results.recorded import Recorded
 
@@ -38,3 +39,45 @@ def largest_closure(recorded: Recorded) -> Closure:
     errors = np.asarray(recorded["energy_closure"])
     worst = int(np.argmax(np.abs(errors)))
     return Closure(float(recorded["time"][worst]), float(errors[worst]))
+
+
+def largest_numerical_share(recorded: Recorded) -> Closure:
+    """Largest share of the energy put in that the damping of the time integrator took.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded, with at least one output.
+
+    Returns
+    -------
+    Closure
+        The share of largest magnitude with its sign, and its instant.
+    """
+    taken, given = np.asarray(recorded["numerical_loss"]), energy_put_in(recorded)
+    shares = np.divide(taken, given, out=np.zeros_like(given), where=given > 0.0)
+    worst = int(np.argmax(np.abs(shares)))
+    return Closure(float(recorded["time"][worst]), float(shares[worst]))
+
+
+def energy_put_in(recorded: Recorded) -> NDArray[np.float64]:
+    """Energy put in up to each output: what was stored at first, and the largest works of each kind by then.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded, with at least one output.
+
+    Returns
+    -------
+    ndarray, shape (outputs,)
+        J; works of drivers and torques, and of springs and weight, either way.
+    """
+
+    def values(name: str) -> NDArray[np.float64]:
+        return np.asarray(recorded[name], dtype=np.float64)
+
+    stored = sum(float(values(name)[0]) for name in ("kinetic_energy", "strain_energy", "penalty_energy"))
+    kinds = ("driver_work", "torque_work", "spring_energy", "potential_energy")
+    done = np.abs(np.stack([values(name) - values(name)[0] for name in kinds]))
+    return np.asarray(stored + np.maximum.accumulate(done, axis=1).sum(axis=0))

@@ -114,6 +114,7 @@ _OUTPUTS = {
     "material_loss": Variable(_OVER_TIME, "J", "Loss in material damping"),
     "tensioner_loss": Variable(_OVER_TIME, "J", "Loss in tensioners"),
     "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
+    "numerical_loss": Variable(_OVER_TIME, "J", "Loss in time integration"),
     "energy_closure": Variable(_OVER_TIME, "1", "Closure error of the energy account"),
     "step_size": Variable(_OVER_TIME, "s", "Time step"),
 }

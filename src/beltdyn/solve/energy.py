@@ -30,8 +30,8 @@ class EnergyAccount:
             E, J.
         potential : ndarray, shape (k, 2)
             V of springs and of weight, J.
-        work : ndarray, shape (k, 7)
-            In the order of `POWERS`: driver work, torque work, then losses, J.
+        work : ndarray, shape (k, 8)
+            In the order of `ENERGY_WORKS`: driver work, torque work, then losses, J.
 
         Returns
         -------

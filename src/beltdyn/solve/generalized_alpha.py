@@ -15,9 +15,10 @@ from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import follow_profiles
 from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import try_step
-from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
+from beltdyn.solve.march import FAILED, REJECTED, SOLVABLE, STEPS, March, Settings, Steps, allowed_error, motion_of
 from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import ENERGY_WORKS, NODE, System
+from beltdyn.system.end_of_step import find_loads, numerical_loss
 from beltdyn.system.missed_action import Motion, missed_work
 from beltdyn.system.motion import Equations
 
@@ -37,7 +38,13 @@ _AIM: Final = 0.8
 _LIMIT: Final = 4.0
 """Steps are aimed at this part of the local error allowed, and taken up to this multiple: errors jump as nodes meet
 pulleys, and a step tried again costs more than it gains."""
+_CAUTION: Final = 0.7
+_TRUST: Final = 1.02
+"""Where Newton's method has failed, steps are no longer than this part of the one that failed, and each that is taken
+lets the next be longer by this factor: where friction is steep it fails from a length on, again and again, and a
+failure costs as much as three steps."""
 _SMALLEST_STEP: Final = 1e-11
+_NUMERICAL: Final = ENERGY_WORKS.index("numerical_loss")
 
 
 @kernel
@@ -86,7 +93,7 @@ def advance(
         iterations = try_step(system, settings, method, march, step, equations)
         if iterations == 0:
             march.counts[FAILED] += 1
-            clock[1] = 0.5 / STRETCH * step
+            clock[1], clock[SOLVABLE] = 0.5 / STRETCH * step, _CAUTION * step
         else:
             error = _local_error(system, settings, method, march, step)
             growth = _GROWTH if iterations <= _EASY else 1.0
@@ -96,9 +103,10 @@ def advance(
                 factor /= STRETCH
             else:
                 march.counts[STEPS] += 1
+                clock[SOLVABLE] *= _TRUST
                 _accept(system, method, march, equations, step, stop)
                 filled = _keep(march, step, steps, filled)
-            clock[1] = min(settings.max_step, factor * step)
+            clock[1] = min(settings.max_step, clock[SOLVABLE], factor * step)
         if clock[1] < _SMALLEST_STEP:
             return STEP_TOO_SMALL, filled
     return REACHED, filled
@@ -134,9 +142,11 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
 
 @kernel(inline=True)
 def _accept(system: System, method: Method, march: March, equations: Equations, step: float, stop: float) -> None:
-    """Move to the end of the step."""
-    power = equations.loads.power
+    """Move to the end of the step, and do the energy account."""
+    work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
     end = Motion(march.clock[0] + step, march.trial[0], march.trial[1], march.trial[2])
+    find_loads(system, end, work, corner, equations.loads)
+    march.work[_NUMERICAL] += numerical_loss(system, motion_of(march), end, march.impulse, work)
     missed_work(system, motion_of(march), end, march.impulse, march.missed)
     follow_profiles(system, method, march, step)
     for k in range(power.size):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, POWERS, FloatArray
+from beltdyn.system.arrays import ENERGY_WORKS, NODE, POWERS, FloatArray
 from beltdyn.system.missed_action import Motion
 
 IntArray = NDArray[np.int64]
@@ -17,7 +17,8 @@ FAILED: Final = 2
 ITERATIONS: Final = 3
 
 SLOWEST: Final = 2
-"""Place in `March.clock`."""
+SOLVABLE: Final = 3
+"""Places in `March.clock`."""
 
 
 class Settings(NamedTuple):
@@ -41,7 +42,8 @@ class March(NamedTuple):
     """The moving state of an integration, and what it tries next; everything is changed in place."""
 
     clock: FloatArray
-    """Time and next step, s, and the largest Newton change of the last step over the one before it; shape (3,)."""
+    """Time and next step, s, the largest Newton change of the last step over the one before it, and the length up to
+    which Newton's method is likely to solve a step, s; shape (4,)."""
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
@@ -49,7 +51,7 @@ class March(NamedTuple):
     """A of the method."""
     multipliers: FloatArray
     work: FloatArray
-    """Time integrals of the powers in the loads, J, shape (7,)."""
+    """In the order of `ENERGY_WORKS`, J, shape (8,)."""
     power: FloatArray
     """These powers at the present time, W, shape (7,)."""
     impulse: FloatArray
@@ -76,7 +78,7 @@ class Steps(NamedTuple):
     velocity: FloatArray
     """Alike."""
     work: FloatArray
-    """Shape (k, 7)."""
+    """In the order of `ENERGY_WORKS`, J, shape (k, 8)."""
 
 
 @kernel
@@ -106,7 +108,7 @@ def empty_steps(count: int, size: int) -> Steps:
         step=np.empty(count),
         position=np.empty((count, size)),
         velocity=np.empty((count, size)),
-        work=np.empty((count, len(POWERS))),
+        work=np.empty((count, len(ENERGY_WORKS))),
     )
 
 
@@ -129,13 +131,13 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
     """
     size = position.size
     return March(
-        clock=np.array((time, step, 1.0)),
+        clock=np.array((time, step, 1.0, np.inf)),
         position=position.copy(),
         velocity=velocity.copy(),
         acceleration=np.zeros(size),
         auxiliary=np.zeros(size),
         multipliers=np.zeros(NODE),
-        work=np.zeros(len(POWERS)),
+        work=np.zeros(len(ENERGY_WORKS)),
         power=np.zeros(len(POWERS)),
         impulse=np.zeros((2, size)),
         lagged=np.full(profiles, np.nan),

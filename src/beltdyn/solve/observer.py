@@ -11,7 +11,7 @@ from beltdyn.results.friction_work import FrictionWork
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import POWERS, FloatArray, System
+from beltdyn.system.arrays import ENERGY_WORKS, FloatArray, System
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.observe import observe
 
@@ -65,7 +65,7 @@ class Observer:
             **seen,
             **scalars,
             **dict(zip(WORKS, works, strict=True)),
-            **dict(zip(POWERS, states.work.T, strict=True)),
+            **dict(zip(ENERGY_WORKS, states.work.T, strict=True)),
             "energy_closure": self._energy.closure(stored, potential, states.work),
         }
 

@@ -15,7 +15,7 @@ from beltdyn.model.instants import SAME
 from beltdyn.solve.march import Settings
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import FloatArray, System
+from beltdyn.system.arrays import ENERGY_WORKS, POWERS, FloatArray, System
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.missed_action import Motion
 
@@ -259,4 +259,5 @@ def _chunk(equations: FirstOrder, solver: _Solver, time: FloatArray, before: flo
     position, velocity, work = equations.unpack(y)
     equations.prescribe(time, position, velocity)
     step = np.full(len(time), solver.time - before)
+    work = np.pad(work, ((0, 0), (0, len(ENERGY_WORKS) - len(POWERS))))  # their own damping is not known
     return Chunk(time, step, position, velocity, work, reached=solver.time)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beltdyn.model import Drive, Motor, Pulley, install
 from beltdyn.model.instants import SAME, Instants
-from beltdyn.system.arrays import POWERS, FloatArray, System
+from beltdyn.system.arrays import ENERGY_WORKS, FloatArray, System
 from beltdyn.system.state import State
 
 IntArray = NDArray[np.intp]
@@ -27,8 +27,8 @@ class Chunk:
         Length of the step that ends there, s; zero at the start.
     position, velocity : ndarray, shape (k, 6 N + D)
         Nodal coordinates and coordinates of bodies, and their rates.
-    work : ndarray, shape (k, 7)
-        Time integrals of the powers in `system.arrays.POWERS`, J.
+    work : ndarray, shape (k, 8)
+        In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
     reached : float
         Time that the solver has reached, s.
     """
@@ -44,7 +44,7 @@ class Chunk:
     def start(cls, state: State) -> Self:
         """The state at time zero, before the first step."""
         zero = np.zeros(1)
-        return cls(zero, zero, state.position[None], state.velocity[None], np.zeros((1, len(POWERS))), 0.0)
+        return cls(zero, zero, state.position[None], state.velocity[None], np.zeros((1, len(ENERGY_WORKS))), 0.0)
 
     @classmethod
     def join(cls, chunks: Sequence[Self]) -> Self:

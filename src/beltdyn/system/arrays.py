@@ -179,3 +179,6 @@ POWERS = (
 """Powers integrated over time by a run, by the name of their integral."""
 
 DRIVER_WORK = POWERS.index("driver_work")
+
+ENERGY_WORKS = (*POWERS, "numerical_loss")
+"""Their integrals, and what the damping of the time integrator takes."""

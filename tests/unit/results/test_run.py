@@ -12,6 +12,7 @@ from beltdyn.model import Drive
 from beltdyn.results import FileRecorder, Layout, Run, open_run, summarize
 from beltdyn.results.checks import Evidence
 from beltdyn.results.checks.tensioners import stopped_tensioners
+from beltdyn.results.closure import energy_put_in
 
 MakeRun = Callable[..., Run]
 
@@ -83,6 +84,16 @@ def test_energy_account_that_does_not_close_is_said(make_run: MakeRun) -> None:
     errors[3:5] = 0.004, -0.023
     (warning,) = (text for text in make_run(outputs=11, energy_closure=errors).warnings if "energy" in text)
     assert warning.startswith("the energy account is open by -2.30% of the energy put in at t = 0.4 s")
+
+
+def test_energy_that_the_integrator_takes_is_said(make_run: MakeRun, run: Run) -> None:
+    """As a part of what was stored at first and put in by then."""
+    put_in = energy_put_in(run.dataset)
+    taken = np.where(np.arange(len(put_in)) == 3, 0.02, 0.002) * put_in
+    (warning,) = (text for text in make_run(numerical_loss=taken).warnings if "integrator" in text)
+    time = float(run.dataset["time"][3])
+    assert warning.startswith(f"the damping of the time integrator took 2.00% of the energy put in by t = {time:.4g} s")
+    assert "Reduce simulation.rtol" in warning
 
 
 def test_energy_account_without_a_number_is_said(make_run: MakeRun) -> None:

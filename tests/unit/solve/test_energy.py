@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from beltdyn.solve.energy import EnergyAccount
-from beltdyn.system.arrays import POWERS
+from beltdyn.system.arrays import ENERGY_WORKS
 
 STORED = np.array([10.0, 14.0, 13.0, 11.0])
 WORK = np.array(
     [
-        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-        [8.0, -1.0, 1.0, 0.5, 0.4, 0.3, 0.3],
-        [9.0, -2.0, 2.0, 1.0, 0.4, 0.3, 0.3],
-        [7.0, -1.0, 3.0, 1.1, 0.4, 0.3, 0.3],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [8.0, -1.0, 1.0, 0.5, 0.4, 0.2, 0.2, 0.2],
+        [9.0, -2.0, 2.0, 1.0, 0.4, 0.2, 0.2, 0.2],
+        [7.0, -1.0, 3.0, 1.1, 0.4, 0.2, 0.2, 0.2],
     ]
 )
 POTENTIAL = np.zeros((4, 2))
@@ -33,7 +33,7 @@ def test_chunks_do_not_matter(cut: int) -> None:
 
 def test_nothing_put_in() -> None:
     np.testing.assert_array_equal(
-        EnergyAccount().closure(np.zeros(3), np.zeros((3, 2)), np.zeros((3, len(POWERS)))), 0.0
+        EnergyAccount().closure(np.zeros(3), np.zeros((3, 2)), np.zeros((3, len(ENERGY_WORKS)))), 0.0
     )
 
 

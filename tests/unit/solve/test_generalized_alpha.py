@@ -9,7 +9,7 @@ from beltdyn.solve.engine import advance, restart
 from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
 from beltdyn.solve.march import FAILED, STEPS, March, Settings, empty_steps, new_march
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import POWERS, System
+from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
@@ -41,7 +41,7 @@ def test_states_within_steps_are_exact_for_constant_acceleration(spinning: Syste
     position, velocity = chunk.at(times)
     np.testing.assert_allclose(position[:, -1], 0.5 * ACCELERATION * times**2, atol=ROUNDING)
     np.testing.assert_allclose(velocity[:, -1], ACCELERATION * times, atol=ROUNDING)
-    works = np.zeros((len(chunk.time), len(POWERS)))
+    works = np.zeros((len(chunk.time), len(ENERGY_WORKS)))
     works[:, 1] = 2.0 * 0.5 * ACCELERATION * chunk.time**2  # torque times angle
     np.testing.assert_allclose(chunk.work, works, atol=ROUNDING)
 

@@ -11,7 +11,7 @@ from beltdyn.model import Drive
 from beltdyn.results import open_run
 from beltdyn.solve.recording import Recording, result_layout
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import POWERS, System
+from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -59,7 +59,7 @@ def test_empty_chunks_only_tell(change: Change, system: System) -> None:
     told: list[float] = []
     with Recording(change(), system, None, "title", lambda progress: told.append(progress.time)) as recording:
         none = np.empty((0, 62))
-        recording.take(Chunk(np.empty(0), np.empty(0), none, none, np.empty((0, len(POWERS))), reached=0.5))
+        recording.take(Chunk(np.empty(0), np.empty(0), none, none, np.empty((0, len(ENERGY_WORKS))), reached=0.5))
     assert told[-1] == 0.5
     assert recording.run().dataset.sizes["time"] == 0
 

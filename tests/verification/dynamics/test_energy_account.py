@@ -8,6 +8,7 @@ import xarray as xr
 
 from beltdyn import simulate
 from beltdyn.model import Drive
+from beltdyn.results.closure import energy_put_in
 
 Change = Callable[..., Drive]
 Measured = Callable[..., None]
@@ -55,6 +56,32 @@ def test_no_law_no_loss(small: Drive, change: Change, contact: dict[str, float],
     for name in ("friction_loss", "damping_loss"):
         assert (float(run[name][-1]) > 0.0) == (name in lost)
     assert closure(run) < 3e-3  # five points an element do not resolve the contact of ten elements thrown on a pulley
+
+
+def test_what_the_integrator_takes_is_told_apart(small: Drive, change: Change, measured: Measured) -> None:
+    """A belt that rings without friction: long steps damp it, which is no gap in the account of forces."""
+    quiet = change(
+        small,
+        contact={"friction": 0.0, "quadrature_points": 10},
+        simulation={"start": "laid", "duration": 0.03, "rtol": 1e-2},
+    )
+    run = simulate(quiet).dataset
+    taken = run.numerical_loss.values / energy_put_in(run)
+    measured(taken=float(taken[-1]), closure=closure(run))
+    assert taken[-1] > 0.03
+    assert closure(run) < 0.25 * taken[-1]
+
+
+def test_numerical_loss_falls_with_the_tolerance(small: Drive, change: Change, measured: Measured) -> None:
+    rtols = (1e-2, 1e-3, 1e-4)
+    runs = [
+        simulate(change(small, contact={"friction": 0.0}, simulation={"start": "laid", "duration": 0.01, "rtol": rtol}))
+        for rtol in rtols
+    ]
+    taken = [float(run.dataset.numerical_loss[-1]) for run in runs]
+    measured(**{f"rtol_{rtol:.0e}": value for rtol, value in zip(rtols, taken, strict=True)})
+    assert taken[1] < 0.5 * taken[0]
+    assert taken[2] < 0.5 * taken[1]
 
 
 def test_quadrature_of_the_zone_sets_the_floor(small: Drive, change: Change, measured: Measured) -> None:
