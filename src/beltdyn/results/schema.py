@@ -129,10 +129,10 @@ FILTER_REACH = 12
 """Reach of that filter before and after an output, in intervals of outputs."""
 
 PASS_BAND = 0.5 - 1.5 / FILTER_REACH
-"""Highest frequency, over the rate of outputs, whose amplitude the filter keeps to 0.1 %."""
+"""Highest frequency, over the rate of outputs, whose amplitude the filter keeps to 0.02 %."""
 
 STOP_BAND = 1.0 - PASS_BAND
-"""Frequency, over the rate of outputs, from which on it leaves less than a thousandth: these would fold back below
+"""Frequency, over the rate of outputs, from which on it leaves less than 0.02 % (-75 dB): these would fold back below
 `PASS_BAND`."""
 
 VARIABLES = MappingProxyType(

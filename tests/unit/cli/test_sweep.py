@@ -41,7 +41,7 @@ def test_a_sweep_says_which_figures_to_draw(
     drive, path = simulated
     assert path == drive_file.with_name("drive-sweep.nc")
     assert drive.pulleys[0].speed.at([2.2])[0] == pytest.approx(200.0 * np.pi)
-    assert "Spectra reach 500 Hz" in output
+    assert "Spectra reach 375 Hz" in output
     assert f'beltdyn plot {path} --figures waterfall,orders --pulley "driver"' in output.replace("\n", "")
 
 
