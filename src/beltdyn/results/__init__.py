@@ -1,6 +1,8 @@
 """The results of a run: one labelled dataset, its file, and what is derived from it."""
 
-from beltdyn.results import derived
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks import Finding
 from beltdyn.results.layout import Layout
@@ -13,6 +15,9 @@ from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARI
 from beltdyn.results.size import describe_size, expected_bytes, require_room
 from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tables import write_csv
+
+if TYPE_CHECKING:
+    from beltdyn.results import derived
 
 __all__ = [
     "COORDINATES",
@@ -43,3 +48,10 @@ __all__ = [
     "summarize",
     "write_csv",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Load what needs xarray when it is asked for."""
+    if name == "derived":
+        return import_module("beltdyn.results.derived")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
