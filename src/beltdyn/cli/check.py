@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from beltdyn.cli.console import show, show_facts, show_table, show_warnings
+from beltdyn.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive, Installation
@@ -30,10 +31,20 @@ def check(
     force
         Replace other files too.
     """
-    from beltdyn.model import advise, install, load
+    from beltdyn.errors import ConvergenceError
+    from beltdyn.model import advise, install, load, unstable_balance
+    from beltdyn.solve import bring_to_rest
 
     drive = load(file)
-    installation = install(drive)
+    failure: ConvergenceError | None = None
+    unstable: tuple[str, ...] = ()
+    try:
+        with progress_bar() as report:
+            rest = bring_to_rest(drive, report)
+        drive, installation, unstable = rest.drive, rest.installation, rest.unstable
+    except ConvergenceError as error:
+        failure, installation = error, install(drive)
+        show("No static equilibrium was found. These are estimates by hand, without bending and weight.\n")
     show_facts(_facts(drive, installation))
     show_table(
         "\nPulleys",
@@ -43,15 +54,21 @@ def check(
     show_table("\nPulleys at rest", ("", "penetration", "hub load", "direction"), _loads(drive, installation))
     show_table("\nSpans at rest", ("", "length", "tension", "first frequency"), _spans(drive, installation))
     if installation.tensioner_positions.size:
-        show_table("\nTensioners at rest", ("", "position", "spring", "stops"), _tensioners(drive, installation))
+        show_table(
+            "\nTensioners at rest",
+            ("", "position", "spring", "stops", "other balances"),
+            _tensioners(drive, installation),
+        )
     show()
-    show_warnings(advise(drive, installation))
+    show_warnings([*map(unstable_balance, unstable), *advise(drive, installation)])
     if figure is None:
         show(f"To see the layout: beltdyn check {file} --figure layout.png")
-        return
-    from beltdyn import plot
+    else:
+        from beltdyn import plot
 
-    show(f"Layout: {plot.save_layout(drive, figure, installation, force)}")
+        show(f"Layout: {plot.save_layout(drive, figure, installation, force)}")
+    if failure:
+        raise failure
 
 
 def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]]:
@@ -63,7 +80,7 @@ def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]
         ("installed strain", f"{installation.strain:.4%}"),
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
         ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
-        ("tension at rest", f"about {installation.tension:.4g} N{_lost(drive, installation)}"),
+        ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation)}"),
         *_taken_up(drive),
         ("results of a run", f"about {describe_size(drive)}"),
     ]
@@ -76,11 +93,13 @@ def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
     return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
 
 
-def _lost(drive: "Drive", installation: "Installation") -> str:
+def _origin(drive: "Drive", installation: "Installation") -> str:
+    asked = ", as asked for" * (drive.installed_tension is not None)
     if installation.tensioner_positions.size:
-        return ", which tensioners set"
-    asked = ", as asked for" * drive.tension_given
-    return f"{asked}: {1 - installation.tension / installation.laid_tension:.1%} is lost by sinking into the pulleys"
+        return f"{asked}, which tensioners set"
+    gained = installation.tension / installation.laid_tension - 1
+    change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than laid"
+    return f"{asked}: {change}, since the belt sinks into the pulleys and resists bending"
 
 
 def _layers(drive: "Drive", installation: "Installation") -> str:
@@ -133,20 +152,37 @@ def _spans(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]
 
 
 def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
-    from beltdyn.model import RotaryTensioner, SlidingTensioner
+    from beltdyn.model import MovingTensioner, RotaryTensioner
+    from beltdyn.model.tensioner import place_of
 
     rows = list[tuple[str, ...]]()
-    moving = [one for one in drive.tensioners if isinstance(one, RotaryTensioner | SlidingTensioner)]
-    for tensioner, position in zip(moving, installation.tensioner_positions.tolist(), strict=True):
-        rotary = isinstance(tensioner, RotaryTensioner)
-        size, unit = (math.degrees, "°") if rotary else (lambda value: value, " m")
-        stops = tensioner.stops or ()
+    moving = [one for one in drive.tensioners if isinstance(one, MovingTensioner)]
+    others = other_balances(drive, installation)
+    for tensioner, position, other in zip(moving, installation.tensioner_positions.tolist(), others, strict=True):
+        unit = "N m" if isinstance(tensioner, RotaryTensioner) else "N"
         rows.append(
             (
                 tensioner.pulley,
-                f"{size(position):.4g}{unit}",
-                f"{tensioner.preload - tensioner.rate * position:.4g} {'N m' if rotary else 'N'}",
-                " to ".join(f"{size(stop):.4g}{unit}" for stop in stops),
+                place_of(tensioner, position),
+                f"{tensioner.preload - tensioner.rate * position:.4g} {unit}",
+                " to ".join(place_of(tensioner, stop) for stop in tensioner.stops or ()),
+                other or "none",
             )
         )
     return rows
+
+
+def other_balances(drive: "Drive", installation: "Installation") -> list[str]:
+    """Where tensioners balance the belt too, one text for each spring-loaded tensioner, empty without any."""
+    from beltdyn.model import MovingTensioner, tensioner_balances
+    from beltdyn.model.tensioner import place_of
+
+    moving = [one for one in drive.tensioners if isinstance(one, MovingTensioner)]
+    return [
+        ", ".join(
+            f"{place_of(tensioner, balance.position)} ({'stable' if balance.stable else 'not stable'})"
+            for balance in balances
+            if not balance.here
+        )
+        for tensioner, balances in zip(moving, tensioner_balances(drive, installation), strict=True)
+    ]

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from beltdyn.cli.check import other_balances
 from beltdyn.cli.console import show
 from beltdyn.cli.progress import progress_bar
 from beltdyn.cli.summary import show_summary
@@ -15,7 +16,7 @@ def static(file: Path, /) -> None:
     file
         The drive file, TOML.
     """
-    from beltdyn.model import load
+    from beltdyn.model import install, load
     from beltdyn.solve import equilibrium
 
     drive = load(file)
@@ -23,3 +24,7 @@ def static(file: Path, /) -> None:
         run = equilibrium(drive, report)
     show("Static equilibrium")
     show_summary(run)
+    names = [one.pulley for one in drive.tensioners if one.kind != "fixed"]
+    for name, others in zip(names, other_balances(run.drive, install(run.drive)), strict=True):
+        if others:
+            show(f"The tensioner of {name} balances the belt at {others} too.")

@@ -81,7 +81,12 @@ def _span(span: "SpanSummary") -> tuple[str, ...]:
 
 
 def _number(value: float, digits: int = 4) -> str:
-    """So many digits, or those before the point where they are more; nothing of what is next to nothing."""
+    """So many digits, or those before the point where they are more; nothing of what is next to nothing.
+
+    A span has no tension and no speed while the belt has left one of its pulleys, of which a warning tells.
+    """
+    if not math.isfinite(value):
+        return "none"
     if abs(value) < _NOTHING:
         return "0"
     return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"

@@ -6,9 +6,9 @@ from collections.abc import Callable
 import numpy as np
 
 from beltdyn.model.drive import Drive
-from beltdyn.model.installation import Installation
+from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
-from beltdyn.model.tensioner import MovingTensioner
+from beltdyn.model.tensioner import MovingTensioner, place_of
 from beltdyn.theory.stretch import stretch
 
 _MOST_TENSION_LOST = 0.02
@@ -36,10 +36,20 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
         *_strain_warnings(installation),
         *_tension_warnings(drive, installation),
         *_tensioner_warnings(drive, installation),
+        *_other_balances(drive, installation),
         *_penetration_warnings(drive, installation),
         *_creep_warnings(drive, installation),
         *_mesh_warnings(drive, installation),
     ]
+
+
+def unstable_balance(name: str) -> str:
+    """Say that the tensioner of a pulley is not in stable balance at rest."""
+    return (
+        f'at rest the balance of the tensioner of "{name}" is not stable: what moves it a little drives it away, and '
+        "no real drive stays there. Turn its arm or direction away from its dead centre, raise the rate of its spring, "
+        "or give stops."
+    )
 
 
 def _strain_warnings(installation: Installation) -> list[str]:
@@ -57,7 +67,7 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
     if lost <= _MOST_TENSION_LOST or installation.tensioner_positions.size:
         return []
     tension, laid = installation.tension, installation.laid_tension
-    if not drive.tension_given:
+    if drive.installed_tension is None:
         return [
             f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
             f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}, or count on {tension:.4g} N."
@@ -107,6 +117,20 @@ def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:
             warnings.append(
                 f'the tensioner of "{tensioner.pulley}" rests on its {which} stop, where its spring does not set the '
                 f"tension: {remedy}, or move the stops."
+            )
+    return warnings
+
+
+def _other_balances(drive: Drive, installation: Installation) -> list[str]:
+    """Tell of other stable balances, to which a blow may drive a tensioner."""
+    warnings = []
+    moving = [tensioner for tensioner in drive.tensioners if isinstance(tensioner, MovingTensioner)]
+    for tensioner, balances in zip(moving, tensioner_balances(drive, installation), strict=True):
+        others = [place_of(tensioner, balance.position) for balance in balances if balance.stable and not balance.here]
+        if others:
+            warnings.append(
+                f'the tensioner of "{tensioner.pulley}" is in stable balance at {" and ".join(others)} too, and a run '
+                "may end there: give stops that keep it from there."
             )
     return warnings
 

@@ -5,11 +5,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beltdyn.model.belt import Belt
+from beltdyn.model.carrier import Carrier, carriers_of
 from beltdyn.model.contact import Contact
 from beltdyn.model.layout import lay_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.rest import Carrier, Rest, carriers_of, come_to_rest
+from beltdyn.model.rest import Rest
 from beltdyn.model.tensioner import (
     LEAST_LEVERAGE,
     AnyTensioner,
@@ -18,6 +19,7 @@ from beltdyn.model.tensioner import (
     check_tensioners,
     path_gradient,
 )
+from beltdyn.model.tensioner_balance import come_to_rest
 
 _LARGEST_STRAIN = 0.5
 _MOST_STEPS = 60
@@ -102,17 +104,51 @@ def _taken_up(given: _Open) -> _Open:
 
 def _shifted(given: _Open, tensioner: FixedTensioner, distance: float) -> _Open:
     """The same with the pulley of a fixed tensioner moved, and its take-up done."""
+    done = tensioner.model_copy(update={"take_up": 0.0})
+    return given._replace(
+        pulleys=_moved(given.pulleys, tensioner, distance),
+        tensioners=tuple(done if one is tensioner else one for one in given.tensioners),
+    )
+
+
+def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner, distance: float) -> tuple[Pulley, ...]:
+    """Pulleys with that of a fixed tensioner moved along its direction, m."""
     step = (distance * tensioner.direction[0], distance * tensioner.direction[1])
-    pulleys = tuple(
+    return tuple(
         pulley.model_copy(update={"center": (pulley.center[0] + step[0], pulley.center[1] + step[1])})
         if pulley.name == tensioner.pulley
         else pulley
-        for pulley in given.pulleys
+        for pulley in pulleys
     )
-    done = tensioner.model_copy(update={"take_up": 0.0})
-    return given._replace(
-        pulleys=pulleys, tensioners=tuple(done if one is tensioner else one for one in given.tensioners)
-    )
+
+
+def take_up(
+    pulleys: tuple[Pulley, ...], tensioners: tuple[AnyTensioner, ...], path: Path, distance: float
+) -> tuple[Pulley, ...]:
+    """Move the pulley of the one fixed tensioner, so that the path becomes longer by a small distance, m.
+
+    Parameters
+    ----------
+    pulleys, tensioners
+        Of a drive.
+    path : Path
+        Around the pulleys.
+    distance : float
+        m.
+    """
+    fixed = _fixed(tensioners)
+    number = [pulley.name for pulley in pulleys].index(fixed.pulley)
+    return _moved(pulleys, fixed, distance / _leverage(path, number, fixed))
+
+
+def _fixed(tensioners: tuple[AnyTensioner, ...]) -> FixedTensioner:
+    """The first fixed tensioner."""
+    return next(tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner))
+
+
+def _leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
+    """How much longer the path becomes by a metre of take-up, m."""
+    return float(path_gradient(path, pulley)[1] @ np.array(tensioner.direction))
 
 
 def _check_take_up_is_open(tensioners: tuple[AnyTensioner, ...]) -> None:
@@ -134,12 +170,12 @@ def _tightened(given: _Open, path: Path) -> _Open:
     """The same with the pulley of the one fixed tensioner where the belt of given length has the given tension."""
     from scipy.optimize import brentq
 
-    fixed = next(tensioner for tensioner in given.tensioners if isinstance(tensioner, FixedTensioner))
+    fixed = _fixed(given.tensioners)
 
     def excess(distance: float) -> float:
         return _shifted(given, fixed, distance).rest().length - given.belt.length
 
-    leverage = float(path_gradient(path, given.names.index(fixed.pulley))[1] @ np.array(fixed.direction))
+    leverage = _leverage(path, given.names.index(fixed.pulley), fixed)
     if abs(leverage) < LEAST_LEVERAGE:
         raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
     here, first = 0.0, excess(0.0)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.model.belt import Belt
-from beltdyn.model.completion import complete
+from beltdyn.model.completion import complete, take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.layout import radii, trace
 from beltdyn.model.part import Part
@@ -42,7 +42,8 @@ class Drive(Part):
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
     )
     _source: str | None = PrivateAttr(None)
-    _tension_given: bool = PrivateAttr(False)
+    _installed_tension: float | None = PrivateAttr(None)
+    _length_given: bool = PrivateAttr(True)
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file."""
@@ -52,7 +53,7 @@ class Drive(Part):
 
     @model_validator(mode="after")
     def _becomes_definite(self) -> Self:
-        self._tension_given = self.belt.installed_tension is not None
+        self._installed_tension, self._length_given = self.belt.installed_tension, self.belt.length is not None
         self.__dict__.update(complete(self.belt, self.pulleys, self.contact, self.tensioners))
         return self
 
@@ -102,9 +103,31 @@ class Drive(Part):
         return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])
 
     @property
-    def tension_given(self) -> bool:
-        """Whether the length of the belt, or a take-up, was computed from the tension at rest."""
-        return self._tension_given
+    def installed_tension(self) -> float | None:
+        """Tension at rest that was asked for, N: the length of the belt, or a take-up, is computed from it."""
+        return self._installed_tension
+
+    def tightened(self, distance: float) -> "Drive":
+        """Shorten the belt, or, where its length was given along with the tension, lengthen its path by the take-up.
+
+        Parameters
+        ----------
+        distance : float
+            By how much, m; negative to loosen it.
+
+        Raises
+        ------
+        ModelError
+            If no such belt can run around the pulleys.
+        """
+        belt, pulleys = self.belt, self.pulleys
+        if self._length_given:
+            pulleys = take_up(pulleys, self.tensioners, self.path, distance)
+        else:
+            belt = belt.model_copy(update={"length": belt.length - distance})
+        drive = self.replace(belt=belt, pulley=pulleys)
+        drive._installed_tension, drive._length_given = self._installed_tension, self._length_given
+        return drive
 
     @property
     def text(self) -> str:

@@ -1,4 +1,4 @@
-"""What to expect of a belt at rest on its pulleys, before anything is simulated."""
+"""What to expect of a belt at rest on its pulleys: estimates by hand, or what static equilibrium gives."""
 
 import math
 from dataclasses import dataclass
@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
-from beltdyn.model.rest import carriers_of, come_to_rest
+from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, come_to_rest
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import tension as tension_of
 
@@ -17,7 +18,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Installation:
-    """Estimates for the belt at rest, without friction and bending stiffness.
+    """The belt at rest, without friction.
 
     Attributes
     ----------
@@ -26,15 +27,17 @@ class Installation:
     laid_tension : float
         Tension of the laid belt, N.
     tension : float
-        Tension once the belt has sunk into the pulleys, N.
+        Mean tension of the spans once the belt has sunk into the pulleys, N.
+    span_tensions : ndarray, shape (n,), N
+        Tension of each span: the same in all, but for weight and the mesh.
     penetrations : ndarray, shape (n,), m
-        How deep it sinks into each pulley.
+        How deep it sinks into each pulley, in the middle of the arc.
     tensioner_positions : ndarray, shape (K,), m or rad
         Where springs hold the sliding and the rotary tensioners.
     path : Path
         The path with the tensioners there, before the belt sinks in.
     hub_loads : ndarray, shape (n, 2), N
-        Force of the belt on each pulley, T (u_out - u_in), of size 2 T sin(wrap angle / 2).
+        Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
     span_frequencies : ndarray, shape (n,), Hz
         Lowest frequency at which each span swings across, with the bending stiffness of the belt and its sag.
     """
@@ -42,16 +45,12 @@ class Installation:
     strain: float
     laid_tension: float
     tension: float
+    span_tensions: FloatArray
     penetrations: FloatArray
     tensioner_positions: FloatArray
     path: Path
     hub_loads: FloatArray
     span_frequencies: FloatArray
-
-    @property
-    def span_tensions(self) -> FloatArray:
-        """Tension of each span, shape (n,), N: the same in all, without friction."""
-        return np.full(self.path.count, self.tension)
 
 
 def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
@@ -68,7 +67,8 @@ def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
 def install(drive: Drive) -> Installation:
     """Estimate tension, penetration and the place of tensioners for the belt at rest.
 
-    `beltdyn.model.rest` has the equations.
+    `beltdyn.model.rest` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending stiffness and
+    weight; `beltdyn.solve.bring_to_rest` finds static equilibrium.
 
     Parameters
     ----------
@@ -83,23 +83,65 @@ def install(drive: Drive) -> Installation:
     >>> round(bd.install(drive).tension, 1)  # N
     26.6
     """
-    carriers = carriers_of(drive.tensioners, [pulley.name for pulley in drive.pulleys], drive.path)
-    rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, carriers)
-    path, laid = rest.path, rest.path.length / drive.belt.length
+    rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, _carriers(drive))
+    path = rest.path
     turned = path.span_directions - np.roll(path.span_directions, 1, axis=0)
+    tensions = np.full(path.count, rest.tension)
+    return describe(drive, tensions, rest.penetrations, rest.tension * turned, positions)
+
+
+def describe(
+    drive: Drive, span_tensions: FloatArray, penetrations: FloatArray, hub_loads: FloatArray, positions: FloatArray
+) -> Installation:
+    """Describe a belt at rest.
+
+    Parameters
+    ----------
+    drive : Drive
+    span_tensions, penetrations, hub_loads, positions : ndarray
+        As `Installation` has them.
+
+    Returns
+    -------
+    Installation
+    """
+    path = moved(drive.path, _carriers(drive), positions)
+    laid = path.length / drive.belt.length
     return Installation(
         strain=laid - 1,
         laid_tension=float(tension_of(laid, drive.belt.axial_stiffness)),
-        tension=rest.tension,
-        penetrations=rest.penetrations,
+        tension=float(span_tensions.mean()),
+        span_tensions=span_tensions,
+        penetrations=penetrations,
         tensioner_positions=positions,
         path=path,
-        hub_loads=rest.tension * turned,
-        span_frequencies=_span_frequencies(drive, path, rest.tension),
+        hub_loads=hub_loads,
+        span_frequencies=_span_frequencies(drive, path, span_tensions),
     )
 
 
-def _span_frequencies(drive: Drive, path: Path, tension: float) -> FloatArray:
+def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[TensionerBalance, ...], ...]:
+    """Find every place in which a spring-loaded tensioner balances the belt, the others held where they stand.
+
+    Parameters
+    ----------
+    drive : Drive
+    installation : Installation
+        The belt at rest.
+
+    Returns
+    -------
+    tuple of tuples of TensionerBalance
+        For each tensioner, in ascending order of the positions; without bending stiffness and weight.
+    """
+    return all_balances(drive.path, drive.belt, drive.contact, _carriers(drive), installation.tensioner_positions)
+
+
+def _carriers(drive: Drive) -> list[Carrier]:
+    return carriers_of(drive.tensioners, [pulley.name for pulley in drive.pulleys], drive.path)
+
+
+def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatArray:
     """First frequencies of spans, Hz; see `theory.sagging_span`.
 
     The mass of a metre is that of the stretched belt. A slack belt does not swing: zero.
@@ -116,6 +158,8 @@ def _span_frequencies(drive: Drive, path: Path, tension: float) -> FloatArray:
             bending=belt.bending_stiffness,
             sag_parameter=sag_parameter(mass * gravity, length, tension, belt.axial_stiffness),
         )
-        for length, gravity in zip(path.span_lengths.tolist(), across.tolist(), strict=True)
+        for length, gravity, tension in zip(
+            path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True
+        )
     ]
     return np.array(found)

@@ -1,5 +1,6 @@
 """Tensioners: what presses a pulley against the belt."""
 
+import math
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Annotated, Literal, Self
@@ -208,6 +209,11 @@ class RotaryTensioner(MovingTensioner):
     def moved_inertia(self, center: FloatArray, mass: float) -> float:
         """As in the base, kg m^2."""
         return self.inertia + mass * self.arm_length(center) ** 2
+
+
+def place_of(tensioner: MovingTensioner, position: float) -> str:
+    """Write a position of a tensioner, m or rad, with its unit."""
+    return f"{math.degrees(position):.4g}°" if isinstance(tensioner, RotaryTensioner) else f"{position:.4g} m"
 
 
 def check_tensioners(tensioners: Sequence["AnyTensioner"], pulleys: Sequence[Pulley], path: Path) -> None:

@@ -24,6 +24,15 @@ Status = Literal["running", "completed", "interrupted", "failed"]
 class Recorder(Protocol):
     """Takes outputs as a simulation goes."""
 
+    def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
+        """Begin anew, with other coordinates and attributes, before the first outputs.
+
+        Parameters
+        ----------
+        layout, attributes
+            As for the beginning, of the same sizes.
+        """
+
     def append(self, chunk: Chunk) -> None:
         """Take outputs.
 
@@ -72,9 +81,12 @@ class MemoryRecorder:
     """
 
     def __init__(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
-        self._layout = layout
-        self._attributes = {**attributes, "status": "running"}
+        self.revise(layout, attributes)
         self._chunks = [checked_chunk(layout, _no_outputs(layout))]
+
+    def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
+        """Begin anew; see `Recorder.revise`."""
+        self._layout, self._attributes = layout, {**attributes, "status": "running"}
 
     def append(self, chunk: Chunk) -> None:
         """Take outputs; see `Recorder.append`."""
@@ -117,7 +129,6 @@ class FileRecorder:
         self, path: Path | str, layout: Layout, attributes: Mapping[str, Any], overwrite: bool = False
     ) -> None:
         self.path = Path(path)
-        self._layout = layout
         self._target = self.path.resolve()
         require_replaceable(self.path, lambda _: True)
         try:
@@ -125,11 +136,20 @@ class FileRecorder:
         except OSError as error:
             raise ModelError(unwritable(self.path, error)) from error
         try:
-            with atomic_path(self.path, is_result, overwrite) as temporary:
-                self._file = netcdf.GrowingFile(temporary, layout, {**attributes, "status": "running"})
+            self._create(layout, attributes, overwrite)
         except BaseException:
             self._lock.release()
             raise
+
+    def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
+        """Begin anew; see `Recorder.revise`."""
+        self._create(layout, attributes, overwrite=False)
+
+    def _create(self, layout: Layout, attributes: Mapping[str, Any], overwrite: bool) -> None:
+        """Write a file without outputs."""
+        self._layout = layout
+        with atomic_path(self.path, is_result, overwrite) as temporary:
+            self._file = netcdf.GrowingFile(temporary, layout, {**attributes, "status": "running"})
 
     def append(self, chunk: Chunk) -> None:
         """Take outputs; see `Recorder.append`.

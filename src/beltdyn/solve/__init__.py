@@ -1,6 +1,7 @@
 """Solvers: static equilibrium, and simulation over time of one drive or many."""
 
 from beltdyn.solve.batch import Ending, simulate_all
+from beltdyn.solve.installation import Rest, bring_to_rest
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import equilibrium, simulate
 from beltdyn.solve.static import Equilibrium, find_equilibrium
@@ -10,6 +11,8 @@ __all__ = [
     "Ending",
     "Equilibrium",
     "Progress",
+    "Rest",
+    "bring_to_rest",
     "equilibrium",
     "find_equilibrium",
     "simulate",

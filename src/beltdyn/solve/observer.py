@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results.contact_scalars import contact_scalars
 from beltdyn.results.friction_work import FrictionWork
@@ -19,6 +20,9 @@ Arrays = dict[str, NDArray[Any]]
 
 WORKS = ("friction_work_on_arc", "friction_work_on_belt")
 """Variables that are seen as integrals from the start on, and recorded as what they grow by."""
+
+
+_VALUES_OF_SPANS = ("span_tension", "belt_speed")
 
 
 class Observer:
@@ -53,6 +57,7 @@ class Observer:
             Name -> array with one row for each state.
         """
         seen: Arrays = observe(self._system, states.time, states.position, states.velocity)._asdict()
+        _require_numbers(states.time, seen)
         self._flutter.take(states.time, states.position, states.velocity, seen)
         touched, places, centers = (seen[name] for name in ("contact_pulley", "contact_position", "pulley_center"))
         normal, slip = seen["normal_force"], seen["slip_velocity"]
@@ -72,3 +77,20 @@ class Observer:
     def find_flutter(self) -> Flutter | None:
         """The largest growth of vibrations while the belt slid; None where none grows."""
         return self._flutter.find()
+
+
+def _require_numbers(time: FloatArray, seen: Arrays) -> None:
+    """Make sure that all that is seen has a value, but spans whose pulleys the belt has left.
+
+    Raises
+    ------
+    ConvergenceError
+        If something has none.
+    """
+    for name, values in seen.items():
+        if name not in _VALUES_OF_SPANS and not np.isfinite(values.sum()):
+            first = int(np.argmin(np.isfinite(values.reshape(len(time), -1)).all(axis=1)))
+            raise ConvergenceError(
+                f"the simulation cannot go on at t = {time[first]:.6g} s: {name} has no finite value. "
+                "Check loads and stiffnesses for numbers beyond all measure, or reduce simulation.max_step."
+            )

@@ -77,6 +77,7 @@ class Recording:
         self.statistics = Statistics()
         self._drive, self._system, self._progress = drive, system, progress
         self._path = Path(output) if output is not None else None
+        self._title = title
         layout, attributes = result_layout(drive, system), provenance(drive.text, title)
         self._recorder: Recorder = (
             FileRecorder(self._path, layout, attributes, overwrite)
@@ -87,7 +88,7 @@ class Recording:
         self._filter = BandLimit(self._instants.interval)
         self._filtered = FILTER_REACH
         self._observer = Observer(drive, system, layout.belt_coordinate)
-        self._findings: dict[str, float] = {}
+        self._findings: dict[str, float | str] = {}
         self._waiting: list[Chunk] = []
         self._before: tuple[Chunk, Arrays] | None = None
         self._done: Arrays = {}
@@ -120,8 +121,24 @@ class Recording:
         compile_kernels(self._system, laid(self._system, self._drive.path))
         self._compiled = self._started = time.perf_counter()
 
-    def start(self) -> None:
-        """Note that the state at time zero is known."""
+    def start(self, drive: Drive, system: System, unstable: tuple[str, ...]) -> None:
+        """Note that the state at time zero is known.
+
+        Parameters
+        ----------
+        drive, system
+            What is simulated, with the length of the belt, or the take-up, that was found for its installed tension.
+        unstable
+            Names of the pulleys whose tensioners are not in stable balance at rest.
+        """
+        layout = result_layout(drive, system)
+        if drive is not self._drive:
+            attributes = provenance(drive.text, self._title) | {"drive_as_given": self._drive.text}
+            self._recorder.revise(layout, attributes)
+        if unstable:
+            self._findings["unstable_tensioners"] = ", ".join(unstable)
+        self._drive, self._system = drive, system
+        self._observer = Observer(drive, system, layout.belt_coordinate)
         self._started = time.perf_counter()
 
     def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
@@ -147,7 +164,7 @@ class Recording:
         self._write()
         self._ended = time.perf_counter()
         flutter = self._observer.find_flutter()
-        self._findings = flutter.attributes if flutter else {}
+        self._findings |= flutter.attributes if flutter else {}
         self._findings["check_time"] = time.perf_counter() - self._ended
 
     def run(self) -> Run:
@@ -252,7 +269,7 @@ class Recording:
             "wall_time": wall,
             "compile_time": self._compiled - self._begun,
             "start_time": self._started - self._compiled,
-            "real_time_factor": wall / self._reached if self._reached > 0.0 else np.nan,
+            **({"real_time_factor": wall / self._reached} if self._reached > 0.0 else {}),
         }
 
 

@@ -2,23 +2,17 @@
 
 from pathlib import Path
 
-import numpy as np
-
-from beltdyn.model import Drive, install
-from beltdyn.model import Path as BeltPath
+from beltdyn.model import Drive
 from beltdyn.results import Run, require_room
 from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.installation import bring_to_rest
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.standard import StandardIntegrator
-from beltdyn.solve.static import find_equilibrium
+from beltdyn.solve.static import standing
 from beltdyn.solve.trajectory import Chunk, Integrator, drive_task
-from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
-from beltdyn.system.state import State, laid
-
-_DEEPEST_START = 0.1
-"""Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
+from beltdyn.system.state import laid
 
 
 def simulate(
@@ -40,7 +34,8 @@ def simulate(
     Returns
     -------
     Run
-        Its status is "completed", or "interrupted" after Ctrl-C.
+        Its status is "completed", or "interrupted" after Ctrl-C. Its drive has the length, or the take-up, that gives
+        the installed tension.
 
     Raises
     ------
@@ -62,11 +57,12 @@ def simulate(
     system, settings = drive_system(drive), drive.simulation
     with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress, overwrite) as recording:
         recording.prepare()
-        state = laid(system, drive.path)
-        if settings.start == "equilibrium":
-            recording.tell(0.0, "equilibrium")
-            state = _at_rest(drive, system)
-        recording.start()
+        rest = None
+        if drive.installed_tension is not None or settings.start == "equilibrium":
+            rest = bring_to_rest(drive, progress)
+            drive, system = rest.drive, rest.system
+        state = rest.state if rest and settings.start == "equilibrium" else laid(system, drive.path)
+        recording.start(drive, system, rest.unstable if rest else ())
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in choose_integrator(drive)(task):
             recording.take(chunk)
@@ -87,12 +83,12 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
     Returns
     -------
     Run
-        With one output, at time zero.
+        With one output, at time zero. Its drive has the length, or the take-up, that gives the installed tension.
 
     Raises
     ------
     ConvergenceError
-        If no equilibrium is found.
+        If no equilibrium is found in which the belt touches every pulley.
 
     Examples
     --------
@@ -103,23 +99,10 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
     system = drive_system(drive)
     with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:
         recording.prepare()
-        recording.tell(0.0, "equilibrium")
-        state = _at_rest(drive, system)
-        recording.take(Chunk.start(state), "equilibrium")
+        rest = bring_to_rest(drive, progress)
+        recording.start(rest.drive, standing(rest.system), rest.unstable)
+        recording.take(Chunk.start(rest.state), "equilibrium")
     return recording.run()
-
-
-def _at_rest(drive: Drive, system: System) -> State:
-    """Static equilibrium, sought from a belt that lies in its pulleys instead of on their rims.
-
-    On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
-    then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
-    """
-    installation = install(drive)
-    path = installation.path
-    depth = min(np.min(installation.penetrations), _DEEPEST_START * np.min(drive.radii))
-    drawn_in = BeltPath(path.centers, path.radii - depth * np.sign(path.radii))
-    return find_equilibrium(system, laid(system, drawn_in, installation.tensioner_positions)).state
 
 
 def choose_integrator(drive: Drive) -> Integrator:

@@ -61,7 +61,8 @@ def find_equilibrium(
     """Find a static equilibrium of a belt from a start.
 
     Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, which then rub
-    the belt at rest.  Tensioners move.  Forces are in balance there; whether the balance is stable is not looked at.
+    the belt at rest.  Tensioners move.  Forces are in balance there; `tensioner_compliance` tells whether the balance
+    is stable.
 
     Parameters
     ----------
@@ -108,6 +109,48 @@ def find_equilibrium(
         f"static equilibrium not found after {len(norms)} iterations (last step, as a mean strain: {last}; "
         f"{_TOLERANCE:.0e} wanted). Start nearer to it, or give the belt more elements."
     )
+
+
+def standing(system: System) -> System:
+    """The same system with prescribed shafts that stand still, as static equilibrium has it.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+
+    Returns
+    -------
+    System
+        With prescribed speeds of zero.
+    """
+    segments, starts = system.profiles.segment.copy(), system.profiles.table["segment"]
+    for pulley in np.flatnonzero(system.bodies["unknown"][system.pulleys.shaft] < 0):
+        segments["coefficients"][starts[pulley] : starts[pulley + 1]] = 0.0
+    return system._replace(profiles=system.profiles._replace(segment=segments))
+
+
+def tensioner_compliance(system: System, state: State) -> FloatArray:
+    """How far tensioners in static equilibrium move by forces on them, while the belt stays in equilibrium.
+
+    The inverse of what elimination of the belt leaves of the stiffness. It is positive definite where the balance of
+    the tensioners is stable: the second variation of the energy, the belt following.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, tensioners.
+    state
+        Static equilibrium.
+
+    Returns
+    -------
+    ndarray, shape (K, K)
+        m/N, rad/(N m), or 1/N; NaN where the stiffness is singular.
+    """
+    search, count = _Search(system, state), system.tensioners.size
+    search.linearise(0.0)
+    return np.array([search.answer_to_force(number) for number in range(count)]).reshape(count, count)
 
 
 class _Search:
@@ -163,6 +206,13 @@ class _Search:
             self.step(-length)
             length *= 0.5
         return False
+
+    def answer_to_force(self, number: int) -> FloatArray:
+        """How far tensioners move by a unit of force on one of them, from where the equations were linearised."""
+        tensioners = self._system.tensioners.copy()
+        tensioners["preload"][number] += 1.0
+        correct(self._system._replace(tensioners=tensioners), 0.0, *self._motion, self._multipliers, self._ahead)
+        return np.asarray((self._here.border_part - self._ahead.border_part)[: tensioners.size])
 
     @property
     def _motion(self) -> tuple[FloatArray, FloatArray, FloatArray]:

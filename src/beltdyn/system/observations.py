@@ -65,6 +65,10 @@ class Samples(NamedTuple):
     speed: FloatArray
     weight: FloatArray
     """Length of the free belt in each span."""
+    touched: NDArray[np.int64]
+    """Pulley that each point counts to, -1 where it is free."""
+    nearest: NDArray[np.int64]
+    """A point that touches each pulley, or is nearest to where the belt touches it, -1 without contact."""
     element: FloatArray
     """Coordinates and velocities of one element, shape (2, 12)."""
     control: FloatArray
@@ -114,6 +118,8 @@ def new_samples(system: System) -> Samples:
         tension=np.zeros(points),
         speed=np.zeros(points),
         weight=np.zeros(system.pulleys.size),
+        touched=np.zeros(points, dtype=np.int64),
+        nearest=np.zeros(system.pulleys.size, dtype=np.int64),
         element=np.zeros((2, 2 * NODE)),
         control=np.zeros((4, 2)),
         control_velocity=np.zeros((4, 2)),

@@ -70,6 +70,7 @@ def fill_observations(
         clear_loads(samples.loads)
         result.kinetic_energy[k] = result.strain_energy[k] = result.potential_energy[k] = 0.0
         result.wrap_angle[k] = 0.0
+        samples.nearest[:] = -1
         prescribe(system, time[k], position[k], velocity[k], samples.acceleration)
         for element in range(system.length.size):
             _gather(system, element, position[k], velocity[k], samples)
@@ -197,7 +198,7 @@ def _observe_contact(
     k: int,
 ) -> None:
     """Contact of a curve as it moves the system and at its sampling points, and the angle over which it touches."""
-    intervals = samples.intervals
+    intervals, number = samples.intervals, element * system.control.shape[1] + curve
     for p in range(system.pulleys.size):
         wheel, law = wheel_of(system, p, position, velocity), law_of(system, p)
         if out_of_reach(samples.control, wheel):
@@ -217,8 +218,10 @@ def _observe_contact(
         )
         add_contact(samples.loads, p, totals)
         for interval in range(touching_intervals(samples.control, wheel, samples.pieces, intervals)):
-            result.wrap_angle[k, p] += _angle(samples.control, wheel, intervals[interval, 0], intervals[interval, 1])
-        _touch_points(system, element * system.control.shape[1] + curve, p, wheel, law, samples, result, k)
+            start, end = intervals[interval]
+            result.wrap_angle[k, p] += _angle(samples.control, wheel, start, end)
+            samples.nearest[p] = number * system.contact.points.size + _nearest_point(system, 0.5 * (start + end))
+        _touch_points(system, number, p, wheel, law, samples, result, k)
 
 
 @kernel(inline=True)
@@ -248,6 +251,16 @@ def _touch_points(
 
 
 @kernel(inline=True)
+def _nearest_point(system: System, xi: float) -> int:
+    """Contact point of a curve that is nearest to a place on it, 0 to 1."""
+    nearest = 0
+    for point in range(1, system.contact.points.size):
+        if abs(system.contact.points[point] - xi) < abs(system.contact.points[nearest] - xi):
+            nearest = point
+    return nearest
+
+
+@kernel(inline=True)
 def _angle(control: FloatArray, wheel: Wheel, start: float, end: float) -> float:
     """Angle at the pulley's centre between two points of the centreline, rad."""
     ax, ay = combine(control, bernstein(start))
@@ -261,12 +274,19 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
     """Mean tension and speed of the free belt between two pulleys.
 
     Going along the belt, free points belong to the span of the pulley that was touched last, if the next one
-    touched is another.
+    touched is another. On coarse meshes a pulley may be touched between points alone, and a span may have none: then
+    the nearest point counts to the pulley, and the points at its ends to the span.
     """
     spans = system.pulleys.size
-    touched, weight = result.contact_pulley[k], samples.weight
+    touched, weight = samples.touched, samples.weight
+    for row in range(touched.size):
+        touched[row] = pulley = result.contact_pulley[k, row]
+        if pulley >= 0:
+            samples.nearest[pulley] = row
     for p in range(spans):
         weight[p] = result.span_tension[k, p] = result.belt_speed[k, p] = 0.0
+        if samples.nearest[p] >= 0:
+            touched[samples.nearest[p]] = p
     count, points, curves = touched.size, system.contact.points.size, system.control.shape[1]
     before, first = -1, 0
     for row in range(count):
@@ -284,6 +304,10 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
             speed += share * samples.speed[row]
             continue
         if before != after:
+            if length == 0.0:
+                last = (row - 1) % count
+                length, speed = 1.0, 0.5 * (samples.speed[last] + samples.speed[row])
+                tension = 0.5 * (samples.tension[last] + samples.tension[row])
             weight[before] += length
             result.span_tension[k, before] += tension
             result.belt_speed[k, before] += speed

@@ -22,8 +22,8 @@ import pytest
 from scipy.optimize import brentq, curve_fit
 
 from beltdyn.model import Drive
+from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.instants import Instants
-from beltdyn.model.rest import Carrier, carriers_of, moved
 from beltdyn.solve.alpha_march import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.state import State

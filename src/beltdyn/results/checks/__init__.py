@@ -14,7 +14,7 @@ from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved_by_mesh
 from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
 from beltdyn.results.checks.sliding import near_gross_slip, near_gross_slip_before
-from beltdyn.results.checks.tensioners import stopped_tensioners
+from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
 
@@ -36,6 +36,7 @@ CHECKS: tuple[Check, ...] = (
     negative_losses,
     artificial_losses,
     flutter,
+    unstable_tensioners,
     stopped_tensioners,
     unresolved_by_mesh,
 )

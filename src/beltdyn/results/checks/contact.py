@@ -22,9 +22,10 @@ def slack_spans(evidence: Evidence) -> Iterator[Finding]:
     """Spans whose tension falls to zero at any time."""
     tensions = np.asarray(evidence.recorded["span_tension"])
     for name, tension in zip(names(evidence.recorded, "span"), tensions.T, strict=True):
-        lowest = float(tension.min())
+        known = np.where(np.isfinite(tension), tension, np.inf)
+        lowest = float(known.min())
         if lowest <= 0.0:
-            time = float(evidence.time[int(tension.argmin())])
+            time = float(evidence.time[int(known.argmin())])
             yield Finding(
                 f"the span {name} is slack: its tension falls to {lowest:.4g} N at t = {time:.4g} s.",
                 remedy="Shorten the belt, or reduce the load.",
@@ -38,7 +39,11 @@ def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
     for pulley, laid, left in zip(drive.pulleys, drive.path.wrap_angles, free.T, strict=True):
         if laid > 0.0 and left.any():
             time = float(evidence.time[int(left.argmax())])
-            yield Finding(f"the belt leaves the pulley {pulley.name} at t = {time:.4g} s.", remedy="Raise the tension.")
+            yield Finding(
+                f"the belt leaves the pulley {pulley.name} at t = {time:.4g} s.",
+                "The spans before and behind it have no tension and no speed as long.",
+                "Raise the tension.",
+            )
 
 
 def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
@@ -65,7 +70,7 @@ def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
 
 def large_strain(evidence: Evidence) -> Iterator[Finding]:
     """Spans that stretch more than belts do."""
-    tension = np.asarray(evidence.recorded["span_tension"])
+    tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     row, span = np.unravel_index(int(tension.argmax()), tension.shape)
     strain = float(stretch(tension[row, span], evidence.drive.belt.axial_stiffness)) - 1.0
     if strain > STRAIN_LIMIT:

@@ -5,7 +5,15 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.model import unstable_balance
 from beltdyn.results.checks.finding import Evidence, Finding
+
+
+def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
+    """Tensioners whose balance at rest is not stable."""
+    names = str(evidence.recorded.attrs.get("unstable_tensioners", ""))
+    for name in filter(None, names.split(", ")):
+        yield Finding(unstable_balance(name))
 
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:

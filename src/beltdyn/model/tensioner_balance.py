@@ -1,0 +1,250 @@
+"""Where springs hold tensioners against the belt, and which of these balances are stable."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.model.belt import Belt
+from beltdyn.model.carrier import Carrier, moved
+from beltdyn.model.contact import Contact
+from beltdyn.model.path import Path
+from beltdyn.model.rest import Rest, settle
+from beltdyn.model.tensioner import RotaryTensioner, path_gradient, place_of
+
+FloatArray = NDArray[np.float64]
+_FIRST_STEP, _GROWTH, _LONGEST_STEP = 1e-3, 1.3, 0.25
+"""Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
+_ROUNDING = 4 * float(np.finfo(float).eps)
+_MOST_ROUNDS = 200
+_ACCURACY = 1e-13
+
+
+class TensionerBalance(NamedTuple):
+    """A place in which spring and stops of a tensioner balance the belt."""
+
+    position: float
+    """q, m or rad."""
+    stable: bool
+    """Whether what moves it a little brings it back, with the belt of its length and the other tensioners held."""
+    here: bool
+    """Whether the tensioner stands there: of all its balances it is the nearest one."""
+
+
+class _Situation(NamedTuple):
+    """A belt around pulleys, one of them on the tensioner that is looked at, the others held."""
+
+    path: Path
+    belt: Belt
+    contact: Contact
+    carriers: Sequence[Carrier]
+    positions: FloatArray
+    number: int
+
+    @property
+    def carrier(self) -> Carrier:
+        """The tensioner that is looked at."""
+        return self.carriers[self.number]
+
+    def rest(self, position: float) -> Rest:
+        """The belt with that tensioner at a position."""
+        changed = self.positions.copy()
+        changed[self.number] = position
+        return settle(moved(self.path, self.carriers, changed), self.belt, self.contact)
+
+    def excess(self, position: float) -> float:
+        """What spring and stops press more than the belt with that tensioner at a position, F - T dL/dq.
+
+        Raises
+        ------
+        ValueError
+            If the belt leaves a pulley there, or the pulley meets another one.
+        """
+        one, rest = self.carrier, self.rest(position)
+        if abs(rest.path.total_turning - self.path.total_turning) > 1.0:
+            raise ValueError("the belt leaves a pulley")
+        if _covers_another(rest.path, one.pulley):
+            raise ValueError("the pulley meets another one")
+        leverage = path_gradient(rest.path, one.pulley)[1] @ one.place(position)[1]
+        return one.force(position) - rest.tension * float(leverage)
+
+    @property
+    def scale(self) -> float:
+        """Way of the tensioner on which its pulley moves by the smallest radius, m or rad."""
+        return float(np.abs(self.path.radii).min() / np.linalg.norm(self.carrier.place(0.0)[1]))
+
+    def is_stable(self, position: float) -> bool:
+        """Tell whether a balance is stable: the excess falls on its way, with the belt as long as it is there."""
+        rest, step = self.rest(position), 1e-4 * self.scale
+        fixed = self._replace(
+            belt=self.belt.model_copy(update={"length": rest.length, "installed_tension": None}),
+            contact=self.contact.model_copy(update={"stiffness": rest.stiffness, "allowed_penetration": None}),
+        )
+        try:
+            return fixed.excess(position + step) < fixed.excess(position - step)
+        except ValueError:
+            return False
+
+
+def come_to_rest(path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier]) -> tuple[Rest, FloatArray]:
+    """Find where spring-loaded tensioners stand, by virtual work: force of spring and stops = T dL/dq for each.
+
+    Of several balances each takes the stable one that is nearest to its nominal place, and an unstable one only where
+    none is stable. Weight and dry friction of a tensioner are left out, and so is what a change of the wrap angles does
+    to the sinking in, which is of the order of penetration over radius.
+
+    Parameters
+    ----------
+    path : Path
+        Path with all tensioners at zero.
+    belt, contact
+        As for `settle`.
+    carriers : sequence of Carrier
+        The tensioners, shape (K,).
+
+    Returns
+    -------
+    rest : Rest
+    positions : ndarray, shape (K,)
+        Positions q of the tensioners, m or rad.
+
+    Raises
+    ------
+    ValueError
+        If a tensioner finds no balance, or no stable one at a tension that is asked for.
+    """
+    positions = np.zeros(len(carriers))
+    situations = [_Situation(path, belt, contact, carriers, positions, number) for number in range(len(carriers))]
+    for situation in situations:
+        positions[situation.number] = _preferred(situation)
+    for _ in range(_MOST_ROUNDS if situations[1:] else 0):
+        before = positions.copy()
+        for situation in situations:
+            positions[situation.number] = _nearest(situation)
+        if np.all(np.abs(positions - before) <= _ACCURACY * (1 + np.abs(positions))):
+            break
+    else:
+        if situations[1:]:
+            raise ValueError("the tensioners find no balance together. Make their springs stiffer, or give stops")
+    return settle(moved(path, carriers, positions), belt, contact), positions
+
+
+def all_balances(
+    path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier], positions: FloatArray
+) -> tuple[tuple[TensionerBalance, ...], ...]:
+    """Find every balance of each tensioner, the others held.
+
+    Parameters
+    ----------
+    path, belt, contact, carriers
+        As for `come_to_rest`.
+    positions : ndarray, shape (K,)
+        Where the tensioners stand, m or rad.
+
+    Returns
+    -------
+    tuple of tuples of TensionerBalance
+        For each tensioner, in ascending order of the positions.
+    """
+    situations = (_Situation(path, belt, contact, carriers, positions, number) for number in range(len(carriers)))
+    return tuple(_described(situation) for situation in situations)
+
+
+def _described(situation: _Situation) -> tuple[TensionerBalance, ...]:
+    """All balances of a tensioner."""
+    found = sorted(_balances(situation, 0.0))
+    here = min(found, key=lambda q: abs(q - situation.positions[situation.number]), default=None)
+    return tuple(TensionerBalance(q, situation.is_stable(q), q == here) for q in found)
+
+
+def _preferred(situation: _Situation) -> float:
+    """The stable balance nearest to the nominal place, or the nearest one of all."""
+    nearest = None
+    for position in _balances(situation, 0.0):
+        if situation.is_stable(position):
+            return position
+        nearest = position if nearest is None else nearest
+    if nearest is None:
+        raise ValueError(_no_balance(situation.carrier, situation.excess(0.0)))
+    if situation.belt.installed_tension is not None:
+        raise ValueError(_no_stable_balance(situation.carrier, nearest, situation.belt.installed_tension))
+    return nearest
+
+
+def _nearest(situation: _Situation) -> float:
+    """The balance nearest to where a tensioner stands."""
+    start = float(situation.positions[situation.number])
+    found = next(_balances(situation, start), None)
+    if found is None:
+        raise ValueError(_no_balance(situation.carrier, situation.excess(start)))
+    return found
+
+
+def _balances(situation: _Situation, start: float) -> Iterator[float]:
+    """Find positions in which the excess changes its sign, on both sides of a start, the nearer ones first."""
+    scale, around = situation.scale, isinstance(situation.carrier.tensioner, RotaryTensioner)
+    reach = np.pi if around else 0.5 * situation.path.length
+    first = situation.excess(start)
+    if first == 0.0:
+        yield start
+    sides = [_Side(situation.excess, start, side * scale) for side in (1.0, -1.0)]
+    while sides:
+        side = min(sides, key=lambda one: abs(one.here - start))
+        if abs(side.here - start) > reach or not side.go_on():
+            sides.remove(side)
+        elif side.found is not None:
+            yield side.found
+
+
+class _Side:
+    """The way of a tensioner from a start to one side, searched by growing steps."""
+
+    def __init__(self, excess: Callable[[float], float], start: float, scale: float) -> None:
+        self._excess, self._longest = excess, _LONGEST_STEP * scale
+        self._step = _FIRST_STEP * scale
+        self.here, self._value = start, excess(start)
+        self.found: float | None = None
+
+    def go_on(self) -> bool:
+        """Take a step, and find the balance on it if there is one; False where the way ends."""
+        from scipy.optimize import brentq
+
+        ahead, self.found = self.here + self._step, None
+        try:
+            value = self._excess(ahead)
+            if value * self._value < 0.0:
+                self.found = float(brentq(self._excess, self.here, ahead, xtol=1e-15, rtol=_ROUNDING))
+        except ValueError:
+            return False
+        self.here, self._value = ahead, value
+        self._step = min(_GROWTH * self._step, self._longest, key=abs)
+        return True
+
+
+def _covers_another(path: Path, pulley: int) -> bool:
+    """Tell whether a pulley and another one cover the center of one of them: neither can pass the other."""
+    distances = np.linalg.norm(np.delete(path.centers, pulley, axis=0) - path.centers[pulley], axis=1)
+    radii = np.abs(path.radii)
+    return bool(np.any(distances < np.maximum(np.delete(radii, pulley), radii[pulley])))
+
+
+def _no_balance(one: Carrier, excess: float) -> str:
+    name = one.tensioner.pulley
+    if excess > 0:
+        return (
+            f'the tensioner of "{name}" moves on and on without tensioning the belt enough. '
+            "Shorten the belt, lower the preload, or give stops"
+        )
+    return (
+        f'the belt pushes the tensioner of "{name}" away without losing enough tension. '
+        "Lengthen the belt, raise the preload, or give stops"
+    )
+
+
+def _no_stable_balance(one: Carrier, position: float, tension: float) -> str:
+    return (
+        f'with belt.installed_tension = {tension:.5g} N the tensioner of "{one.tensioner.pulley}" balances the belt at '
+        f"{place_of(one.tensioner, position)}, but not stably: what moves it a little drives it away. Change its pivot "
+        "or direction, raise the rate of its spring, or give stops"
+    )

@@ -1,0 +1,235 @@
+"""The belt at rest in its drive, and the length with which it has the tension that is asked for.
+
+The tension at rest is the mean of the span tensions in static equilibrium, on the drive's own mesh: with contact,
+bending, weight and spring-loaded tensioners, without friction.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive, Installation, describe, install
+from beltdyn.model import Path as BeltPath
+from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.progress import Phase, Progress, Report
+from beltdyn.solve.static import find_equilibrium, standing, tensioner_compliance
+from beltdyn.system.arrays import FloatArray, System
+from beltdyn.system.build import drive_system
+from beltdyn.system.observations import Observations
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State, laid
+
+_DEEPEST_START = 0.1
+"""Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
+_STIFFER_FIRST = (64.0, 16.0, 4.0, 1.0)
+_SOFTER_FIRST = (1 / 64, 1 / 16, 1 / 4, 1.0)
+"""Stiffness of contact on the way to equilibrium, over the drive's own."""
+_DEEPEST = 0.5
+"""Depth over radius, beyond which contact pushes a belt back the less the deeper it sinks: no balance is stable."""
+_SOUND = 0.1
+"""Depth over radius up to which contact may be soft."""
+_ACCURACY = 1e-6
+"""Of the tension that is asked for, relative."""
+_MOST_TRIALS = 30
+_LONGEST_CHANGE = 0.02
+"""Change of a belt's length from one trial to the next, over its length, at most."""
+_LEAST_CHANGE = 1e-7
+
+
+class Rest(NamedTuple):
+    """A drive at rest."""
+
+    drive: Drive
+    """With the length, or the take-up, that gives the tension asked for."""
+    system: System
+    """Its arrays."""
+    state: State
+    """Static equilibrium."""
+    seen: Observations
+    """What is seen there, one instant."""
+    unstable: tuple[str, ...] = ()
+    """Pulleys whose tensioners something drives away from there as soon as it moves them a little."""
+
+    @property
+    def tension(self) -> float:
+        """Mean of the span tensions, N."""
+        return float(self.seen.span_tension[0].mean())
+
+    @property
+    def installation(self) -> Installation:
+        """What it gives in place of the estimates of `beltdyn.model.install`."""
+        seen, drive = self.seen, self.drive
+        positions = self.state.position[self.state.position.size - self.system.tensioners.size :]
+        depths = np.array([np.median(depth) for depth in _depths(drive, seen)])
+        return describe(drive, seen.span_tension[0], depths, seen.hub_force[0], positions)
+
+
+def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
+    """Find the static equilibrium of a drive, with the installed tension that was asked for if one was.
+
+    The closed form of `beltdyn.model.rest`, from which the drive has its length, leaves out bending and weight. The
+    length, or the take-up where the length is given too, follows from the tension at rest by the secant method.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    progress
+        Called with a `Progress` before kernels are compiled and before equilibrium is sought.
+
+    Returns
+    -------
+    Rest
+        Its drive is the one given, except for the length of the belt or the take-up.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no equilibrium in which the belt touches every pulley, or none with the tension asked for.
+    """
+    system = drive_system(drive)
+    _tell(drive, progress, "compiling")
+    compile_kernels(system, laid(system, drive.path))
+    _tell(drive, progress, "equilibrium")
+    rest = _at_rest(drive)
+    if drive.installed_tension is not None:
+        rest = _tighten(rest, drive.installed_tension)
+    return rest._replace(unstable=_unstable(rest))
+
+
+def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:
+    if progress is not None:
+        progress(Progress(0.0, drive.simulation.duration, 0.0, 0, phase))
+
+
+def _unstable(rest: Rest) -> tuple[str, ...]:
+    """Pulleys whose tensioners move against a force, or move most where several do so together."""
+    compliance = tensioner_compliance(rest.system, rest.state)
+    if not np.all(np.isfinite(compliance)):
+        return ()
+    arms = rest.system.bodies.reach[rest.system.bodies.size - len(compliance) :]
+    values, ways = np.linalg.eigh(compliance * np.outer(arms, arms))
+    most = [int(np.argmax(np.abs(way))) for value, way in zip(values, ways.T, strict=True) if value < 0.0]
+    return tuple(rest.drive.pulleys[rest.system.tensioners.pulley[number]].name for number in sorted(set(most)))
+
+
+def _tighten(first: Rest, wanted: float) -> Rest:
+    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted."""
+    length = first.drive.belt.length
+    rest, done = first, 0.0
+    slope = first.drive.belt.axial_stiffness / length
+    for _ in range(_MOST_TRIALS):
+        missing = wanted - rest.tension
+        if abs(missing) <= _ACCURACY * wanted:
+            return rest
+        change = float(np.clip(missing / slope, -_LONGEST_CHANGE * length, _LONGEST_CHANGE * length))
+        ahead, change = _shortened(first.drive, done, change)
+        gained = ahead.tension - rest.tension
+        slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
+    raise _out_of_reach(
+        first.drive,
+        f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt.length:.6g} m, and "
+        f"{first.tension:.5g} N with {length:.6g} m, since tensioners hold it.",
+    )
+
+
+def _shortened(drive: Drive, done: float, change: float) -> tuple[Rest, float]:
+    """Shorten a belt some more, or by a part of it where all of it leads to no equilibrium; with what was done, m."""
+    while True:
+        try:
+            return _at_rest(drive.tightened(done + change)), change
+        except (ConvergenceError, ModelError) as error:
+            change *= 0.5
+            if abs(change) < _LEAST_CHANGE * drive.belt.length:
+                raise _out_of_reach(drive, str(error)) from error
+
+
+def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
+    return ConvergenceError(
+        f"belt.installed_tension = {drive.installed_tension:.5g} N is not reached with {drive.belt.elements} elements: "
+        f"{reason} Change the tension, or give belt.length in its place."
+    )
+
+
+def _at_rest(drive: Drive) -> Rest:
+    """Static equilibrium of a definite drive.
+
+    Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
+    """
+    system, installation = drive_system(drive), install(drive)
+    failures = list[ConvergenceError]()
+    for way in ((1.0,), _STIFFER_FIRST, _SOFTER_FIRST):
+        state = _lying(drive, system, installation, way[0])
+        try:
+            for factor in way:
+                law = system.law._replace(stiffness=factor * system.law.stiffness)
+                state = find_equilibrium(system._replace(law=law), state).state
+            return _looked_at(drive, system, state)
+        except ConvergenceError as error:
+            failures.append(error)
+    raise ConvergenceError(f"{failures[0]}{_cause(drive, installation)}")
+
+
+def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+    """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor.
+
+    On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
+    then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
+    """
+    path = installation.path
+    depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
+    drawn_in = BeltPath(path.centers, path.radii - depth * np.sign(path.radii))
+    return laid(system, drawn_in, installation.tensioner_positions)
+
+
+def _looked_at(drive: Drive, system: System, state: State) -> Rest:
+    """An equilibrium in which the belt touches every pulley.
+
+    Raises
+    ------
+    ConvergenceError
+        If it does not: forces are in balance of a belt that has left a pulley, or lies behind its center, too.
+    """
+    seen = observe(standing(system), np.zeros(1), state.position[None], state.velocity[None])
+    depths = _depths(drive, seen)
+    for pulley, radius, wrap, depth in zip(
+        drive.pulleys, drive.radii, seen.wrap_angle[0], map(np.max, depths), strict=True
+    ):
+        if not wrap > 0.0:
+            raise ConvergenceError(f'no static equilibrium found on all pulleys: the belt leaves "{pulley.name}".')
+        if depth > _DEEPEST * radius:
+            raise ConvergenceError(
+                f'no static equilibrium found on all pulleys: the belt sinks into "{pulley.name}" by {depth:.2g} m, '
+                f"more than {_DEEPEST:.0%} of its radius."
+            )
+    if not np.all(np.isfinite(seen.span_tension)):
+        raise ConvergenceError(
+            "no static equilibrium found: a span is shorter than the distance of contact points on the belt, which "
+            "then has no tension of its own. Give the belt more elements."
+        )
+    return Rest(drive, system, state, seen)
+
+
+def _depths(drive: Drive, seen: Observations) -> list[FloatArray]:
+    """Penetrations of contact points on each pulley, m; zero where it is touched between points alone."""
+    places, touched, centers = seen.contact_position[0], seen.contact_pulley[0], seen.pulley_center[0]
+    depths = [
+        radius - np.linalg.norm(places[touched == number] - centers[number], axis=1)
+        for number, radius in enumerate(drive.radii)
+    ]
+    return [depth if depth.size else np.zeros(1) for depth in depths]
+
+
+def _cause(drive: Drive, installation: Installation) -> str:
+    """Why an equilibrium may not exist: contact so soft that the belt sinks through a pulley."""
+    parts = installation.penetrations / drive.radii
+    worst = int(np.argmax(parts))
+    if not parts[worst] > _SOUND:
+        return ""
+    enough = drive.contact.stiffness * parts[worst] / _SOUND
+    return (
+        f' Contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by {parts[worst]:.0%} of the '
+        f"radius. Raise contact.stiffness from {drive.contact.stiffness:.2g} to {enough:.2g} N/m^2, or lower the "
+        "tension, or make the pulley larger."
+    )
