@@ -35,7 +35,8 @@ def check(
     from beltdyn.model import advise, install, load, unstable_balance
     from beltdyn.solve import bring_to_rest
 
-    drive = load(file)
+    drive = given = load(file)
+    estimate = install(drive)
     failure: ConvergenceError | None = None
     unstable: tuple[str, ...] = ()
     try:
@@ -43,7 +44,7 @@ def check(
             rest = bring_to_rest(drive, report)
         drive, installation, unstable = rest.drive, rest.installation, rest.unstable
     except ConvergenceError as error:
-        failure, installation = error, install(drive)
+        failure, installation = error, estimate
         show("No static equilibrium was found. These are estimates by hand, without bending and weight.\n")
     show_facts(_facts(drive, installation))
     show_table(
@@ -60,7 +61,7 @@ def check(
             _tensioners(drive, installation),
         )
     show()
-    show_warnings([*map(unstable_balance, unstable), *advise(drive, installation)])
+    show_warnings([*map(unstable_balance, unstable), *advise(given, estimate)])
     if figure is None:
         show(f"To see the layout: beltdyn check {file} --figure layout.png")
     else:

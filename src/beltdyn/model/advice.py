@@ -70,7 +70,7 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
     if drive.installed_tension is None:
         return [
             f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
-            f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}, or count on {tension:.4g} N."
+            f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}."
         ]
     shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt.length
     return [

@@ -134,9 +134,9 @@ def test_run_without_outputs_is_said(run: Run) -> None:
 def test_belt_that_leaves_a_pulley_is_said(make_run: MakeRun) -> None:
     wrap = np.full((11, 2), np.pi)
     wrap[3:5, 1] = 0.0
-    assert "the belt leaves the pulley driven at t = 0.3 s. Raise the tension." in (
-        make_run(outputs=11, wrap_angle=wrap).warnings
-    )
+    (warning,) = (text for text in make_run(outputs=11, wrap_angle=wrap).warnings if "leaves the pulley" in text)
+    assert warning.startswith("the belt leaves the pulley driven at t = 0.3 s.")
+    assert warning.endswith("have no tension and no speed as long. Raise the tension.")
 
 
 def test_pulley_near_gross_slip_is_said(make_run: MakeRun) -> None:
