@@ -158,8 +158,6 @@ def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatAr
             bending=belt.bending_stiffness,
             sag_parameter=sag_parameter(mass * gravity, length, tension, belt.axial_stiffness),
         )
-        for length, gravity, tension in zip(
-            path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True
-        )
+        for length, gravity, tension in zip(path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True)
     ]
     return np.array(found)
