@@ -146,7 +146,7 @@ def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatAr
 
     The mass of a metre is that of the stretched belt. A slack belt does not swing: zero.
     """
-    if not tension > 0.0:
+    if not tensions.min() > 0.0:
         return np.zeros(path.count)
     belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt.length / path.length
     across = np.abs(path.span_directions @ np.array([-drive.gravity[1], drive.gravity[0]]))
