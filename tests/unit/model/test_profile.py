@@ -104,3 +104,14 @@ def test_table_from_a_file(tmp_path: Path) -> None:
     table = Table.model_validate({"file": file})
     assert table.times == (0.0, 2.0)
     assert table.values == (1.0, 3.0)
+
+
+def test_largest_value_sees_pulses_jumps_and_ends() -> None:
+    pulse = Table(times=(0.4001, 0.4002, 0.4003), values=(1.0, -7.0, 1.0))
+    assert pulse.largest(1.0) == pytest.approx(7.0)
+    assert pulse.largest(0.4) == 1.0
+    assert Step(time=0.5, before=9.0, value=-2.0).largest(1.0) == 9.0
+    assert Step(time=0.5, before=1.0, value=-2.0).largest(1.0) == 2.0
+    assert Step(time=0.5, before=1.0, value=-2.0).largest(0.5) == 1.0
+    assert CosineRampPublished(start=0.2, end=0.4, value=-3.0).largest(2.0) == pytest.approx(3.0)
+    assert Ramp(start=0.0, end=2.0, value=3.0).largest(1.0) == pytest.approx(1.5)

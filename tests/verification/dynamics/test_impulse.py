@@ -9,7 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from beltdyn import simulate
 from beltdyn.model import Belt, Drive, Pulley
 from beltdyn.model.instants import Instants
 from beltdyn.solve.alpha_march import GeneralizedAlpha
@@ -211,3 +213,31 @@ def test_standard_integrators_see_pulses(follow: Follow, name: Any, width: float
     speed = follow((0.0, 0.0), integrator, **damped(pulse(width, 4, 20.0 / width)))
     exact = follow((0.0, 0.0), **damped(pulse(width, 4, 20.0 / width)))
     assert speed.speeds[0] == pytest.approx(exact.speeds[0], abs=ALLOWED)
+
+
+@pytest.mark.parametrize("place", [0.9002, 0.9005])
+@pytest.mark.parametrize(("width", "height"), [(1e-4, 400.0), (5e-4, 400.0), (2e-3, 100.0)])
+def test_pulse_of_a_load_on_a_running_drive(
+    drive: Drive, measured: Measured, width: float, height: float, place: float
+) -> None:
+    """Within the pulse the belt takes up to a hundredth of its impulse: it swings at 9 Hz, and creeps."""
+    table = {"kind": "table", "times": [place, place + 0.5 * width, place + width], "values": [0.0, -height, 0.0]}
+    quiet, struck = (_run(drive, torque) for torque in ({"kind": "constant", "value": 0.0}, table))
+    loss = 0.5 * width * height / drive.pulleys[1].inertia
+    after = float(np.ceil(1e3 * (place + width)) / 1e3)
+    change = struck.pulley_speed[:, 1].sel(time=after) - quiet.pulley_speed[:, 1].sel(time=after)
+    work = 0.5 * width * height * (float(quiet.pulley_speed[:, 1].sel(time=0.9)) - 0.5 * loss)
+    closure = float(np.abs(struck.energy_closure).max() - np.abs(quiet.energy_closure).max())
+    measured(change=float(change) / loss + 1, work=float(struck.torque_work[-1]) / work + 1, closure=closure)
+    assert float(change) == pytest.approx(-loss, rel=0.012)
+    assert float(struck.torque_work[-1]) == pytest.approx(-work, rel=2e-3)
+    assert closure < 1e-4
+    assert struck.attrs["steps"] < 1.1 * quiet.attrs["steps"]
+
+
+def _run(drive: Drive, torque: dict[str, Any]) -> xr.Dataset:
+    """The example drive with a torque on its driven pulley, in steps of up to a millisecond."""
+    data = drive.model_dump(by_alias=True, exclude_none=True)
+    data["pulley"][1]["torque"] = torque
+    data["simulation"]["duration"] = 0.92
+    return simulate(Drive(**data)).dataset
