@@ -1,18 +1,19 @@
 """The catalogue: belts as they are sold, by the name of their profile."""
 
-import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
 from math import pi
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field, ValidationError
 
+from beltdyn.model.guide import shorten
 from beltdyn.model.messages import explain, reason
 from beltdyn.model.part import Part
 from beltdyn.model.quantity import Angle, AxialStiffness, BendingStiffness, Length, MassPerLength, Time
+from beltdyn.model.text_file import LONGEST_TOML, parse_toml, read_text
 
 
 class Entry(Part):
@@ -68,15 +69,15 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
     if name is None:
         return dict(_shipped())
     if not isinstance(name, str | Path):
-        raise ValueError(f"catalogue = {name!r} must be the path of a TOML file, as text")
+        raise ValueError(f"catalogue = {shorten(name)!r} must be the path of a TOML file, as text")
     try:
-        text = ((base or Path()) / name).read_text(encoding="utf-8-sig")
+        text = read_text((base or Path()) / name, LONGEST_TOML)
     except UnicodeDecodeError as error:
-        raise ValueError(f'catalogue = "{name}" is not a text in UTF-8. A catalogue is TOML') from error
+        raise ValueError(f'catalogue = "{shorten(name)}" is not a text in UTF-8. A catalogue is TOML') from error
     except (OSError, ValueError) as error:
         raise ValueError(
-            f'catalogue = "{name}" cannot be read: {reason(error)}. A relative path starts at the folder of the '
-            "drive file"
+            f'catalogue = "{shorten(name)}" cannot be read: {reason(error)}. A relative path starts at the folder of '
+            "the drive file"
         ) from error
     return _shipped() | _entries(text, str(name))
 
@@ -89,17 +90,20 @@ def _shipped() -> dict[str, Entry]:
 
 def _entries(text: str, name: str) -> dict[str, Entry]:
     try:
-        tables: dict[str, Any] = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f'catalogue = "{name}" is not valid TOML: {error}. Correct the file there') from error
+        tables = parse_toml(text)
+    except ValueError as error:
+        raise ValueError(
+            f'catalogue = "{shorten(name)}" is not valid TOML: {shorten(error, 200)}. Correct the file there'
+        ) from error
     return {profile: _entry(profile, table, name) for profile, table in tables.items()}
 
 
 def _entry(profile: str, table: object, name: str) -> Entry:
+    file, profile = f'catalogue = "{shorten(name)}"', shorten(profile)
     if not isinstance(table, Mapping):
-        raise ValueError(f'catalogue = "{name}": {profile} must be a group of keys, such as [{profile}]. Correct it')
+        raise ValueError(f"{file}: {profile} must be a group of keys, such as [{profile}]. Correct it")
     try:
         return Entry.model_validate(table)
     except ValidationError as error:
         told = explain(error, Entry, table).splitlines()
-        raise ValueError("\n".join(f'catalogue = "{name}", profile {profile}: {line}' for line in told)) from None
+        raise ValueError("\n".join(f"{file}, profile {profile}: {line}" for line in told)) from None

@@ -5,6 +5,14 @@ from typing import Any
 
 from pydantic import BaseModel
 
+_LONGEST_NAME = 60
+
+
+def shorten(text: object, longest: int = _LONGEST_NAME) -> str:
+    """Write what a user wrote, and only its beginning if it is long."""
+    words = str(text)
+    return words if len(words) <= longest else f"{words[: longest - 3]}..."
+
 
 class Guide:
     """Follows the location of an error through the JSON schema of a model, and through the user's data.
@@ -47,7 +55,7 @@ class Guide:
                 entries = schema.get("prefixItems") or [schema.get("items", {})]
                 schema = {"description": schema.get("description", "")} | self._resolve(entries[0])
             else:
-                path += f".{step}" if path else step
+                path += f".{shorten(step)}" if path else shorten(step)
                 schema = self._resolve(schema.get("properties", {}).get(step, {}))
         return path, schema
 
@@ -78,4 +86,4 @@ def _item(data: Any, step: int | str) -> Any:
 
 def _name(data: Any) -> str:
     name = _item(data, "name")
-    return name if isinstance(name, str) else ""
+    return shorten(name) if isinstance(name, str) else ""

@@ -8,9 +8,11 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from beltdyn.model.guide import Guide
+from beltdyn.model.guide import Guide, shorten
 
 _LONGEST_VALUE = 60
+_LONGEST_SENTENCE = 1000
+_MOST_ERRORS = 20
 _RULES = {
     "greater_than": "must be greater than {gt:g}",
     "greater_than_equal": "must be at least {ge:g}",
@@ -50,9 +52,12 @@ def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, A
         One line for each error.
     """
     guide = Guide(model, data)
-    details = error.errors(include_url=False)
+    details = error.errors(include_url=False)[:_MOST_ERRORS]
     told = [detail for detail in details if not _follows_from_another(detail, details, guide)]
-    sentences = dict.fromkeys(_sentence(detail, guide).rstrip(". ") for detail in told)
+    sentences = dict.fromkeys(shorten(_sentence(detail, guide).rstrip(". "), _LONGEST_SENTENCE) for detail in told)
+    more = error.error_count() - len(details)
+    if more > 0:
+        sentences[f"There are {more} more errors, which are not shown"] = None
     return "\n".join(sentence if sentence.endswith("?") else f"{sentence}." for sentence in sentences)
 
 
@@ -137,4 +142,4 @@ def show(value: object) -> str:
         text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError, RecursionError):
         text = str(value)
-    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 3]}..."
+    return shorten(text, _LONGEST_VALUE)

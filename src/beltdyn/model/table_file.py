@@ -8,7 +8,9 @@ from typing import Any
 
 from pydantic import ValidationInfo
 
+from beltdyn.model.guide import shorten
 from beltdyn.model.messages import reason
+from beltdyn.model.text_file import LONGEST_TABLE, read_text
 
 
 def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
@@ -111,16 +113,17 @@ def read_table(name: object, base: Path | None) -> tuple[list[float], list[float
         If the file cannot be read, or is not a table of two columns of numbers.
     """
     if not isinstance(name, str | Path):
-        raise ValueError(f"file = {name!r} must be the path of a CSV file, as text")
+        raise ValueError(f"file = {shorten(name)} must be the path of a CSV file, as text")
     rows = _rows(name, base)
     if rows and _numbers(rows[0][1]) is None:
         rows = rows[1:]
-    points = []
+    points: list[tuple[float, float]] = []
     for line, cells in rows:
         numbers = _numbers(cells)
         if numbers is None:
+            what = f'"{shorten(",".join(cells), 40)}" ' if points else ""  # what is no table may be anything
             raise ValueError(
-                f'file = "{name}", line {line}: "{",".join(cells)[:40]}" is not two numbers with a comma between. '
+                f'file = "{shorten(name)}", line {line}: {what}is not two numbers with a comma between. '
                 "Correct this line"
             )
         points.append(numbers)
@@ -133,18 +136,21 @@ def _rows(name: str | Path, base: Path | None) -> list[tuple[int, list[str]]]:
     try:
         return [(reader.line_num, row) for row in reader if row and not row[0].startswith("#")]
     except csv.Error as error:
-        raise ValueError(f'file = "{name}", line {reader.line_num}, is not CSV: {error}. Correct this line') from error
+        raise ValueError(
+            f'file = "{shorten(name)}", line {reader.line_num}, is not CSV: {error}. Correct this line'
+        ) from error
 
 
 def _text(name: str | Path, base: Path | None) -> str:
     path = (base or Path()) / name
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return read_text(path, LONGEST_TABLE)
     except UnicodeDecodeError as error:
-        raise ValueError(f'file = "{name}" is not a CSV text file. Save it as CSV in UTF-8') from error
+        raise ValueError(f'file = "{shorten(name)}" is not a CSV text file. Save it as CSV in UTF-8') from error
     except (OSError, ValueError) as error:
         raise ValueError(
-            f'file = "{name}" cannot be read: {reason(error)}. A relative path starts at the folder of the drive file'
+            f'file = "{shorten(name)}" cannot be read: {reason(error)}. A relative path starts at the folder of '
+            "the drive file"
         ) from error
 
 

@@ -8,7 +8,11 @@ from pydantic import ValidationError
 
 from beltdyn.errors import ModelError
 from beltdyn.model.drive import Drive
+from beltdyn.model.guide import shorten
 from beltdyn.model.messages import explain, reason
+from beltdyn.model.text_file import LONGEST_TOML, parse_toml, read_text
+
+_LONGEST_REASON = 200
 
 
 def load(path: str | pathlib.Path) -> Drive:
@@ -37,7 +41,7 @@ def load(path: str | pathlib.Path) -> Drive:
     """
     path = pathlib.Path(path)
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path, LONGEST_TOML)
     except UnicodeDecodeError as error:
         raise ModelError(f"{path} is not a text in UTF-8. A drive file is TOML: `beltdyn new` writes one.") from error
     except (OSError, ValueError) as error:
@@ -82,13 +86,12 @@ def loads(text: str, base: pathlib.Path | None = None) -> Drive:
 
 def _parse(text: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text)
+        return parse_toml(text)
     except tomllib.TOMLDecodeError as error:
-        raise ModelError(f"the drive file is not valid TOML: {error}. Correct the file there.") from error
-    except (ValueError, RecursionError) as error:
-        raise ModelError(
-            "the drive file is not valid TOML: it nests too deeply, or holds too long a number."
-        ) from error
+        told = shorten(error, _LONGEST_REASON)
+        raise ModelError(f"the drive file is not valid TOML: {told}. Correct the file there.") from error
+    except ValueError as error:
+        raise ModelError(f"the drive file is not valid TOML: {error}.") from error
 
 
 def _refers_to_files(data: Any) -> bool:

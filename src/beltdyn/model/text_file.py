@@ -1,0 +1,95 @@
+"""Texts from files, and TOML from texts, within bounds that keep reading quick and memory small."""
+
+import re
+import stat
+import tomllib
+from pathlib import Path
+from typing import Any
+
+LONGEST_TOML = 4_000_000
+"""Bytes of the longest drive file or catalogue."""
+
+LONGEST_TABLE = 100_000_000
+"""Bytes of the longest CSV file."""
+
+_DEEPEST = 32
+_NO_STRUCTURE = re.compile(
+    r'"""(?:\\.|[^\\])*?"""|' r"'''.*?'''|" r'"(?:\\.|[^"\\\n])*"|' r"'[^'\n]*'|" r"(?P<comment>\#[^\n]*)", re.DOTALL
+)
+_DOTTED = re.compile(r"[\w\-]+(?:[ \t]*\.[ \t]*[\w\-]+)*")
+_BRACKET = re.compile(r"[\[\]{}]")
+
+
+def read_text(path: Path, longest: int) -> str:
+    """Read a text in UTF-8.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    longest : int
+        Most bytes that it may hold.
+
+    Returns
+    -------
+    str
+        The text, without a byte order mark.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ValueError
+        If it is no regular file, is too long, is no text in UTF-8 (`UnicodeDecodeError`), or its name is impossible.
+    """
+    status = path.stat()
+    if stat.S_ISDIR(status.st_mode):
+        raise ValueError("is a directory")
+    if not stat.S_ISREG(status.st_mode):
+        raise ValueError("it is a device or a pipe, not a file")
+    with path.open("rb") as file:
+        data = file.read(longest + 1)
+    if len(data) > longest:
+        raise ValueError(f"it holds {max(status.st_size, len(data)):,} bytes, and {longest:,} are the limit")
+    return data.decode("utf-8-sig").replace("\r\n", "\n")
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """Parse TOML.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    dict
+        Its tables.
+
+    Raises
+    ------
+    ValueError
+        If it is not TOML, is too long, nests too deeply, or holds too long a number.
+    """
+    if len(text) > LONGEST_TOML:
+        raise ValueError(f"it is longer than {LONGEST_TOML:,} characters. Put long tables into CSV files")
+    if _depth(text) > _DEEPEST:
+        raise ValueError("it nests too deeply")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except (ValueError, RecursionError) as error:
+        raise ValueError("it nests too deeply, or holds too long a number") from error
+
+
+def _depth(text: str) -> int:
+    """Largest number of brackets around a value, or of dots in a key; the parser needs its square in memory."""
+    bare = _NO_STRUCTURE.sub(lambda found: "" if found["comment"] else "s", text)
+    deepest = max((key.group().count(".") for key in _DOTTED.finditer(bare)), default=0)
+    depth = 0
+    for bracket in _BRACKET.finditer(bare):
+        depth = depth + 1 if bracket.group() in "[{" else max(depth - 1, 0)
+        deepest = max(deepest, depth)
+    return deepest
