@@ -1,6 +1,7 @@
 """The way from the location of an error to the key that a user wrote."""
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from pydantic import BaseModel
@@ -26,7 +27,7 @@ class Guide:
     """
 
     def __init__(self, model: type[BaseModel], data: Mapping[str, Any]) -> None:
-        self._schema = model.model_json_schema(by_alias=True)
+        self._schema = _schema_of(model)
         self._data = data
         self._prefix = "" if "belt" in model.model_fields else model.__name__.lower()
 
@@ -75,6 +76,12 @@ class Guide:
         if len(given) == 1:
             return {"description": schema.get("description", "")} | self._resolve(given[0])
         return schema
+
+
+@cache
+def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """The JSON schema of a model, which takes longer to make than a drive to be read."""
+    return model.model_json_schema(by_alias=True)
 
 
 def _item(data: Any, step: int | str) -> Any:

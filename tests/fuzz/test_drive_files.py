@@ -1,0 +1,101 @@
+"""Thousands of wrong drive files: each is checked, or refused with a message; none ends in a traceback or takes long.
+
+BELTDYN_MUTATIONS says how many are tried, and BELTDYN_FIRST_MUTATION the first seed.
+"""
+
+import contextlib
+import io
+import os
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from tests.fuzz.drive_mutations import bases, mutated
+
+from beltdyn.cli.check import check
+from beltdyn.errors import BeltdynError
+
+FIRST = int(os.environ.get("BELTDYN_FIRST_MUTATION", "0"))
+COUNT = int(os.environ.get("BELTDYN_MUTATIONS", "1000"))
+LONGEST = 10.0
+"""CPU time of the check of a file, s."""
+
+LARGEST = 1_000_000
+"""Growth of the memory of the process over all files, kB."""
+
+LONGEST_MESSAGE = 30_000
+
+
+class TooLongError(Exception):
+    """A file took too long."""
+
+
+@contextlib.contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """End what takes longer, where the system can tell."""
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def stop(*_: object) -> None:
+        raise TooLongError
+
+    before = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+
+
+def outcome(path: Path) -> str:
+    """Check a file: what went wrong beside a refusal in words; empty if nothing did."""
+    try:
+        with limited(LONGEST), contextlib.redirect_stdout(io.StringIO()):
+            check(path)
+    except BeltdynError as error:
+        return "" if 0 < len(str(error)) < LONGEST_MESSAGE else f"a message of {len(str(error))} characters"
+    except TooLongError:
+        return "took too long"
+    except BaseException as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        return f"{type(error).__name__}: {str(error)[:100]} ({Path(place.filename).name}:{place.lineno})"
+    return ""
+
+
+def peak_memory() -> int:
+    """Largest memory of this process so far, kB; 0 where that is not known."""
+    if sys.platform != "linux":
+        return 0
+    import resource
+
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("default")
+def test_wrong_drive_files_are_refused_in_words(tmp_path: Path) -> None:
+    originals, wrong, slowest = bases(), dict[int, str](), (0.0, -1)
+    memory = peak_memory()
+    for seed in range(FIRST, FIRST + COUNT):
+        drive, table = mutated(seed, originals)
+        (tmp_path / "drive.toml").write_bytes(drive)
+        (tmp_path / "table.csv").write_bytes(table)
+        (tmp_path / "wrong.csv").write_bytes(b"user:x:0:0\nroot:y:1:1\n")
+        begun = time.process_time()
+        result = outcome(tmp_path / "drive.toml")
+        slowest = max(slowest, (time.process_time() - begun, seed))
+        if result:
+            wrong[seed] = result
+    sys.stdout.write(f"{COUNT} files, slowest {slowest[0]:.2f} s (seed {slowest[1]}), {len(wrong)} wrong\n")
+    assert wrong == {}
+    assert peak_memory() - memory < LARGEST
+
+
+if __name__ == "__main__":
+    pytest.main([__file__, "-q", "-s"])
