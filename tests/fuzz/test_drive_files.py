@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.fuzz.drive_mutations import bases, mutated
+from drive_mutations import bases, mutated
 
 from beltdyn.cli.check import check
 from beltdyn.errors import BeltdynError
@@ -95,7 +95,3 @@ def test_wrong_drive_files_are_refused_in_words(tmp_path: Path) -> None:
     sys.stdout.write(f"{COUNT} files, slowest {slowest[0]:.2f} s (seed {slowest[1]}), {len(wrong)} wrong\n")
     assert wrong == {}
     assert peak_memory() - memory < LARGEST
-
-
-if __name__ == "__main__":
-    pytest.main([__file__, "-q", "-s"])

@@ -79,6 +79,9 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
     except BeltdynError as error:
         show_error(str(error))
         return error.exit_code
+    except OSError as error:
+        show_error(f"{error.filename or 'a file'} cannot be read or written: {error.strerror or error}.")
+        return _BAD_INPUT
     except KeyboardInterrupt:
         show_error("interrupted")
         return exit_code()

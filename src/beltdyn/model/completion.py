@@ -22,6 +22,7 @@ from beltdyn.model.tensioner import (
 from beltdyn.model.tensioner_balance import come_to_rest
 
 _LARGEST_STRAIN = 0.5
+_SMALLEST_STRAIN = 1e-10
 _MOST_STEPS = 60
 
 
@@ -205,6 +206,12 @@ def _check_rest(given: _Open, rest: Rest) -> None:
         raise ValueError(
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
             f"than {_LARGEST_STRAIN:.0%} of its length. Lower it, or make belt and contact stiffer"
+        )
+    least = _SMALLEST_STRAIN * given.belt.axial_stiffness
+    if wanted is not None and wanted < least:
+        raise ValueError(
+            f"belt.installed_tension = {wanted:.5g} N would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of "
+            f"its length, which is lost in rounding. Give at least {least:.1g} N"
         )
     moving = any(isinstance(tensioner, MovingTensioner) for tensioner in given.tensioners)
     _check_length(length, path, tensioned=moving)

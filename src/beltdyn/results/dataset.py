@@ -1,5 +1,6 @@
 """The labelled dataset of a run, from arrays in memory or lazily from its file."""
 
+import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 _OURS = ("drive", "status")
 """Global attributes that every result has."""
+
+_LONGEST_REASON = 200
 
 
 def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, Any]) -> "xr.Dataset":
@@ -69,23 +72,72 @@ def open_dataset(path: Path) -> "xr.Dataset":
     import xarray as xr
 
     try:
+        if not stat.S_ISREG(path.stat().st_mode):
+            raise ValueError("it is not a file")
+        with h5py.File(path, "r"):
+            pass  # h5netcdf complains on standard error where HDF5 cannot open a file
         dataset = xr.open_dataset(path, engine="h5netcdf", decode_times=False)
-    except (OSError, ValueError, KeyError) as error:
-        raise ModelError(f"{path} cannot be read as a result file: {error}.") from error
+    except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
+        raise ModelError(unreadable(path, error)) from error
+    try:
+        _check_names(path, dataset)
+        return _complete(dataset)
+    except ModelError:
+        dataset.close()
+        raise
+    except Exception as error:
+        dataset.close()
+        raise ModelError(unreadable(path, error)) from error
+
+
+def unreadable(path: Path, error: Exception) -> str:
+    """Say that a file cannot be used as a result, and why.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    error : Exception
+        What its reader said.
+
+    Returns
+    -------
+    str
+        The message.
+    """
+    reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
+    return (
+        f"{path} cannot be read as a result file: {reason or type(error).__name__}. Give a file written by "
+        "`beltdyn run`; if this is one, it is damaged: run the drive again."
+    )
+
+
+def _check_names(path: Path, dataset: "xr.Dataset") -> None:
+    """Make sure that a file holds what results hold, along the same dimensions and of the same kinds."""
     known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
     needed = [name for name in known if OPTIONAL.isdisjoint(known[name].dims) or not OPTIONAL.isdisjoint(dataset.dims)]
     missing = [name for name in needed if name not in dataset.variables]
     missing += [name for name in _OURS if name not in dataset.attrs]
+    if missing and all(name in dataset.attrs for name in _OURS):
+        raise ModelError(
+            f"{path} was written by another version of beltdyn: it holds no `{missing[0]}`. Run the drive again; "
+            "its file is the attribute `drive`."
+        )
     if missing:
-        dataset.close()
-        if "drive" in dataset.attrs and "status" in dataset.attrs:
-            raise ModelError(
-                f"{path} was written by another version of beltdyn: it holds no `{missing[0]}`. Run the drive again; "
-                "its file is the attribute `drive`."
-            )
         raise ModelError(
             f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
         )
+    for name in needed:
+        variable, dtype = dataset[name], known[name].dtype
+        if variable.dims != known[name].dims or (dtype != "str" and variable.dtype.kind != np.dtype(dtype).kind):
+            raise ValueError(f"`{name}` is not what it should be")
+    for name in _OURS:
+        if not isinstance(dataset.attrs[name], str):
+            raise ValueError(f"`{name}` is no text")
+
+
+def _complete(dataset: "xr.Dataset") -> "xr.Dataset":
+    """The complete outputs of a file."""
     times = dataset["time"].values
     complete = int(np.count_nonzero(np.isfinite(times)))
     last = times[complete - 1] if complete else -np.inf
@@ -117,7 +169,7 @@ def is_result(path: Path) -> bool:
     try:
         with h5py.File(path, "r") as file:
             return all(name in file.attrs for name in _OURS)
-    except (OSError, RuntimeError, ValueError, KeyError):
+    except Exception:  # see open_dataset
         return False
 
 

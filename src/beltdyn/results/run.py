@@ -12,7 +12,7 @@ import numpy as np
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.results.checks import Finding, find
-from beltdyn.results.dataset import open_dataset
+from beltdyn.results.dataset import open_dataset, unreadable
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
 
@@ -187,4 +187,11 @@ def open_run(path: Path | str) -> Run:
     """
     path = Path(path)
     dataset = open_dataset(path)
-    return Run(dataset, loads(dataset.attrs["drive"], base=path.parent), path)
+    try:
+        drive = loads(dataset.attrs["drive"], base=path.parent)
+        if list(dataset["pulley"].values) != [pulley.name for pulley in drive.pulleys]:
+            raise ValueError("its pulleys are not those of its drive")
+    except ValueError as error:
+        dataset.close()
+        raise ModelError(unreadable(path, error)) from error
+    return Run(dataset, drive, path)

@@ -1,0 +1,98 @@
+"""What mutations and trials have found: each input once ended in a traceback, took long, or was echoed whole."""
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import load, loads
+from beltdyn.published import demo_text
+from beltdyn.results import open_run
+
+LENGTH, WIDTH = "length = 1.2727", "width = 0.01"
+TORQUE = 'torque = { kind = "cosine_ramp", start = 0.05, end = 0.6, value = 0.0 }'
+LONGEST_MESSAGE = 5000
+LONG = 100_000
+
+Change = Callable[[str], str]
+
+
+def put(line: str) -> Change:
+    return lambda text: f"{line}\n{text}"
+
+
+def replace(old: str, new: str) -> Change:
+    def change(text: str) -> str:
+        assert old in text
+        return text.replace(old, new, 1)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "part"),
+    [
+        (put("a." * 1000 + "b = 1"), "nests too deeply"),
+        (put("a." * 50_000 + "b = 1"), "nests too deeply"),
+        (put("[" + "a . " * 50_000 + "b]"), "nests too deeply"),
+        (put('"a".' * 50_000 + "b = 1"), "nests too deeply"),
+        (put("a = " + "[" * 5000 + "]" * 5000), "nests too deeply"),
+        (put("a = " + "{ a = " * 5000 + "1" + " }" * 5000), "nests too deeply"),
+        (put("# " + "x" * 5_000_000), "longer than 4,000,000"),
+        (put("x" * LONG + " = 1"), "is not a known key"),
+        (put("x" * LONG), "is not valid TOML"),
+        (replace(WIDTH, f'width = "{"x" * LONG}"'), "must be a number in m"),
+        (replace(WIDTH, f"width = {'9' * LONG}"), "too long a number"),
+        (replace('name = "driver"', f'name = "{"x" * LONG}"'), "longer than"),
+        (replace(WIDTH, "width = [" + '"x", ' * LONG + "]"), "must be a number"),
+        (
+            replace(TORQUE, 'torque = { kind = "table", times = [' + '"x", ' * LONG + "], values = [0] }"),
+            "more errors, which are not shown",
+        ),
+        (replace(LENGTH, "installed_tension = 1e-12"), "lost in rounding. Give at least"),
+    ],
+)
+def test_drive_files(change: Change, part: str) -> None:
+    begun = time.process_time()
+    with pytest.raises(ModelError) as refusal:
+        loads(change(demo_text()))
+    assert part in str(refusal.value)
+    assert len(str(refusal.value)) < LONGEST_MESSAGE
+    assert time.process_time() - begun < 5.0
+
+
+def test_dots_in_texts_and_comments_are_no_keys() -> None:
+    text = "# " + "a." * 1000 + "\n" + demo_text().replace('name = "driver"', 'name = "a.a.a.a.a.a.a.a"')
+    assert loads(text).pulleys[0].name == "a.a.a.a.a.a.a.a"
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        ("user:secret:0:0\nroot:secret:0:0\n", "line 2: is not two numbers"),
+        ("secret\nsecret\n" * LONG, "line 2: is not two numbers"),
+        ("0,1\n1,two\n", 'line 2: "1,two" is not two numbers'),
+        ("0,1\n" + "x" * LONG, "is not two numbers"),
+    ],
+)
+def test_tables_are_quoted_only_where_they_are_tables(tmp_path: Path, content: str, told: str) -> None:
+    """The file may be any, by mistake."""
+    (tmp_path / "load.csv").write_text(content, encoding="utf-8")
+    with pytest.raises(ModelError) as refusal:
+        loads(demo_text().replace(TORQUE, 'torque = { kind = "table", file = "load.csv" }'), tmp_path)
+    assert "secret" not in str(refusal.value)
+    assert told in str(refusal.value)
+    assert len(str(refusal.value)) < 500
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes and devices are a matter of POSIX")
+@pytest.mark.parametrize("name", ["pipe", "/dev/zero"])
+def test_pipes_and_devices_are_not_read(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    table = demo_text().replace(TORQUE, f'torque = {{ kind = "table", file = "{name}" }}')
+    for read in (lambda: loads(table, tmp_path), lambda: load(tmp_path / name), lambda: open_run(tmp_path / name)):
+        with pytest.raises(ModelError, match=r"it is (a device or a pipe, )?not a file"):
+            read()
