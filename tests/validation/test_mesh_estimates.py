@@ -7,17 +7,17 @@ from collections.abc import Callable
 from functools import cache
 
 import pytest
-from random_drives import Judged, judge
+from random_drives import SEEDS, Judged, judge
 
 from beltdyn.model import ERROR_LIMITS
 
-DRIVES = (200, 201, 203, 206, 207, 208, 210, 213)
+DRIVES = SEEDS[:8]
 FACTOR = 2.0
-"""Within which a true error keeps to its estimate in 95 % of the meshes."""
-EXCEPTIONS = 2
-"""Of 24 meshes: more than 5 % and fewer than 10 %."""
-OVER = 10.0
-"""Times the true error is an estimate at most where it says that a mesh is too coarse, in most drives."""
+"""Within which a true error keeps to its estimate in nine of ten meshes (losses) to all (tension)."""
+EXCEPTIONS = 3
+"""Of 24 meshes, one of ten and one more."""
+OVER, MOST = 10.0, 0.5
+"""Times the true error is an estimate at most where it finds a mesh too coarse, in at least this part of them."""
 
 
 @cache
@@ -43,19 +43,17 @@ def test_there_is_little_false_alarm(name: str) -> None:
     """Where an estimate is above the limit, most true errors are more than a tenth of it."""
     alarms = [one for one in judged() if one.estimated[name] > ERROR_LIMITS[name]]
     assert len(alarms) >= 3
-    assert sum(OVER * one.true[name] >= one.estimated[name] for one in alarms) >= 0.7 * len(alarms)
+    assert sum(OVER * one.true[name] >= one.estimated[name] for one in alarms) >= MOST * len(alarms)
 
 
 @pytest.mark.slow
 def test_the_named_meshes_keep_to_the_limits() -> None:
     assert all(one.true["tension"] <= ERROR_LIMITS["tension"] for one in of_mesh("for the tension"))
-    kept = [one.true[name] <= limit for one in of_mesh("for all") for name, limit in ERROR_LIMITS.items()]
-    assert sum(kept) >= len(kept) - EXCEPTIONS
+    assert all(one.true[name] <= limit for one in of_mesh("for all") for name, limit in ERROR_LIMITS.items())
 
 
 @pytest.mark.slow
 def test_all_meshes_of_a_drive_ask_for_the_same() -> None:
     for first, second, third in zip(*map(of_mesh, ("coarse", "for the tension", "for all")), strict=True):
         for name, needed in first.needed.items():
-            assert needed == pytest.approx(second.needed[name], rel=0.05)
-            assert needed == pytest.approx(third.needed[name], rel=0.05)
+            assert {needed, second.needed[name], third.needed[name]} <= {needed - 1, needed, needed + 1}
