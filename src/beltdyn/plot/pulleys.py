@@ -234,4 +234,4 @@ def _limit(ax: Axes, values: np.ndarray) -> None:
     if known.size:
         low, high = np.percentile(known, (1.0, 99.0))
         margin = 0.1 * max(high - low, 1e-3)
-        ax.set_ylim(min(low - margin, -margin), high + margin)
+        ax.set_ylim(min(low, 0.0) - 2.0 * margin, high + margin)  # room for the notes below
