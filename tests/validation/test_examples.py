@@ -1,11 +1,13 @@
 """The examples, run in full: the numbers of their pages agree with hand calculations, and the energy account closes."""
 
+from importlib.resources import files
 from math import pi
 
 import pytest
-from example_numbers import with_load, without_idler
+from example_numbers import under_load, with_load, without_idler
 from make_examples import EXAMPLES, simulated
 
+import beltdyn as bd
 from beltdyn import simulate
 from beltdyn.results import summarize
 
@@ -91,3 +93,17 @@ def test_a_crossed_belt_turns_the_lathe_the_other_way() -> None:
     shaft, lathe = summary.pulleys
     assert shaft.speed > 0.0 > lathe.speed
     assert shaft.power > 0.0 > lathe.power
+
+
+@pytest.mark.slow
+def test_slip_that_a_coarse_mesh_spoils_is_said() -> None:
+    """100 elements, of which each covers 63 degrees of the motor pulley: half of the slip that elastic creep takes.
+
+    With 400 elements it is 0.62 %, and elastic creep 0.63 %.
+    """
+    coarse = simulate(
+        under_load(bd.load(str(files("beltdyn").joinpath("examples", "washing_machine.toml"))), 100, 50e-6)
+    )
+    (finding,) = (one for one in coarse.findings if "elastic creep alone takes" in one.fault)
+    assert finding.remedy.startswith("The mesh is to blame")
+    assert summarize(coarse).pulleys[1].slip < 0.6 * summarize(coarse).pulleys[1].elastic_creep
