@@ -37,7 +37,8 @@ def _write_kill_and_read(path: Path, outputs: int) -> None:
         assert len(numbers) % outputs == 0
         assert len(dataset.data_vars) > 20
         for name in dataset.data_vars:
-            rows = dataset[name].values.reshape(len(numbers), -1)
+            values = dataset[name].values
+            rows = values.reshape(len(numbers), int(np.prod(values.shape[1:])))
             np.testing.assert_array_equal(rows, np.broadcast_to(numbers[:, None], rows.shape))
     with xr.open_dataset(path) as plain:
         plain.load()
