@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from beltdyn.solve.progress import BatchProgress
     from beltdyn.solve.progress import Progress as SolverProgress
 
+_EARLY = 5.0
+"""Computing time, s, after which a run that takes long is told of."""
+_LONG = 60.0
+"""Remaining computing time, s, that is long."""
+
 _PHASES = {
     "compiling": "preparing kernels (the first run compiles them: about 20 s)",
     "equilibrium": "finding equilibrium",
@@ -21,7 +26,7 @@ _PHASES = {
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
-    """Show simulated time, step size and remaining time on standard error.
+    """Show simulated time, step size and remaining time on standard error; say early that a run takes long, and why.
 
     Yields
     ------
@@ -30,8 +35,13 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
     """
     with _bar() as bar:
         task = bar.add_task("preparing", total=None, state="")
+        told = False
 
         def report(progress: "SolverProgress") -> None:
+            nonlocal told
+            if not told and progress.elapsed > _EARLY and progress.remaining > _LONG:
+                bar.console.print(_long(progress), highlight=False)
+                told = True
             integrating = progress.phase == "integrating"
             bar.update(
                 task,
@@ -42,6 +52,13 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
             )
 
         yield report
+
+
+def _long(progress: "SolverProgress") -> str:
+    """How long a run takes, and what makes it so."""
+    minutes = progress.remaining / 60.0
+    left = f"{minutes:.0f} minutes" if minutes < 120.0 else f"{minutes / 60.0:.0f} hours"
+    return f"This run will take about {left} more, if it goes on like this. {progress.bound}"
 
 
 def _state(progress: "SolverProgress") -> str:

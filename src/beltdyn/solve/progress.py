@@ -1,5 +1,6 @@
 """How far a simulation has come."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,10 @@ class Progress:
         Outputs recorded so far.
     phase : str
         "compiling" (the kernels, once on a machine), "equilibrium" or "integrating".
+    elapsed : float
+        Computing time since the first step, s.
+    bound : str
+        What bounds the time steps, in words; empty before the first one.
     """
 
     time: float
@@ -31,6 +36,15 @@ class Progress:
     step_size: float
     outputs_written: int
     phase: Phase = "integrating"
+    elapsed: float = 0.0
+    bound: str = ""
+
+    @property
+    def remaining(self) -> float:
+        """Computing time that is left if it goes on as until now, s; NaN before the first step."""
+        if self.time <= 0.0 or self.elapsed <= 0.0:
+            return math.nan
+        return self.elapsed * (self.duration - self.time) / self.time
 
 
 Report = Callable[[Progress], None]

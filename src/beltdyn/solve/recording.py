@@ -25,6 +25,7 @@ from beltdyn.signals import uninterrupted
 from beltdyn.solve.band_limit import BandLimit
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.observer import WORKS, Arrays, Observer
+from beltdyn.solve.outlook import step_bound
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
 from beltdyn.system.arrays import NODE, FloatArray, System
@@ -157,7 +158,9 @@ class Recording:
         if self._progress is not None:
             duration = self._drive.simulation.duration
             outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
-            self._progress(Progress(reached, duration, self._step, outputs, phase))
+            elapsed = time.perf_counter() - self._started if phase == "integrating" else 0.0
+            bound = step_bound(self._drive.simulation, self.statistics, reached)
+            self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound))
 
     def check(self) -> None:
         """Look, when all is done, whether the belt may have fluttered."""

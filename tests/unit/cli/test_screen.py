@@ -112,6 +112,21 @@ def test_progress(capsys: pytest.CaptureFixture[str]) -> None:
     assert captured.out == ""
 
 
+def test_a_run_that_takes_long_is_told_of_once_and_why(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_bar() as report:
+        for time, elapsed in ((0.001, 4.0), (0.002, 8.0), (0.003, 12.0)):
+            report(Progress(time, 1.0, 1e-6, 3, elapsed=elapsed, bound="Steps are short."))
+    shown = " ".join(capsys.readouterr().err.split())
+    assert shown.count("This run will take about 67 minutes more") == 1
+    assert "Steps are short." in shown
+
+
+def test_a_short_run_is_not_told_of(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress_bar() as report:
+        report(Progress(0.5, 1.0, 1e-6, 3, elapsed=8.0, bound="Steps are short."))
+    assert "will take" not in capsys.readouterr().err
+
+
 def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     """A line for all, and one for each that is on its way."""
     with runs_bar(at_end="writing the page") as report:
