@@ -15,7 +15,7 @@ from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import follow_profiles
 from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import try_step
-from beltdyn.solve.march import FAILED, REJECTED, SOLVABLE, STEPS, March, Settings, Steps, allowed_error, motion_of
+from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.system.arrays import ENERGY_WORKS, NODE, System
 from beltdyn.system.end_of_step import find_loads, numerical_loss
@@ -38,11 +38,6 @@ _AIM: Final = 0.8
 _LIMIT: Final = 4.0
 """Steps are aimed at this part of the local error allowed, and taken up to this multiple: errors jump as nodes meet
 pulleys, and a step tried again costs more than it gains."""
-_CAUTION: Final = 0.7
-_TRUST: Final = 1.02
-"""Where Newton's method has failed, steps are no longer than this part of the one that failed, and each that is taken
-lets the next be longer by this factor: where friction is steep it fails from a length on, again and again, and a
-failure costs as much as three steps."""
 _SMALLEST_STEP: Final = 1e-11
 _NUMERICAL: Final = ENERGY_WORKS.index("numerical_loss")
 
@@ -93,7 +88,7 @@ def advance(
         iterations = try_step(system, settings, method, march, step, equations)
         if iterations == 0:
             march.counts[FAILED] += 1
-            clock[1], clock[SOLVABLE] = 0.5 / STRETCH * step, _CAUTION * step
+            clock[1] = 0.5 / STRETCH * step
         else:
             error = _local_error(system, settings, method, march, step)
             growth = _GROWTH if iterations <= _EASY else 1.0
@@ -103,10 +98,9 @@ def advance(
                 factor /= STRETCH
             else:
                 march.counts[STEPS] += 1
-                clock[SOLVABLE] *= _TRUST
                 _accept(system, method, march, equations, step, stop)
                 filled = _keep(march, step, steps, filled)
-            clock[1] = min(settings.max_step, clock[SOLVABLE], factor * step)
+            clock[1] = min(settings.max_step, factor * step)
         if clock[1] < _SMALLEST_STEP:
             return STEP_TOO_SMALL, filled
     return REACHED, filled

@@ -17,8 +17,7 @@ FAILED: Final = 2
 ITERATIONS: Final = 3
 
 SLOWEST: Final = 2
-SOLVABLE: Final = 3
-"""Places in `March.clock`."""
+"""Place in `March.clock`."""
 
 
 class Settings(NamedTuple):
@@ -42,8 +41,7 @@ class March(NamedTuple):
     """The moving state of an integration, and what it tries next; everything is changed in place."""
 
     clock: FloatArray
-    """Time and next step, s, the largest Newton change of the last step over the one before it, and the length up to
-    which Newton's method is likely to solve a step, s; shape (4,)."""
+    """Time and next step, s, and the largest Newton change of the last step over the one before it; shape (3,)."""
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
@@ -131,7 +129,7 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
     """
     size = position.size
     return March(
-        clock=np.array((time, step, 1.0, np.inf)),
+        clock=np.array((time, step, 1.0)),
         position=position.copy(),
         velocity=velocity.copy(),
         acceleration=np.zeros(size),
