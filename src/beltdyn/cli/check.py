@@ -36,6 +36,10 @@ def check(
     from beltdyn.solve import bring_to_rest
 
     drive = given = load(file)
+    if figure is not None:
+        from beltdyn.results.atomic import is_marked, require_replaceable
+
+        require_replaceable(figure, is_marked, force)
     estimate = install(drive)
     failure: ConvergenceError | None = None
     unstable: tuple[str, ...] = ()

@@ -1,0 +1,89 @@
+"""Every command that writes leaves alone what beltdyn did not write."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from beltdyn.published import demo_text
+from beltdyn.results import FileRecorder, Layout
+
+Refuse = Callable[[list[str]], str]
+RunMain = Callable[[list[str]], tuple[int, str, str]]
+MINE = "time,torque\n0,1\n"
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Path:
+    """A file of the user, by any of the names that commands would write."""
+    for name in (
+        "mine.csv",
+        "drive-tables/pulleys.csv",
+        "figures/slip.png",
+        "figures/animation.gif",
+        "two_pulley.toml",
+    ):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(MINE, encoding="utf-8")
+    return tmp_path / "mine.csv"
+
+
+def unharmed(folder: Path) -> bool:
+    files = [path for path in folder.rglob("*") if path.suffix in (".csv", ".png", ".gif") or path.stem == "two_pulley"]
+    return len(files) == 5 and all(path.read_text(encoding="utf-8") == MINE for path in files)
+
+
+def test_runs_sweeps_and_layouts(refuse: Refuse, drive_file: Path, mine: Path) -> None:
+    drive = str(drive_file)
+    speeds = ["--pulley", "driver", "--from", "10", "--to", "20"]
+    for words in (["run", drive, "-o", str(mine)], ["sweep", drive, *speeds, "-o", str(mine)]):
+        assert "mine.csv is there already, and is not a file that beltdyn wrote" in refuse(words)
+    assert "pulleys.csv is there already" in refuse(["run", drive, "--csv"])
+    slip = str(mine.with_name("figures") / "slip.png")
+    assert "slip.png is there already" in refuse(["check", drive, "--figure", slip])
+    assert unharmed(mine.parent)
+    assert sorted(path.name for path in mine.parent.glob(".*")) == []
+
+
+def test_several_runs(refuse: Refuse, drive_file: Path, mine: Path) -> None:
+    other = drive_file.with_name("other.toml")
+    other.write_text(demo_text(), encoding="utf-8")
+    drive_file.with_suffix(".nc").write_text(MINE, encoding="utf-8")
+    assert f"{drive_file.stem}.nc is there already" in refuse(["run", str(drive_file), str(other)])
+    assert unharmed(mine.parent)
+
+
+def test_demo(refuse: Refuse, mine: Path) -> None:
+    assert "two_pulley.toml exists already" in refuse(["demo", str(mine.parent)])
+    assert unharmed(mine.parent)
+
+
+def test_forced_layout(run_main: RunMain, drive_file: Path, mine: Path) -> None:
+    """And what beltdyn drew may be drawn again."""
+    figure = mine.with_name("figures") / "slip.png"
+    assert run_main(["check", str(drive_file), "--figure", str(figure), "--force"])[0] == 0
+    assert run_main(["check", str(drive_file), "--figure", str(figure)])[0] == 0
+    assert figure.read_bytes().startswith(b"\x89PNG")
+
+
+def test_forced_results_leave_the_drive_file(refuse: Refuse, drive_file: Path) -> None:
+    before = drive_file.read_bytes()
+    assert "would overwrite it" in refuse(["run", str(drive_file), "-o", str(drive_file), "--force"])
+    assert drive_file.read_bytes() == before
+
+
+def test_second_run_of_the_same_file(
+    run_main: RunMain, drive_file: Path, layout: Layout, attributes: dict[str, str]
+) -> None:
+    recorder = FileRecorder(drive_file.with_suffix(".nc"), layout, attributes)
+    code, _, message = run_main(["run", str(drive_file)])
+    assert code == 2
+    assert "is being written by another run" in message
+    recorder.close("completed", {})
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="devices have no such names there")
+def test_devices(refuse: Refuse, drive_file: Path) -> None:
+    assert "it is a device or a pipe, not a file" in refuse(["run", str(drive_file), "-o", "/dev/null", "--force"])
