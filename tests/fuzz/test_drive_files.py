@@ -53,7 +53,7 @@ def limited(seconds: float) -> Iterator[None]:
 
 
 def outcome(path: Path) -> str:
-    """Read a file and look at the drive at rest by hand formulas: what went wrong beside a refusal in words; empty if nothing did."""
+    """Read a file and look at the drive at rest: what went wrong beside a refusal in words; empty if nothing did."""
     try:
         with limited(LONGEST):
             drive = load(path)

@@ -107,6 +107,7 @@ def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
         If the simulation cannot go on.
     """
     from beltdyn.results import describe_size
+    from beltdyn.results.atomic import leftovers
     from beltdyn.solve import simulate
 
     show(f"Results of about {describe_size(drive)}")
@@ -120,6 +121,8 @@ def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
     if finished.status == "interrupted":
         show("\nInterrupted: what was computed is kept.")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
+    for file in leftovers(path):
+        show(f"A killed run has left {file}, which nobody needs: remove it.")
     return finished
 
 

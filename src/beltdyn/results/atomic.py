@@ -2,8 +2,10 @@
 
 import errno
 import os
+import re
 import secrets
 import stat
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -15,6 +17,9 @@ MARK = "beltdyn"
 
 _MARKED = 4096
 """Bytes at the start and at the end of a file among which the mark is sought."""
+
+_LEFT = 60.0
+"""Seconds after which nobody is still writing a temporary file."""
 
 _FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 
@@ -86,6 +91,25 @@ def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: 
             f"{path} is there already, and is not a file that beltdyn wrote for this purpose, or is damaged: it would "
             "be lost. Choose another name, or replace it with --force (in Python: overwrite=True)."
         )
+
+
+def leftovers(path: Path) -> list[Path]:
+    """Temporary files of `atomic_path` that a killed process left beside a file, at least a minute ago.
+
+    Parameters
+    ----------
+    path : Path
+        The file that was to be written.
+
+    Returns
+    -------
+    list of Path
+        In order of their names.
+    """
+    target = path.resolve()
+    pattern = re.compile(rf"\.{re.escape(target.stem)}\.[0-9a-f]{{8}}{re.escape(target.suffix)}")
+    found = [file for file in target.parent.iterdir() if pattern.fullmatch(file.name)]
+    return sorted(file for file in found if file.is_file() and time.time() - file.stat().st_mtime > _LEFT)
 
 
 def is_marked(path: Path, mark: str = MARK) -> bool:

@@ -11,7 +11,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.results import FileRecorder, Layout, open_run
-from beltdyn.results.atomic import MARK, is_marked
+from beltdyn.results.atomic import MARK, is_marked, leftovers
 
 
 def make_text(path: Path) -> None:
@@ -82,3 +82,12 @@ def test_marks_are_found_at_both_ends(tmp_path: Path) -> None:
         path.write_bytes(data)
         assert is_marked(path) is marked
     assert not is_marked(tmp_path)
+
+
+def test_leftovers_of_killed_processes_are_found(tmp_path: Path) -> None:
+    """By their name and age: a young one may still be written."""
+    for name in (".d.0123abcd.nc", ".d.fedc9876.nc", ".d.0123abcd.csv", ".e.0123abcd.nc", ".d.nc.lock", "d.nc"):
+        (tmp_path / name).touch()
+        if "fedc" not in name:
+            os.utime(tmp_path / name, (1e9, 1e9))
+    assert leftovers(tmp_path / "d.nc") == [tmp_path / ".d.0123abcd.nc"]
