@@ -139,7 +139,7 @@ def _gather(system: System, element: int, vector: FloatArray, coordinates: Float
         coordinates[NODE + c] = vector[NODE * node_j + c]
 
 
-@kernel
+@kernel(inline=True)
 def _add_contacts(
     system: System,
     element: int,
