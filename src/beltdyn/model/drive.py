@@ -44,6 +44,7 @@ class Drive(Part):
     _source: str | None = PrivateAttr(None)
     _installed_tension: float | None = PrivateAttr(None)
     _length_given: bool = PrivateAttr(True)
+    _tightened: bool = PrivateAttr(False)
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file."""
@@ -127,9 +128,13 @@ class Drive(Part):
             belt = belt.model_copy(update={"length": belt.length - distance})
         drive = self.replace(belt=belt, pulley=pulleys)
         drive._installed_tension, drive._length_given = self._installed_tension, self._length_given
+        drive._tightened = True
         return drive
 
     @property
     def text(self) -> str:
-        """The TOML text that the drive came from, or one that gives the same drive."""
-        return self._source or dumps(self)
+        """The TOML text that the drive came from, or one that gives the same drive.
+
+        A tension that is asked for stays so, until the length or the take-up for it was found (`tightened`).
+        """
+        return self._source or dumps(self, None if self._tightened else self._installed_tension, self._length_given)

@@ -17,6 +17,8 @@ FloatArray = NDArray[np.float64]
 _FIRST_STEP, _GROWTH, _LONGEST_STEP = 1e-3, 1.3, 0.25
 """Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
 _ROUNDING = 4 * float(np.finfo(float).eps)
+_FARTHEST = 500.0
+"""How far a sliding tensioner is followed; by steps that grow on and on beyond half of the path's length."""
 _MOST_ROUNDS = 200
 _ACCURACY = 1e-13
 
@@ -184,11 +186,12 @@ def _nearest(situation: _Situation) -> float:
 def _balances(situation: _Situation, start: float) -> Iterator[float]:
     """Find positions in which the excess changes its sign, on both sides of a start, the nearer ones first."""
     scale, around = situation.scale, isinstance(situation.carrier.tensioner, RotaryTensioner)
-    reach = np.pi if around else 0.5 * situation.path.length
+    near = np.pi if around else 0.5 * situation.path.length
+    reach = near if around else _FARTHEST * scale
     first = situation.excess(start)
     if first == 0.0:
         yield start
-    sides = [_Side(situation.excess, start, side * scale) for side in (1.0, -1.0)]
+    sides = [_Side(situation.excess, start, side * scale, near) for side in (1.0, -1.0)]
     while sides:
         side = min(sides, key=lambda one: abs(one.here - start))
         if abs(side.here - start) > reach or not side.go_on():
@@ -200,9 +203,9 @@ def _balances(situation: _Situation, start: float) -> Iterator[float]:
 class _Side:
     """The way of a tensioner from a start to one side, searched by growing steps."""
 
-    def __init__(self, excess: Callable[[float], float], start: float, scale: float) -> None:
+    def __init__(self, excess: Callable[[float], float], start: float, scale: float, near: float) -> None:
         self._excess, self._longest = excess, _LONGEST_STEP * scale
-        self._step = _FIRST_STEP * scale
+        self._step, self._start, self._near = _FIRST_STEP * scale, start, near
         self.here, self._value = start, excess(start)
         self.found: float | None = None
 
@@ -213,12 +216,14 @@ class _Side:
         ahead, self.found = self.here + self._step, None
         try:
             value = self._excess(ahead)
-            if value * self._value < 0.0:
+            if value * self._value < 0.0 or value == 0.0 != self._value:
                 self.found = float(brentq(self._excess, self.here, ahead, xtol=1e-15, rtol=_ROUNDING))
         except ValueError:
             return False
         self.here, self._value = ahead, value
-        self._step = min(_GROWTH * self._step, self._longest, key=abs)
+        self._step *= _GROWTH
+        if abs(ahead - self._start) < self._near:
+            self._step = min(self._step, self._longest, key=abs)
         return True
 
 

@@ -1,6 +1,7 @@
 """The belt at rest: the tension that is asked for, an equilibrium on every pulley, stable balances of tensioners."""
 
 import math
+import pickle
 from collections.abc import Callable
 from typing import Any
 
@@ -130,6 +131,15 @@ def test_a_run_and_its_file_have_the_length_that_was_found(tmp_path: Any) -> Non
     assert float(kept.dataset.span_tension[0].mean()) == pytest.approx(200.0, rel=ASKED)
     again = equilibrium(run.drive)
     assert again.drive.belt.length == run.drive.belt.length
+
+
+def test_a_drive_travels_with_the_tension_that_is_asked_for() -> None:
+    """To other processes, as in sweeps, and back: with the estimate of its length alone the tension would be missed."""
+    drive = BENDING["EI 0.03"](24)
+    travelled = pickle.loads(pickle.dumps(drive))
+    assert (travelled, travelled.installed_tension) == (drive, 200.0)
+    found = bring_to_rest(travelled).drive
+    assert pickle.loads(pickle.dumps(found)) == found
 
 
 def test_a_drive_of_given_length_is_left_alone() -> None:
