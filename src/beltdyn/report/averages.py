@@ -51,14 +51,19 @@ class ContactSamples:
         return self._mean(self.weight * getattr(self, kind))
 
     def _mean(self, values: FloatArray) -> FloatArray:
-        """Sums of weighted values over those of the weights."""
-        return np.asarray(np.bincount(self.bin, values, BINS) / np.bincount(self.bin, self.weight, BINS))
+        """Sums of weighted values over those of the weights; NaN where there is no point."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray(np.bincount(self.bin, values, BINS) / np.bincount(self.bin, self.weight, BINS))
 
     def unevenness(self) -> float:
-        """Normal force less its mean at the place, root mean square in the middle of the arc, over the mean there."""
+        """Normal force less its mean at the place, root mean square in the middle of the arc, over the mean there.
+
+        NaN where nothing touches.
+        """
         mean = self.mean("normal")
         square = self._mean(self.weight * (self.normal - mean[self.bin]) ** 2)
-        return float(np.sqrt(np.mean(square[_MIDDLE])) / np.mean(mean[_MIDDLE]))
+        with np.errstate(invalid="ignore"):
+            return float(np.sqrt(np.mean(square[_MIDDLE])) / np.mean(mean[_MIDDLE]))
 
 
 def contact_samples(run: Run) -> list[ContactSamples]:
@@ -98,5 +103,5 @@ def _on_pulley(run: Run, window: xr.Dataset, weights: FloatArray, pulley: int) -
 
 
 def mean_forces(run: Run, kind: str) -> FloatArray:
-    """Mean forces over the arcs of all pulleys, one after the other, N/m, shape (pulleys * BINS,)."""
-    return np.concatenate([samples.mean(kind) for samples in contact_samples(run)])
+    """Mean forces over the arcs of all pulleys as they were kept, one after the other, N/m, shape (pulleys * BINS,)."""
+    return np.asarray(run.dataset[f"arc_{kind}_force"]).ravel()

@@ -50,7 +50,8 @@ def build_paper(
     Parameters
     ----------
     folder : Path
-        Where to write ``paper.html`` and, into the folder ``runs``, a result file for every run; made if need be.
+        Where to write ``paper.html`` and, into the folder ``runs``, a drive file and what is kept of its run for every
+        run; made if need be.
     progress : callable, optional
         Told of the runs.
     parts : sequence of Part
@@ -69,12 +70,9 @@ def build_paper(
     begun = time.perf_counter()
     _check_folder(folder)
     runs = run_all(_all_cases(parts), folder / RUNS, progress)
-    try:
-        sections = tuple(_section(part, runs) for part in parts)
-        facts = _facts(time.perf_counter() - begun, folder, runs)
-        write_page(folder / PAGE, sections, runs.failures, facts)
-    finally:
-        runs.close()
+    sections = tuple(_section(part, runs) for part in parts)
+    facts = _facts(time.perf_counter() - begun, folder, runs)
+    write_page(folder / PAGE, sections, runs.failures, facts)
     return Outcome(folder / PAGE, sections, runs.failures)
 
 
@@ -117,6 +115,7 @@ def _facts(seconds: float, folder: Path, runs: Runs) -> dict[str, str]:
         "Command": f"beltdyn paper --out {folder}",
         "Environment": f"Python {origin['python_version']}, {packages}; {platform.system()} {platform.machine()}, "
         f"{os.cpu_count()} cores",
-        "Runs": f"{len(runs) + len(runs.failures)}, each in the folder {RUNS} beside this page",
+        "Runs": f"{len(runs) + len(runs.failures)}; their drive files, and what this page needs of their results, are "
+        f"in the folder {RUNS} beside it",
         "Run time": f"{seconds:.0f} s, compilation included",
     }

@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.plot.wrap import unwrap
+from beltdyn.report.kept import sliding
 from beltdyn.report.measures import FloatArray, rms
 from beltdyn.results import Run
 
 END = 0.2
 """Part of the nominal arc at each end that the straight line leaves out."""
 
-_COULOMB = 0.999
 _GRID = 241
 
 
@@ -56,11 +56,11 @@ def distribution(run: Run, pulley: int) -> Distribution:
     Parameters
     ----------
     run : Run
-        The run.
+        What was kept of a run.
     pulley : int
         Number of the pulley.
     """
-    data, drive = run.fields_at(), run.drive
+    data, drive = run.dataset, run.drive
     wrap = unwrap(data["belt_coordinate"].values, data["contact_pulley"].values == pulley, drive.belt.length, 1.0)
     center = np.array(drive.pulleys[pulley].center)
     start = drive.path.span_points[pulley - 1, 1] - center
@@ -73,7 +73,7 @@ def distribution(run: Run, pulley: int) -> Distribution:
         place=angle / drive.path.wrap_angles[pulley],
         normal=normal,
         friction=friction,
-        gliding=np.abs(friction) >= _COULOMB * drive.contact.friction * np.abs(normal),
+        gliding=sliding(run).values[wrap.points],
     )
 
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
+from beltdyn.report.departures import DEPARTURES
 from beltdyn.report.numbers import shown
-from beltdyn.report.statement import Section, Verdict
+from beltdyn.report.statement import Section, Statement, Verdict
 from beltdyn.results.atomic import MARK, atomic_path, is_marked
 
 _MARK = f'<meta name="generator" content="{MARK}">'
@@ -38,9 +39,16 @@ def write_page(path: Path, sections: Sequence[Section], failures: Mapping[str, s
     )
     environment.filters |= {"shown": shown, "badge": _BADGES.__getitem__}
     statements = [statement for section in sections for statement in section.statements]
-    counts = {verdict: sum(statement.verdict is verdict for statement in statements) for verdict in Verdict}
     text = environment.get_template("page.html.jinja").render(
-        sections=sections, failures=failures, facts=facts, counts=counts, style=_read("page.css")
+        sections=sections,
+        failures=failures,
+        facts=facts,
+        counts={
+            "Statements of the paper": _count([statement for statement in statements if not statement.ours]),
+            "Checks of our own": _count([statement for statement in statements if statement.ours]),
+        },
+        departures=DEPARTURES,
+        style=_read("page.css"),
     )
     with atomic_path(path, _is_page) as temporary:
         temporary.write_text(text, encoding="utf-8")
@@ -48,6 +56,11 @@ def write_page(path: Path, sections: Sequence[Section], failures: Mapping[str, s
 
 def _is_page(path: Path) -> bool:
     return is_marked(path, _MARK)
+
+
+def _count(statements: Sequence[Statement]) -> dict[Verdict, int]:
+    """How many statements have each verdict."""
+    return {verdict: sum(statement.verdict is verdict for statement in statements) for verdict in Verdict}
 
 
 def _read(name: str) -> str:

@@ -1,12 +1,19 @@
 """Runs by name, of which some may have failed."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from beltdyn.model import Drive
-from beltdyn.results import Run, open_run
+from beltdyn.report.kept import keep, open_kept
+from beltdyn.report.measures import FloatArray
+from beltdyn.results import Run
 from beltdyn.results.atomic import make_folder
-from beltdyn.solve import BatchProgress, simulate_all
+from beltdyn.solve import BatchProgress, simulate, simulate_all
+
+REPEATS = 5
+"""How often a run is done again to see how its computing time varies."""
 
 
 class RunMissingError(KeyError):
@@ -17,18 +24,20 @@ class RunMissingError(KeyError):
 
 
 class Runs(Mapping[str, Run]):
-    """Runs by name; asking for one that failed raises `RunMissingError`.
+    """What was kept of runs by name; asking for one that failed raises `RunMissingError`.
 
     Parameters
     ----------
     paths : mapping
-        Name -> result file.
+        Name -> file with what was kept.
+    drives : mapping
+        Name -> drive.
     failures : mapping
         Name -> why there is none.
     """
 
-    def __init__(self, paths: Mapping[str, Path], failures: Mapping[str, str]) -> None:
-        self._runs = {name: open_run(path) for name, path in paths.items()}
+    def __init__(self, paths: Mapping[str, Path], drives: Mapping[str, Drive], failures: Mapping[str, str]) -> None:
+        self._runs = {name: Run(open_kept(path), drives[name]) for name, path in paths.items()}
         self.failures = dict(failures)
 
     def __getitem__(self, name: str) -> Run:
@@ -42,10 +51,49 @@ class Runs(Mapping[str, Run]):
     def __len__(self) -> int:
         return len(self._runs)
 
-    def close(self) -> None:
-        """Close the result files."""
-        for run in self._runs.values():
-            run.dataset.close()
+    def cpu_times(self, names: Sequence[str], repeats: int = REPEATS) -> dict[str, FloatArray]:
+        """Time some runs again, one at a time and in turns, so that a change of the machine's speed meets them all.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of runs.
+        repeats : int
+            How often each is done.
+
+        Returns
+        -------
+        dict
+            Name -> processor time of each repetition, without outputs on the way, s, shape (repeats,).
+
+        Raises
+        ------
+        KeyboardInterrupt
+            After Ctrl-C.
+        """
+        drives = [_without_outputs(self[name].drive) for name in names]
+        times = np.array([[_cpu_time(drive) for drive in drives] for _ in range(repeats)])
+        return dict(zip(names, times.T, strict=True))
+
+
+def _without_outputs(drive: Drive) -> Drive:
+    """The same drive with outputs at the beginning and the end only."""
+    settings = drive.simulation
+    return drive.replace(simulation=settings.replace(output_interval=settings.duration, field_interval=None))
+
+
+def _cpu_time(drive: Drive) -> float:
+    """Processor time of a run, s."""
+    run = simulate(drive)
+    if run.status != "completed":
+        raise KeyboardInterrupt
+    return float(run.dataset.attrs["cpu_time"])
+
+
+def _with_fields(drive: Drive) -> Drive:
+    """The same drive with fields along the belt at every output."""
+    settings = drive.simulation
+    return drive.replace(simulation=settings.replace(field_interval=settings.output_interval))
 
 
 def run_all(
@@ -61,7 +109,8 @@ def run_all(
     drives : mapping
         Name -> drive.
     folder : Path
-        Where to write the result files, named after the drives; made if need be.
+        Where to write, for each drive and named after it, its drive file and what the page keeps of its run; made if
+        need be.
     progress : callable, optional
         Told of the runs.
     jobs : int, optional
@@ -77,12 +126,15 @@ def run_all(
     ModelError
         If the folder cannot be made.
     KeyboardInterrupt
-        After Ctrl-C; the result files hold what was computed.
+        After Ctrl-C; files that are there hold what was computed.
     """
     make_folder(folder)
+    for name, drive in drives.items():
+        (folder / f"{name}.toml").write_text(drive.text, encoding="utf-8")
     paths = {name: folder / f"{name}.nc" for name in drives}
-    endings = simulate_all({paths[name]: drive for name, drive in drives.items()}, progress, jobs)
+    wanted = {paths[name]: _with_fields(drive) for name, drive in drives.items()}
+    endings = simulate_all(wanted, progress, jobs, overwrite=True, finish=keep)
     if any(ending.status in ("interrupted", "not started") for ending in endings.values()):
         raise KeyboardInterrupt
     failures = {name: endings[path].error for name, path in paths.items() if endings[path].error}
-    return Runs({name: path for name, path in paths.items() if name not in failures}, failures)
+    return Runs({name: path for name, path in paths.items() if name not in failures}, drives, failures)

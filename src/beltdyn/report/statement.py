@@ -1,6 +1,6 @@
 """What the paper says, what we find, and the verdict."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby
@@ -25,6 +25,20 @@ def verdict(condition: bool) -> Verdict:
         Whether it is met.
     """
     return Verdict.HOLDS if condition else Verdict.FAILS
+
+
+def all_hold(verdicts: Iterable[Verdict]) -> Verdict:
+    """Give the verdict of a statement that holds if all its parts do, and not if one does not.
+
+    Parameters
+    ----------
+    verdicts : iterable of Verdict
+        Those of the parts.
+    """
+    found = set(verdicts)
+    if Verdict.FAILS in found:
+        return Verdict.FAILS
+    return Verdict.OPEN if Verdict.OPEN in found else Verdict.HOLDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +99,13 @@ class Statement:
     criterion : str
         When the statement holds, in numbers.
     findings : sequence of Finding
-        The first has published settings and gives the verdict.
+        The first ones have published settings and give the verdict.
     remark : str
         What else a reader should know.
+    published : int
+        How many findings have published settings; more than one where the paper does not say which it took.
+    departures : sequence of str
+        Names of departures from the printed text that bear on it.
     """
 
     name: str
@@ -97,11 +115,19 @@ class Statement:
     criterion: str
     findings: Sequence[Finding]
     remark: str = ""
+    published: int = 1
+    departures: Sequence[str] = ()
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict with published settings."""
-        return self.findings[0].verdict
+        """The verdict of all findings with published settings; open where they disagree."""
+        verdicts = {finding.verdict for finding in self.findings[: self.published]}
+        return verdicts.pop() if len(verdicts) == 1 else Verdict.OPEN
+
+    @property
+    def ours(self) -> bool:
+        """Whether it is a check of our own, which no words of the paper claim."""
+        return not self.quote
 
     @property
     def tables(self) -> list[list[Finding]]:

@@ -39,6 +39,14 @@ _THREADS = "OMP_NUM_THREADS"
 
 
 @dataclass(frozen=True, slots=True)
+class _Work:
+    """What is asked of every simulation: the last two arguments of `simulate_all`."""
+
+    overwrite: bool
+    finish: Callable[[Run], None] | None
+
+
+@dataclass(frozen=True, slots=True)
 class Ending:
     """How a simulation ended.
 
@@ -62,6 +70,7 @@ def simulate_all(
     progress: Callable[[BatchProgress], None] | None = None,
     jobs: int | None = None,
     overwrite: bool = False,
+    finish: Callable[[Run], None] | None = None,
 ) -> dict[Path, Ending]:
     """Simulate drives side by side, each by one thread of a process of its own.
 
@@ -79,6 +88,8 @@ def simulate_all(
         How many at a time; by default as many as there are cores.
     overwrite : bool
         Replace any regular files by the results, and not only earlier results.
+    finish : callable, optional
+        A function of a module, called with each completed run in the process that made it; it may replace the file.
 
     Returns
     -------
@@ -87,7 +98,7 @@ def simulate_all(
     """
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}
-    waiting = _longest_first(files)
+    waiting, work = _longest_first(files), _Work(overwrite, finish)
     stop = _SPAWN.Event()
 
     def tell(running: Mapping[Path, float], ended: int) -> None:
@@ -98,7 +109,7 @@ def simulate_all(
     if waiting:
         _compile(waiting[0][1], stop)
     while waiting and not stop.is_set():
-        endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), overwrite, stop, tell)
+        endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), stop, tell, work)
         waiting = [(file, drive) for file, drive in waiting if file not in endings]
     return {file: endings.get(file, Ending("not started")) for file in files}
 
@@ -124,15 +135,15 @@ def _compile(drive: Drive, stop: SharedEvent) -> None:
 def _run_pool(
     drives: Sequence[tuple[Path, Drive]],
     jobs: int,
-    overwrite: bool,
     stop: SharedEvent,
     tell: Callable[[Mapping[Path, float], int], None],
+    work: _Work,
 ) -> dict[Path, Ending]:
     """Simulate in a pool of processes; if one of these is killed, what had not begun by then has no ending yet."""
     parts = _SPAWN.RawArray("d", [math.nan] * len(drives))
     with ProcessPoolExecutor(jobs, _SPAWN, _start_worker, (stop, parts)) as pool:
         with _bare_workers():
-            futures = [pool.submit(_simulate, place, *one, overwrite) for place, one in enumerate(drives)]
+            futures = [pool.submit(_simulate, place, *one, work) for place, one in enumerate(drives)]
         try:
             pending = set(futures)
             while pending:
@@ -228,8 +239,8 @@ def _exit_when_told() -> None:
         os._exit(1)
 
 
-def _simulate(place: int, file: Path, drive: Drive, overwrite: bool) -> Ending:
-    """Simulate a drive into a file."""
+def _simulate(place: int, file: Path, drive: Drive, work: _Work) -> Ending:
+    """Simulate a drive into a file, and finish what is complete."""
     if _stop.is_set():
         return Ending("not started")
     if _leaving.is_set():
@@ -244,7 +255,11 @@ def _simulate(place: int, file: Path, drive: Drive, overwrite: bool) -> Ending:
 
     try:
         with _working:
-            return _ended(simulate(drive, file, heed, overwrite))
+            run = simulate(drive, file, heed, work.overwrite)
+            ending = _ended(run)
+            if work.finish is not None and run.status == "completed":
+                work.finish(run)
+            return ending
     except SimulationError as error:
         return _kept(drive, file, str(error))
     except BeltdynError as error:

@@ -165,7 +165,7 @@ class Recording:
     def check(self) -> None:
         """Look, when all is done, whether the belt may have fluttered."""
         self._write()
-        self._ended = time.perf_counter()
+        self._ended, self._cpu_ended = time.perf_counter(), time.process_time()
         flutter = self._observer.find_flutter()
         self._findings |= flutter.attributes if flutter else {}
         self._findings["check_time"] = time.perf_counter() - self._ended

@@ -1,8 +1,10 @@
-from beltdyn.report.statement import Finding, Number, Statement, Verdict, verdict
+import pytest
+
+from beltdyn.report.statement import Finding, Number, Statement, Verdict, all_hold, verdict
 
 
-def statement(*findings: Finding) -> Statement:
-    return Statement("name", "title", "quote", 250, "criterion", findings)
+def statement(*findings: Finding, published: int = 1) -> Statement:
+    return Statement("name", "title", "quote", 250, "criterion", findings, published=published)
 
 
 def finding(settings: str, holds: bool, *names: str) -> Finding:
@@ -19,3 +21,20 @@ def test_the_first_finding_gives_the_verdict() -> None:
 def test_findings_of_the_same_numbers_share_a_table() -> None:
     one, two, three = finding("a", True, "x", "y"), finding("b", False, "x", "y"), finding("c", True, "z")
     assert statement(one, two, three, finding("d", True)).tables == [[one, two], [three]]
+
+
+@pytest.mark.parametrize(
+    ("holds", "expected"),
+    [((True, True), Verdict.HOLDS), ((False, False), Verdict.FAILS), ((True, False), Verdict.OPEN)],
+)
+def test_published_settings_that_disagree_leave_it_open(holds: tuple[bool, bool], expected: Verdict) -> None:
+    """Another setting, which is not published, has no say."""
+    five, eleven = (finding(f"{n} points", holding) for n, holding in zip((5, 11), holds, strict=True))
+    assert statement(five, eleven, finding("better", True), published=2).verdict is expected
+
+
+def test_one_part_that_fails_fails_all() -> None:
+    holds, fails, is_open = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
+    assert all_hold([holds, is_open, fails]) is fails
+    assert all_hold([holds, is_open]) is is_open
+    assert all_hold([holds, holds]) is holds

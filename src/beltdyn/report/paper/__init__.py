@@ -1,4 +1,4 @@
-"""Section 5 of the paper: one module for each part, with its cases and its statements.
+"""The paper: one module for each part, with its cases and its statements.
 
 A module has two functions: ``cases() -> dict[str, Drive]`` names what is to be run, and
 ``section(runs) -> Section`` judges the results.  `SECTIONS` lists the modules in the order of the page.
@@ -12,13 +12,17 @@ from beltdyn.report.paper import (
     beam_and_joint,
     contact_forces,
     creep_rate,
+    element,
     energy,
     friction_law,
     integration_points,
+    integrators,
     mesh,
     more_pulleys,
     other_models,
     released,
+    slip_and_stick,
+    small_pulley,
     stiffness,
 )
 from beltdyn.report.runs import Runs
@@ -38,7 +42,10 @@ class Part(Protocol):
 
 
 SECTIONS: tuple[Part, ...] = (
+    element,
     friction_law,
+    slip_and_stick,
+    integrators,
     released,
     mesh,
     stiffness,
@@ -46,6 +53,7 @@ SECTIONS: tuple[Part, ...] = (
     contact_forces,
     integration_points,
     more_pulleys,
+    small_pulley,
     other_models,
     beam_and_joint,
     energy,

@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from beltdyn.model import Drive
 from beltdyn.report.averages import mean_forces
 from beltdyn.report.measures import DRIVEN, DRIVER, largest, rms, settled, speed
 from beltdyn.report.paper.model_runs import CASES, PAPER, Case, make, run_name
-from beltdyn.report.runs import Runs
+from beltdyn.report.runs import REPEATS, Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, Table, Value, verdict
+from beltdyn.report.timing import below, with_spread
 from beltdyn.results import Run
 
 _CASES = (CASES[0], CASES[2])
@@ -122,14 +125,14 @@ def _locking(runs: Runs) -> Statement:
     return Statement(
         name="belt-like-element-saves-unknowns",
         title="The belt-like element is more accurate than the full beam on the same mesh",
-        quote="Applying these two contributions to the modeling of belt-drives, instead of contact forces applied at "
-        "nodes and low-order elements, leads to a considerable reduction in the degrees of freedom",
-        page=239,
+        quote="",
+        page=None,
         criterion="With the paper's mesh, the span tension of the belt-like element is off by at most half of what "
         "that of the full beam is off by, each against 120 elements of its own.",
         findings=[finding(case) for case in _CASES],
-        remark="What is wrong on coarse meshes is the stretch of a cubic that has to follow an arc (membrane "
-        "locking); α₂ does not touch it.",
+        remark="A check of our own. What is wrong on coarse meshes is the stretch of a cubic that has to follow an arc "
+        "(membrane locking); α₂ does not touch it.",
+        departures=("tension-on-coarse-meshes",),
     )
 
 
@@ -140,13 +143,12 @@ def _same_motion(runs: Runs) -> Statement:
             shared, tied = runs[_belt_name(case, elements)], runs[_tied_name(case, elements)]
             apart = largest(speed(tied) - speed(shared)) / case.speed
             tension = abs(_tension(tied) / _tension(shared) - 1.0)
-            ends = tied.dataset["node_position"].values[:, [0, -1]]
             rtol = shared.drive.simulation.rtol
             met &= max(apart, tension) < rtol
             numbers += [
                 Number(f"{elements} elements: driven speeds differ by at most", apart, "%"),
                 Number("span tensions differ by", tension, "%"),
-                Number("largest gap of the joint", largest(ends[:, 1] - ends[:, 0]), "m"),
+                Number("largest gap of the joint", float(tied.dataset["joint_gap"].max()), "m"),
             ]
         return Finding(case.title, numbers, verdict(met))
 
@@ -164,27 +166,37 @@ def _same_motion(runs: Runs) -> Statement:
 
 
 def _effort(runs: Runs) -> Statement:
+    forms = (("shared node", _belt_name), ("multipliers", _tied_name))
+    groups = {
+        (case, title): [name(case, n) for n in (case.elements, _FINE)] for case in _CASES for title, name in forms
+    }
+    taken = runs.cpu_times([name for names in groups.values() for name in names])
+
     def finding(case: Case) -> Finding:
         numbers, spent = [], []
-        for title, name in (("shared node", _belt_name), ("multipliers", _tied_name)):
-            attributes = [runs[name(case, elements)].dataset.attrs for elements in (case.elements, _FINE)]
-            times, iterations = (sum(float(a[key]) for a in attributes) for key in ("wall_time", "newton_iterations"))
+        for title, _ in forms:
+            names = groups[case, title]
+            times = np.sum([taken[name] for name in names], axis=0)
+            iterations = sum(int(runs[name].dataset.attrs["newton_iterations"]) for name in names)
             spent.append(times / iterations)
             numbers += [
-                Number(f"{title}, {case.elements} and {_FINE} elements: run time", times, "s"),
-                Number("iterations", round(iterations)),
+                Number(f"{title}, {case.elements} and {_FINE} elements: processor time", with_spread(times), "s"),
+                Number("iterations", iterations),
             ]
-        numbers.append(Number("time of an iteration, multipliers over shared node", spent[1] / spent[0]))
-        return Finding(case.title, numbers, verdict(spent[1] < _EXCESSIVE * spent[0]))
+        quotient = spent[1] / spent[0]
+        numbers.append(Number("time of an iteration, multipliers over shared node", with_spread(quotient)))
+        return Finding(case.title, numbers, below(quotient, np.array([_EXCESSIVE])))
 
     return Statement(
         name="multipliers-no-excessive-effort",
         title="Multipliers take no excessive effort",
         quote="no excessive effort is required if the linear constraints are not eliminated",
         page=248,
-        criterion="An iteration, with its part of the outputs, takes less than twice as long.",
+        criterion="In every repetition an iteration takes less than twice as long. It does not hold if it takes more "
+        "in every one, and is undecided in between.",
         findings=[finding(case) for case in _CASES],
-        remark="Run times vary by some ten per cent from run to run, more on a machine that has other work to do.",
+        remark=f"Both forms were run {REPEATS} times more in turns, one run at a time and without outputs. Numbers are "
+        "the median and the range of processor times.",
     )
 
 
@@ -196,7 +208,14 @@ def _table(runs: Runs) -> Table:
             for elements in _meshes(case):
                 if name(case, elements) in runs:
                     rows.append([f"{case.title}: {title}, {elements}", *_row(runs[name(case, elements)])])
-    headings = ["drive and element", "span tension [N]", "driven speed [rad/s]", "steps", "rejected", "run time [s]"]
+    headings = [
+        "drive and element",
+        "span tension [N]",
+        "driven speed [rad/s]",
+        "steps",
+        "rejected",
+        "processor time [s]",
+    ]
     return Table("Means of the last 0.2 s and cost", headings, rows)
 
 
@@ -207,5 +226,5 @@ def _row(run: Run) -> list[Value]:
         float(settled(run, "pulley_speed")[:, DRIVEN].mean()),
         int(attributes["steps"]),
         int(attributes["rejected_steps"]),
-        float(attributes["wall_time"]),
+        float(attributes["cpu_time"]),
     ]

@@ -18,18 +18,21 @@ from beltdyn.results import Run
 
 _FINE = 120
 _PAPER = {1e4: "stiff_low_creep_20", 1e5: "stiff_20"}
-_BETTER = {1e4: f"stiff_low_creep_{_FINE}_better", 1e5: f"stiff_{_FINE}_better"}
 _LOWER = {1e2: "stiff_creep_1e2_20", 1e3: "stiff_creep_1e3_20"}
+_HIGHER = {1e6: "stiff_creep_1e6_20", 1e7: "stiff_creep_1e7_20"}
+_DECADES = _LOWER | _PAPER | _HIGHER
+_DECADES_BETTER = {factor: f"{name}_better" for factor, name in _DECADES.items()}
+_BETTER = {1e4: f"stiff_low_creep_{_FINE}_better", 1e5: f"stiff_{_FINE}_better"}
 _RTOL = 1e-4
 _SLOPE = 12.0 / (RAMP_END - RAMP_START)
-_CLEARLY = 0.9
 _EXCESSIVE = 0.1
 
 
 def cases() -> Mapping[str, Drive]:
-    """Both factors of the paper with both kinds of settings, and two smaller ones."""
+    """Both factors of the paper with both kinds of settings, also on a finer mesh, and two smaller and larger ones."""
     return {
-        **{name: two_pulley(20, 1e9, factor) for factor, name in (_PAPER | _LOWER).items()},
+        **{name: two_pulley(20, 1e9, factor) for factor, name in _DECADES.items()},
+        **{name: better(two_pulley(20, 1e9, factor)) for factor, name in _DECADES_BETTER.items()},
         **{name: better(two_pulley(20, 1e9, factor), _FINE, rtol=_RTOL) for factor, name in _BETTER.items()},
     }
 
@@ -84,8 +87,7 @@ def _fine() -> str:
 
 def _mean_slip(run: Run) -> float:
     """Mean magnitude of the slip velocity where the belt touches, in the ramp, m/s."""
-    inside = run.dataset.sel(field_time=slice(LAG_START, RAMP_END))
-    return float(abs(inside["slip_velocity"]).where(inside["contact_pulley"] >= 0).mean())
+    return float(run.dataset["mean_slip_velocity"].sel(field_time=slice(LAG_START, RAMP_END)).mean())
 
 
 def _slip(runs: Runs) -> Statement:
@@ -146,27 +148,27 @@ def _excessive(runs: Runs) -> Statement:
 
 def _efficiency(runs: Runs) -> Statement:
     def finding(settings: str, names: Mapping[float, str]) -> Finding:
-        counts = {factor: runs[name].dataset.attrs for factor, name in names.items()}
-        numbers = []
-        for factor, attributes in counts.items():
+        numbers, spent = [], []
+        for factor, name in names.items():
+            attributes = runs[name].dataset.attrs
+            spent.append(int(attributes["newton_iterations"]))
             numbers += [
-                Number(f"νₛ = {power_of_ten(factor)}: steps", int(attributes["steps"])),
-                Number("rejected", int(attributes["rejected_steps"])),
-                Number("Newton iterations", int(attributes["newton_iterations"])),
+                Number(f"νₛ = {power_of_ten(factor)}: Newton iterations", spent[-1]),
+                Number("steps", int(attributes["steps"])),
             ]
-        few, many = (int(counts[factor]["newton_iterations"]) for factor in (1e4, 1e5))
-        return Finding(settings, numbers, verdict(few < _CLEARLY * many))
+        grows, falls = np.all(np.diff(spent) > 0), spent[-1] <= spent[0]
+        return Finding(settings, numbers, Verdict.HOLDS if grows else Verdict.FAILS if falls else Verdict.OPEN)
 
     return Statement(
         name="low-factor-is-cheaper",
         title="A small creep-rate factor is cheaper to integrate",
         quote="small values of this parameter lead to a more computationally efficient integration procedure",
         page=251,
-        criterion="With νₛ = 10⁴, Newton iterations are fewer by more than a tenth than with 10⁵.",
-        findings=[finding("as published", _PAPER), finding(_fine(), _BETTER)],
-        remark="The statement belongs to an integrator, and the paper does not name its own. One that feels the "
-        "stiffness of friction takes shorter steps for a larger "
-        "factor; the implicit one used here, with the exact tangent, does not.",
+        criterion="Newton iterations, the work of an implicit integrator, grow with every decade of νₛ from 10² to "
+        "10⁷. If the largest takes no more than the smallest, the statement does not hold; in between it is undecided.",
+        findings=[finding("as published", _DECADES), finding("better settings, 20 elements", _DECADES_BETTER)],
+        remark="The statement belongs to an integrator, and the paper does not name its own. Between its two values, "
+        "10⁴ and 10⁵, the difference is small.",
     )
 
 

@@ -31,12 +31,13 @@ def section(_: Runs) -> Section:
     statement = Statement(
         name="tri-linear-friction",
         title="Friction is tri-linear in the slip velocity",
-        quote="In this study, the friction creep-rate factor is referred to as force per unit length being the "
-        "distributed parameter.",
-        page=254,
+        quote="In this method, a penalty formulation is applied with a Coulomb-like tri-linear creep-rate dependent "
+        "friction.",
+        page=244,
         criterion="The slope at rest is νₛ, and the force at large slip is μ fₙ, both to rounding.",
         findings=[_finding()],
-        remark="μ = 1.2 is that of Table 1.",
+        remark="μ = 1.2 is that of Table 1. νₛ is “the slope of the friction force with respect to tangent velocity at "
+        "small sliding velocities” (p. 246), here of the force per unit length (p. 254).",
     )
     return Section(
         "friction-law",

@@ -1,6 +1,7 @@
 """The runs behind Figs. 10-13, by name."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import product
 
 from beltdyn.model import Drive
@@ -31,6 +32,10 @@ def published_name(factor: str, points: int = POINTS[-1]) -> str:
     return f"loaded_{factor}_{points}_points"
 
 
+def _with_points(points: int, factor: str) -> str:
+    return published_name(factor, points)
+
+
 def zone_name(factor: str, points: int) -> str:
     """Name of a run whose contact is integrated over the zone, from equilibrium."""
     return f"loaded_{factor}_{points}_points_better"
@@ -42,11 +47,13 @@ def fine_name(factor: str) -> str:
 
 
 SETTINGS: dict[str, Callable[[str], str]] = {
-    "as published, 11 points": published_name,
-    "as published, 5 points": lambda factor: published_name(factor, POINTS[0]),
+    **{f"as published, {n} points": partial(_with_points, n) for n in POINTS},
     f"better settings, {FINE} elements": fine_name,
 }
 """Settings -> the name of their run for a creep-rate factor."""
+
+PUBLISHED = len(POINTS)
+"""How many of the settings are published: the paper does not say with how many points its figures were made."""
 
 
 def loaded_cases() -> dict[str, Drive]:

@@ -7,10 +7,11 @@ from typing import Self
 import numpy as np
 
 from beltdyn.model import Drive
-from beltdyn.report.averages import contact_samples
+from beltdyn.report.averages import mean_forces
 from beltdyn.report.measures import FloatArray, rms, settled, speed
 from beltdyn.report.paper.model_runs import COARSER_REFERENCE, MODELS, Case, Model, reference_name, run_name
 from beltdyn.report.runs import Runs
+from beltdyn.report.statement import Verdict
 from beltdyn.results import Run
 from beltdyn.system.build import drive_system
 
@@ -38,7 +39,8 @@ class Errors:
         reference's.
     unevenness : float
         Root mean square in the middle of the arcs of the momentary normal force less its mean at the place, relative.
-    wall_time : float, s
+    cpu_time : float, s
+        Processor time, outputs included.
     steps : int
         With those that were rejected.
     """
@@ -51,7 +53,7 @@ class Errors:
     normal: float
     friction: float
     unevenness: float
-    wall_time: float
+    cpu_time: float
     steps: int
 
     def of(self, measure: str) -> float:
@@ -84,10 +86,9 @@ class Values:
     @classmethod
     def of(cls, run: Run) -> Self:
         """Read them from a run."""
-        samples = contact_samples(run)
-        normal, friction = (np.concatenate([s.mean(kind) for s in samples]) for kind in ("normal", "friction"))
+        normal, friction = (mean_forces(run, kind) for kind in ("normal", "friction"))
         tension = settled(run, "span_tension").mean("time").values
-        return cls(speed(run), tension, normal, friction, rms(np.array([s.unevenness() for s in samples])))
+        return cls(speed(run), tension, normal, friction, rms(run.dataset["unevenness"].values))
 
 
 def errors_of(run: Run, exact: Values, case: Case) -> Errors:
@@ -112,7 +113,7 @@ def errors_of(run: Run, exact: Values, case: Case) -> Errors:
         normal=rms(found.normal - exact.normal) / rms(exact.normal),
         friction=rms(found.friction - exact.friction) / rms(exact.friction) if case.loaded else float("nan"),
         unevenness=found.unevenness,
-        wall_time=float(attributes["wall_time"]),
+        cpu_time=float(attributes["cpu_time"]),
         steps=int(attributes["steps"] + attributes["rejected_steps"]),
     )
 
@@ -172,8 +173,8 @@ class Series:
         counts, values = zip(*((mesh.unknowns, mesh.of(measure)) for mesh in meshes), strict=True)
         return -float(np.polyfit(np.log(counts), np.log(values), 1)[0])
 
-    def needed(self, measure: str, target: float, cost: str = "unknowns") -> float:
-        """What it costs to stay below an error from some mesh on, interpolated between meshes on logarithmic scales.
+    def bracket(self, measure: str, target: float) -> "Bracket":
+        """The meshes between which an error falls below a target for good.
 
         Parameters
         ----------
@@ -181,27 +182,71 @@ class Series:
             Which error.
         target : float
             Its limit.
-        cost : str
-            "unknowns" or "wall_time".
-
-        Returns
-        -------
-        float
-            Infinite if the finest mesh is not good enough; the coarsest mesh's if that is good enough.
         """
-        values, costs = self.values(measure), np.array([float(getattr(error, cost)) for error in self.errors])
+        values = self.values(measure)
         too_large = np.flatnonzero(~(values <= target))
         if not too_large.size:
-            return float(costs[0])
+            return Bracket(None, self.errors[0], 1.0)
         last = int(too_large[-1])
         if last + 1 == len(values):
-            return float("inf")
+            return Bracket(self.errors[last], None, np.inf)
         part = np.log(values[last] / target) / np.log(values[last] / values[last + 1])
-        return float(np.exp((1.0 - part) * np.log(costs[last]) + part * np.log(costs[last + 1])))
+        return Bracket(self.errors[last], self.errors[last + 1], float(part))
 
-    def suffices(self, measure: str, target: float) -> bool:
-        """Whether the coarsest mesh is good enough already."""
-        return bool(np.all(self.values(measure) <= target))
+
+@dataclass(frozen=True, slots=True)
+class Bracket:
+    """Where the meshes of a model begin to meet a target.
+
+    Attributes
+    ----------
+    misses : Errors or None
+        The finest mesh whose error is too large; None if the coarsest is good enough.
+    meets : Errors or None
+        The next finer one, from which on all are good enough; None if the finest mesh is not.
+    part : float
+        Where the target lies between them, 0 to 1, interpolated on logarithmic scales.
+    """
+
+    misses: Errors | None
+    meets: Errors | None
+    part: float
+
+    def interpolate(self, misses: FloatArray | float, meets: FloatArray | float) -> FloatArray:
+        """What the target takes, between what the two meshes take."""
+        return np.asarray(misses) ** (1.0 - self.part) * np.asarray(meets) ** self.part
+
+    def needed(self, cost: str = "unknowns") -> float:
+        """What the target costs: infinite if the finest mesh is not good enough, the coarsest mesh's if that is.
+
+        Parameters
+        ----------
+        cost : str
+            "elements" or "unknowns".
+        """
+        if self.meets is None:
+            return float("inf")
+        high = float(getattr(self.meets, cost))
+        return high if self.misses is None else float(self.interpolate(float(getattr(self.misses, cost)), high))
+
+    def fewer_than(self, other: Self) -> Verdict:
+        """Whether the target takes fewer elements and fewer unknowns than another model takes.
+
+        It does where a mesh that meets it has fewer of both than a mesh of the other model that misses it; it does not
+        where a mesh that misses it has as many of one as a mesh of the other that meets it.  Else meshes lie too far
+        apart to tell.
+
+        Parameters
+        ----------
+        other : Bracket
+            That of the other model.
+        """
+        costs = ("elements", "unknowns")
+        if self.meets and other.misses and all(getattr(self.meets, c) < getattr(other.misses, c) for c in costs):
+            return Verdict.HOLDS
+        if self.misses and other.meets and any(getattr(self.misses, c) >= getattr(other.meets, c) for c in costs):
+            return Verdict.FAILS
+        return Verdict.OPEN
 
 
 @dataclass(frozen=True, slots=True)

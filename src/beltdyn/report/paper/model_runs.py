@@ -43,9 +43,9 @@ class Model:
     coarse: tuple[int, ...] = ()
 
 
-PAPER = Model("ancf", "distributed", "paper's element, distributed", (20, 30, 45, 60, 90, 120), (8, 10, 14))
-TRUSSES = Model("truss", "nodal", "truss, nodal", (90, 120, 180, 240, 360, TRUSS), (30, 45, 60))
-BEAMS = Model("three-node-beam", "nodal", "three-node beam, nodal", (45, 60, 90, 120, BEAM), (15, 30))
+PAPER = Model("ancf", "distributed", "paper's element, distributed", (14, 20, 30, 36, 45, 60, 90, 120), (8, 10))
+TRUSSES = Model("truss", "nodal", "truss, nodal", (90, 120, 135, 180, 240, 360, TRUSS), (30, 45, 60))
+BEAMS = Model("three-node-beam", "nodal", "three-node beam, nodal", (45, 60, 66, 90, 120, BEAM), (15, 24, 30))
 PAPER_NODAL = Model("ancf", "nodal", "paper's element, nodal", (30, 45, 60, 90, 120), (14, 20))
 TRUSSES_DISTRIBUTED = Model("truss", "distributed", "truss, distributed", (60, 120, 240))
 BEAMS_DISTRIBUTED = Model("three-node-beam", "distributed", "three-node beam, distributed", (30, 60, 120))

@@ -26,14 +26,22 @@ def error_table(comparison: Comparison) -> Table:
             mesh.half_pulley,
             *(100.0 * mesh.of(measure) for measure in measures_of(comparison)),
             100.0 * mesh.unevenness,
-            mesh.wall_time,
+            mesh.cpu_time,
             mesh.steps,
         ]
         for model in MODELS
         for mesh in comparison.series[model].errors
     ]
     errors = [f"{NAMES[measure]} [%]" for measure in measures_of(comparison)]
-    headings = ["model, elements", "unknowns", "on half a pulley", *errors, "unevenness [%]", "run time [s]", "steps"]
+    headings = [
+        "model, elements",
+        "unknowns",
+        "on half a pulley",
+        *errors,
+        "unevenness [%]",
+        "processor time [s]",
+        "steps",
+    ]
     return Table(f"Errors and cost, {comparison.case.title}", headings, rows)
 
 

@@ -52,8 +52,7 @@ def section(runs: Runs) -> Section:
 
 def _penetration(run: Run, pulley: int) -> float:
     """Mean penetration where the belt touches a pulley at the end of a run, m."""
-    force = settled(run, "normal_force").where(settled(run, "contact_pulley") == pulley)
-    return float(force.mean()) / run.drive.contact.stiffness
+    return settled_mean(run, "mean_normal_force", pulley) / run.drive.contact.stiffness
 
 
 def _quotient(runs: Runs) -> Statement:

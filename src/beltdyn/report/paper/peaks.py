@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from beltdyn.model import layer_lengths
 from beltdyn.report.distribution import Peak, distribution, find_peak, fit_line
 from beltdyn.report.measures import settled
-from beltdyn.report.paper.loaded_runs import FACTORS, POWERS, PULLEYS, SETTINGS
+from beltdyn.report.paper.loaded_runs import FACTORS, POWERS, PUBLISHED, PULLEYS, SETTINGS
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Statement, verdict
 from beltdyn.results import Run
@@ -72,11 +72,13 @@ def _driver(runs: Runs) -> Statement:
         page=253,
         criterion=f"{_MEASURE}, at both ends and for both factors.",
         findings=[finding(settings) for settings in SETTINGS],
+        published=PUBLISHED,
         remark="Where contact begins and ends, the belt runs at an angle β to the rim and slower along it by the "
         "part β²/2. A string that settles into the penalty "
         "contact has β = √(T/kₚ)/R at most, so that friction rises by νₛ v T / (2 kₚ R²) at most; Coulomb's limit "
         "and bending cut it. The peaks belong to the "
         "penalty, not to the belt: they shrink as kₚ grows.",
+        departures=("the-peaks-of-friction-belong-to-the-penalty",),
     )
 
 
@@ -97,6 +99,7 @@ def _emphasised(runs: Runs) -> Statement:
         criterion="Both peaks of the driver rise further above the line with the larger factor, over the mean "
         "magnitude in the middle.",
         findings=[finding(settings) for settings in SETTINGS],
+        published=PUBLISHED,
     )
 
 
@@ -114,6 +117,7 @@ def _driven(runs: Runs) -> Statement:
         page=253,
         criterion=f"{_MEASURE}, at both ends of the driven pulley with νₛ = 10⁵, and not at both with 10⁴.",
         findings=[finding(settings) for settings in SETTINGS],
+        published=PUBLISHED,
         remark="The cause is the same as on the driver. It opposes the friction of the driven pulley, and where the "
         "force changes its sign it outweighs it.",
     )

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from beltdyn.plot.style import INK, color, dash, new_figure
-from beltdyn.report.averages import BINS, contact_samples
+from beltdyn.report.averages import BINS
 from beltdyn.report.measures import DRIVEN, DRIVER
 from beltdyn.report.paper.model_errors import MEASURES, Comparison
 from beltdyn.report.paper.model_runs import (
@@ -28,7 +28,7 @@ from beltdyn.report.statement import Picture
 
 _MARKERS = ("o", "s", "^", "o", "s", "^")
 _IN_A_ROW = 3
-_LINE_WIDTHS = {"unknowns": 1.3, "wall_time": 0.6}
+_LINE_WIDTHS = {"unknowns": 1.3, "cpu_time": 0.6}
 _LABELS = {
     "speed": "Speed error",
     "tension": "Span tension error",
@@ -38,19 +38,19 @@ _LABELS = {
 _PULLEYS = {DRIVER: "driver", DRIVEN: "driven"}
 
 
-def draw_convergence(comparison: Comparison, targets: Mapping[str, float]) -> Picture:
+def draw_convergence(comparison: Comparison, targets: Mapping[str, Sequence[float]]) -> Picture:
     """Errors over the number of unknowns."""
     caption = f"Errors over the unknowns of the belt, {comparison.case.title}. Dotted: the targets."
     return picture(caption)(_draw_errors)(comparison, targets, "unknowns", "Unknowns of the belt")
 
 
-def draw_work(comparison: Comparison, targets: Mapping[str, float]) -> Picture:
-    """Errors over run time."""
-    caption = f"Errors over run time, {comparison.case.title}, two runs side by side. Dotted: the targets."
-    return picture(caption)(_draw_errors)(comparison, targets, "wall_time", "Run time [s]")
+def draw_work(comparison: Comparison, targets: Mapping[str, Sequence[float]]) -> Picture:
+    """Errors over processor time."""
+    caption = f"Errors over processor time, {comparison.case.title}, outputs included. Dotted: the targets."
+    return picture(caption)(_draw_errors)(comparison, targets, "cpu_time", "Processor time [s]")
 
 
-def _draw_errors(comparison: Comparison, targets: Mapping[str, float], cost: str, label: str) -> Figure:
+def _draw_errors(comparison: Comparison, targets: Mapping[str, Sequence[float]], cost: str, label: str) -> Figure:
     measures = [measure for measure in MEASURES if comparison.case.loaded or measure != "friction"]
     rows, columns = (2, 2) if len(measures) > _IN_A_ROW else (1, len(measures))
     figure = new_figure((8.6, 0.8 + 2.6 * rows))
@@ -69,7 +69,8 @@ def _draw_errors(comparison: Comparison, targets: Mapping[str, float], cost: str
                 linewidth=_LINE_WIDTHS[cost],
                 label=model.title,
             )
-        ax.axhline(targets[measure], color=INK, linestyle=":", linewidth=1.0)
+        for target in targets[measure]:
+            ax.axhline(target, color=INK, linestyle=":", linewidth=1.0)
         ax.set(xlabel=label, title=_LABELS[measure])
         ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -100,7 +101,7 @@ def _draw_distributions(runs: Runs, comparison: Comparison) -> Figure:
         f"three-node beam, {BEAM}": run_name(case, BEAMS, BEAM),
         f"truss, {TRUSSES.meshes[1]}": run_name(case, TRUSSES, TRUSSES.meshes[1]),
     }
-    found, exact = [contact_samples(runs[name]) for name in shown.values()], contact_samples(runs[reference_name(case)])
+    found, exact = [runs[name].dataset for name in shown.values()], runs[reference_name(case)].dataset
     place = (np.arange(BINS) + 0.5) / BINS
     figure = new_figure((8.6, 0.7 + 2.7 * len(kinds)))
     grid = figure.subplots(len(kinds), 2, squeeze=False)
@@ -108,8 +109,8 @@ def _draw_distributions(runs: Runs, comparison: Comparison) -> Figure:
         for ax, pulley in zip(row, _PULLEYS, strict=True):
             for number, samples in enumerate(found):
                 style: dict[str, Any] = {"color": color(number), "linestyle": dash(number), "linewidth": 1.4}
-                ax.plot(place, samples[pulley].mean(kind), **style)
-            ax.plot(place, exact[pulley].mean(kind), color=INK, linewidth=1.0)
+                ax.plot(place, samples[f"arc_{kind}_force"][pulley], **style)
+            ax.plot(place, exact[f"arc_{kind}_force"][pulley], color=INK, linewidth=1.0)
             ax.set(xlabel="Part of the arc, from entry", ylabel=f"{kind.capitalize()} force [N/m]")
             ax.set_title(_PULLEYS[pulley])
     figure.legend(grid[0][0].lines, [*shown, f"paper's element, {REFERENCE}"], loc="outside lower center", ncols=3)

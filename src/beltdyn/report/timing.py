@@ -1,0 +1,32 @@
+"""Computing times that were taken several times over, and what can be concluded from them."""
+
+import numpy as np
+
+from beltdyn.report.measures import FloatArray
+from beltdyn.report.numbers import shown
+from beltdyn.report.statement import Value, Verdict
+
+
+def below(times: FloatArray, others: FloatArray) -> Verdict:
+    """Judge whether one thing takes less time than another: undecided where the ranges of repetitions overlap.
+
+    Parameters
+    ----------
+    times, others : ndarray, shape (repeats,)
+        Repetitions of both.
+    """
+    if np.max(times) < np.min(others):
+        return Verdict.HOLDS
+    return Verdict.FAILS if np.min(times) > np.max(others) else Verdict.OPEN
+
+
+def with_spread(times: FloatArray) -> Value:
+    """Print the median and the range of repetitions.
+
+    Parameters
+    ----------
+    times : ndarray, shape (repeats,)
+        The repetitions.
+    """
+    low, middle, high = (shown(float(value)) for value in np.quantile(times, (0.0, 0.5, 1.0)))
+    return f"{middle} ({low}–{high})"
