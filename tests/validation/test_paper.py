@@ -1,4 +1,4 @@
-"""Section 5 of the paper: every statement on the page of `beltdyn paper` keeps the verdict that the project claims.
+"""The paper: every statement on the page of `beltdyn paper` keeps the verdict that the project claims.
 
 The paper shows curves and no table.  Numbers beside its statements come from an independent implementation of the same
 equations: ripple at 8.5 Hz, root mean square error of the driven speed against a mesh of 240 elements 0.09 rad/s with
@@ -13,6 +13,15 @@ from beltdyn.report.statement import Finding, Statement, Verdict
 HOLDS, FAILS, OPEN = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
 
 CLAIMED = {
+    "rigid-motion": (HOLDS, HOLDS),
+    "constant-mass-matrix": (HOLDS, HOLDS),
+    "no-shear-or-poisson-locking": (HOLDS, HOLDS),
+    "factors-act-linearly": (HOLDS, HOLDS),
+    "four-elements-make-a-circle": (FAILS, HOLDS),
+    "coulomb-is-costlier": (HOLDS, HOLDS),
+    "slip-and-stick-within-an-element": (HOLDS, HOLDS),
+    "any-standard-integrator": (HOLDS, HOLDS),
+    "fewer-elements-with-unequal-pulleys": (HOLDS, HOLDS),
     "tri-linear-friction": (HOLDS, HOLDS),
     "released-belt-unknowns": (HOLDS, HOLDS),
     "initial-configuration": (HOLDS, HOLDS),
@@ -23,6 +32,7 @@ CLAIMED = {
     "tension-converged": (FAILS, FAILS),
     "unknowns": (HOLDS, HOLDS),
     "half-pulley": (HOLDS, HOLDS),
+    "half-pulley-loaded": (HOLDS, HOLDS),
     "initial-normal-force": (HOLDS, HOLDS),
     "stiffness-reduces-ripple": (HOLDS, HOLDS),
     "torsional-frequency": (FAILS, HOLDS),
@@ -30,10 +40,10 @@ CLAIMED = {
     "high-factor-reduces-slip": (HOLDS, HOLDS),
     "high-factor-more-accurate": (OPEN, OPEN),
     "too-low-a-factor": (HOLDS, HOLDS),
-    "low-factor-is-cheaper": (FAILS, FAILS),
+    "low-factor-is-cheaper": (HOLDS, HOLDS),
     "steady-at-one-second": (HOLDS, HOLDS),
     "linear-with-low-factor": (HOLDS, HOLDS),
-    "except-driver-friction": (FAILS, FAILS),
+    "except-driver-friction": (OPEN, FAILS),
     "nonlinear-with-high-factor": (HOLDS, HOLDS),
     "driver-peaks": (HOLDS, HOLDS),
     "peaks-emphasised": (HOLDS, HOLDS),
@@ -62,6 +72,19 @@ CLAIMED = {
 TIMED = {"less-time"}
 """Statements about computing time, whose verdict depends on what else the machine does."""
 
+OURS = {
+    "tension-converged",
+    "torsional-frequency",
+    "creep-under-load",
+    "even-forces",
+    "less-time",
+    "belt-like-element-saves-unknowns",
+    "energy-closes",
+}
+"""What no words of the paper claim."""
+
+MEGABYTE = 1_000_000
+
 
 @pytest.fixture(scope="session")
 def outcome(tmp_path_factory: pytest.TempPathFactory) -> Outcome:
@@ -85,7 +108,19 @@ def test_every_run_is_completed(outcome: Outcome) -> None:
 
 
 def test_the_page_is_small_enough_to_send(outcome: Outcome) -> None:
-    assert outcome.page.stat().st_size < 5_000_000
+    assert outcome.page.stat().st_size < 5 * MEGABYTE
+
+
+def test_the_folder_is_small_enough_to_keep(outcome: Outcome) -> None:
+    runs = outcome.page.parent / "runs"
+    assert sum(file.stat().st_size for file in runs.iterdir()) < 100 * MEGABYTE
+    drives, kept = ({file.stem for file in runs.glob(f"*.{suffix}")} for suffix in ("toml", "nc"))
+    assert drives == kept
+
+
+def test_checks_of_our_own_are_marked(statements: dict[str, Statement]) -> None:
+    assert {name for name, statement in statements.items() if statement.ours} == OURS
+    assert all((statement.page is None) == statement.ours for statement in statements.values())
 
 
 def test_every_statement_has_a_claim(statements: dict[str, Statement]) -> None:

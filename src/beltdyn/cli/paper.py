@@ -10,16 +10,17 @@ from beltdyn.errors import SimulationError
 def paper(*, out: Path = Path("beltdyn-paper")) -> int:
     """Run the paper's cases and write one page that compares them with its statements, figure by figure.
 
-    Runs go side by side on all cores, for a few minutes. Ctrl-C ends them and keeps what was computed.
+    Runs go side by side on all cores, for some minutes; then some of them are done again one at a time, for their
+    computing times. Ctrl-C ends them and keeps what was computed.
 
     Parameters
     ----------
     out
-        The folder for the page, paper.html, and the result files of its runs.
+        The folder for the page, paper.html, and the drive file of each of its runs with what the page keeps of it.
     """
     from beltdyn.report import build_paper
 
-    with runs_bar(at_end="writing the page") as report:
+    with runs_bar(at_end="timing some runs, and writing the page") as report:
         outcome = build_paper(out, report)
     for name, reason in outcome.failures.items():
         show_error(f"the run {name} failed: {reason}")

@@ -6,6 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
+from beltdyn.report.departures import DEPARTURES
 from beltdyn.report.page import write_page
 from beltdyn.report.picture import picture
 from beltdyn.report.statement import Finding, Number, Section, Statement, Table, Verdict
@@ -94,6 +95,29 @@ def test_tags_are_balanced(tmp_path: Path, section: Section) -> None:
     balance = Balance()
     balance.feed(written(tmp_path, [section], {"a run": "<reason>"}))
     assert balance.open == []
+
+
+def test_checks_of_our_own_are_counted_apart(tmp_path: Path, section: Section) -> None:
+    summary = written(tmp_path, [section]).partition('<table class="counts">')[2].partition("</table>")[0]
+    rows = [re.sub(r"<[^>]*>", " ", row).split() for row in summary.split("</tr>")]
+    assert " ".join(rows[0]) == "Statements of the paper holds 1 does not hold 0 cannot be decided from the text 0"
+    assert " ".join(rows[1]) == "Checks of our own holds 0 does not hold 0 cannot be decided from the text 1"
+
+
+def test_departures_are_linked(tmp_path: Path) -> None:
+    open_ended = [Finding("as published", [], Verdict.OPEN)]
+    statement = Statement("name", "It", "words", 250, "None.", open_ended, departures=("start", "eq-11"))
+    text = written(tmp_path, [Section("part", "A part", "What was run.", [statement])])
+    linked = re.findall(r'href="#(departure-[\w-]+)"', text)
+    assert linked == ["departure-start", "departure-eq-11"]
+    assert all(f'id="{name}"' in text for name in linked)
+
+
+def test_departures_are_headings_of_the_documentation() -> None:
+    text = (Path(__file__).parents[3] / "docs" / "deviations.md").read_text(encoding="utf-8")
+    titles = re.findall(r"^#+ (.*)$", text, flags=re.MULTILINE)
+    anchors = {re.sub(r"[^\w -]", "", title).lower().replace(" ", "-") for title in titles}
+    assert DEPARTURES.keys() <= anchors
 
 
 def test_failed_runs_are_named(tmp_path: Path) -> None:

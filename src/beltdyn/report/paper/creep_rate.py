@@ -26,6 +26,7 @@ _BETTER = {1e4: f"stiff_low_creep_{_FINE}_better", 1e5: f"stiff_{_FINE}_better"}
 _RTOL = 1e-4
 _SLOPE = 12.0 / (RAMP_END - RAMP_START)
 _EXCESSIVE = 0.1
+_CLEARLY = 1.1
 
 
 def cases() -> Mapping[str, Drive]:
@@ -156,19 +157,22 @@ def _efficiency(runs: Runs) -> Statement:
                 Number(f"νₛ = {power_of_ten(factor)}: Newton iterations", spent[-1]),
                 Number("steps", int(attributes["steps"])),
             ]
-        grows, falls = np.all(np.diff(spent) > 0), spent[-1] <= spent[0]
-        return Finding(settings, numbers, Verdict.HOLDS if grows else Verdict.FAILS if falls else Verdict.OPEN)
+        low, high = (float(np.exp(np.mean(np.log(part)))) for part in (spent[:3], spent[3:]))
+        numbers.append(Number("three larger factors over three smaller ones", high / low))
+        holds, fails = high > _CLEARLY * low, low > _CLEARLY * high
+        return Finding(settings, numbers, Verdict.HOLDS if holds else Verdict.FAILS if fails else Verdict.OPEN)
 
     return Statement(
         name="low-factor-is-cheaper",
         title="A small creep-rate factor is cheaper to integrate",
         quote="small values of this parameter lead to a more computationally efficient integration procedure",
         page=251,
-        criterion="Newton iterations, the work of an implicit integrator, grow with every decade of νₛ from 10² to "
-        "10⁷. If the largest takes no more than the smallest, the statement does not hold; in between it is undecided.",
+        criterion="Over factors from 10² to 10⁷, the three larger ones take more Newton iterations than the three "
+        "smaller ones, by over a tenth in the geometric mean. It does not hold if they take fewer by as much, and is "
+        "undecided in between.",
         findings=[finding("as published", _DECADES), finding("better settings, 20 elements", _DECADES_BETTER)],
-        remark="The statement belongs to an integrator, and the paper does not name its own. Between its two values, "
-        "10⁴ and 10⁵, the difference is small.",
+        remark="The statement belongs to an integrator, and the paper does not name its own. Between the two "
+        "factors of the paper the difference here is small.",
     )
 
 

@@ -14,9 +14,9 @@ _SPEED, _RAMP = 12.0, {"start": 0.02, "end": 0.15}
 _CENTER, _STRETCH = 0.3, 1.0028
 _SMALL, _LARGE = 0.04, 0.16
 _MESHES = {
-    PAPER: (20, 30, 45, 60, 90, 120),
-    TRUSSES: (120, 180, 240, 360, 501),
-    BEAMS: (60, 90, 120, 180, 240),
+    PAPER: (20, 30, 45, 60, 90),
+    TRUSSES: (120, 180, 240, 360),
+    BEAMS: (60, 90, 120, 180),
 }
 _REFERENCE = 180
 _LIMIT = 0.05
