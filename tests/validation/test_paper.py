@@ -77,6 +77,7 @@ OURS = {
     "torsional-frequency",
     "creep-under-load",
     "even-forces",
+    "as-accurate-as-leamy-and-wasfy",
     "less-time",
     "belt-like-element-saves-unknowns",
     "energy-closes",
