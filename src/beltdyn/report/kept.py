@@ -11,6 +11,7 @@ from beltdyn.report.averages import BINS, contact_samples
 from beltdyn.report.measures import FloatArray
 from beltdyn.results import Run
 from beltdyn.results.atomic import atomic_path
+from beltdyn.results.dataset import is_result
 from beltdyn.system.build import contact_points
 
 CURVES = (
@@ -40,7 +41,7 @@ def keep(run: Run) -> None:
     assert run.path is not None
     with closing(run.dataset) as dataset:
         kept = reduce(Run(dataset, run.drive))
-    with atomic_path(run.path) as temporary:
+    with atomic_path(run.path, is_result) as temporary:
         packed = {"zlib": True, "shuffle": True, "complevel": 4}
         kept.to_netcdf(temporary, engine="h5netcdf", encoding=dict.fromkeys(kept.data_vars, packed))
 

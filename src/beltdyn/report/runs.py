@@ -133,7 +133,7 @@ def run_all(
         (folder / f"{name}.toml").write_text(drive.text, encoding="utf-8")
     paths = {name: folder / f"{name}.nc" for name in drives}
     wanted = {paths[name]: _with_fields(drive) for name, drive in drives.items()}
-    endings = simulate_all(wanted, progress, jobs, overwrite=True, finish=keep)
+    endings = simulate_all(wanted, progress, jobs, finish=keep)
     if any(ending.status in ("interrupted", "not started") for ending in endings.values()):
         raise KeyboardInterrupt
     failures = {name: endings[path].error for name, path in paths.items() if endings[path].error}
