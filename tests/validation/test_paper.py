@@ -21,7 +21,7 @@ CLAIMED = {
     "coulomb-is-costlier": (HOLDS, HOLDS),
     "slip-and-stick-within-an-element": (HOLDS, HOLDS),
     "any-standard-integrator": (HOLDS, HOLDS),
-    "fewer-elements-with-unequal-pulleys": (HOLDS, HOLDS),
+    "fewer-elements-with-unequal-pulleys": (OPEN, HOLDS),
     "tri-linear-friction": (HOLDS, HOLDS),
     "released-belt-unknowns": (HOLDS, HOLDS),
     "initial-configuration": (HOLDS, HOLDS),
