@@ -3,12 +3,13 @@
 import os
 import time
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import load, loads
+from beltdyn.model import advise, install, load, loads, tensioner_balances
 from beltdyn.published import demo_text
 from beltdyn.results import open_run
 
@@ -61,6 +62,39 @@ def test_drive_files(change: Change, part: str) -> None:
         loads(change(demo_text()))
     assert part in str(refusal.value)
     assert len(str(refusal.value)) < LONGEST_MESSAGE
+    assert time.process_time() - begun < 5.0
+
+
+FLAT = files("beltdyn").joinpath("examples", "flat_belt_idler.toml")
+LONG_ARM = """
+[[tensioner]]
+pulley = "driven"
+kind = "rotary"
+pivot = [0.2, {0}]
+preload = "{0} N*m"
+rate = {0}
+inertia = 1
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FLAT.read_text(encoding="utf-8").replace("center = [0.65, 0.0]", "center = [1e5, 0.0]"),
+        *(demo_text() + LONG_ARM.format(length) for length in (1e3, 1e5, 1e9)),
+        demo_text().replace("center = [0.191441, 0.0]", "center = [1e5, 0.0]").replace(LENGTH, "length = 200400")
+        + '[[tensioner]]\npulley = "driven"\nkind = "sliding"\ndirection = [1, 0]\npreload = 9\nrate = 0.01\nmass = 1',
+    ],
+    ids=["far pulley", "arm of 1 km", "arm of 100 km", "arm of a million km", "far slider"],
+)
+def test_balances_of_tensioners_in_drives_of_any_size(text: str) -> None:
+    """Steps of a fraction of the smallest radius took the search through the length of such a belt without end."""
+    begun = time.process_time()
+    drive = loads(text)
+    installation = install(drive)
+    advise(drive, installation)
+    (balances,) = tensioner_balances(drive, installation)
+    assert [balance.stable for balance in balances if balance.here] == [True]
     assert time.process_time() - begun < 5.0
 
 

@@ -1,6 +1,6 @@
 """Where springs hold tensioners against the belt, and which of these balances are stable."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +14,13 @@ from beltdyn.model.rest import Rest, settle
 from beltdyn.model.tensioner import RotaryTensioner, path_gradient, place_of
 
 FloatArray = NDArray[np.float64]
-_FIRST_STEP, _GROWTH, _LONGEST_STEP = 1e-3, 1.3, 0.25
+_FIRST_STEP, _GROWTH = 1e-3, 1.3
 """Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
+_LONGEST_STEP = 0.02
+"""Of the same, over the distance between its pulley and the nearest other one: within that the leverage is smooth."""
 _ROUNDING = 4 * float(np.finfo(float).eps)
-_FARTHEST = 500.0
-"""How far a sliding tensioner is followed; by steps that grow on and on beyond half of the path's length."""
+_FARTHEST = 100.0
+"""How far a sliding tensioner is followed, in lengths of the path. An arm is followed half a turn to both sides."""
 _MOST_ROUNDS = 200
 _ACCURACY = 1e-13
 
@@ -75,6 +77,13 @@ class _Situation(NamedTuple):
     def scale(self) -> float:
         """Way of the tensioner on which its pulley moves by the smallest radius, m or rad."""
         return float(np.abs(self.path.radii).min() / np.linalg.norm(self.carrier.place(0.0)[1]))
+
+    def longest_step(self, position: float) -> float:
+        """Step of the search that is short against the distance to the nearest other pulley, m or rad."""
+        changed = self.positions.copy()
+        changed[self.number] = position
+        distances = _distances(moved(self.path, self.carriers, changed), self.carrier.pulley)
+        return _LONGEST_STEP * float(distances.min() / np.linalg.norm(self.carrier.place(position)[1]))
 
     def is_stable(self, position: float) -> bool:
         """Tell whether a balance is stable: the excess falls on its way, with the belt as long as it is there."""
@@ -185,13 +194,12 @@ def _nearest(situation: _Situation) -> float:
 
 def _balances(situation: _Situation, start: float) -> Iterator[float]:
     """Find positions in which the excess changes its sign, on both sides of a start, the nearer ones first."""
-    scale, around = situation.scale, isinstance(situation.carrier.tensioner, RotaryTensioner)
-    near = np.pi if around else 0.5 * situation.path.length
-    reach = near if around else _FARTHEST * scale
+    around = isinstance(situation.carrier.tensioner, RotaryTensioner)
+    reach = np.pi if around else _FARTHEST * situation.path.length
     first = situation.excess(start)
     if first == 0.0:
         yield start
-    sides = [_Side(situation.excess, start, side * scale, near) for side in (1.0, -1.0)]
+    sides = [_Side(situation, start, sign) for sign in (1.0, -1.0)]
     while sides:
         side = min(sides, key=lambda one: abs(one.here - start))
         if abs(side.here - start) > reach or not side.go_on():
@@ -201,37 +209,46 @@ def _balances(situation: _Situation, start: float) -> Iterator[float]:
 
 
 class _Side:
-    """The way of a tensioner from a start to one side, searched by growing steps."""
+    """The way of a tensioner from a start to one side, searched by growing steps, and up to its end by halved ones."""
 
-    def __init__(self, excess: Callable[[float], float], start: float, scale: float, near: float) -> None:
-        self._excess, self._longest = excess, _LONGEST_STEP * scale
-        self._step, self._start, self._near = _FIRST_STEP * scale, start, near
-        self.here, self._value = start, excess(start)
+    def __init__(self, situation: _Situation, start: float, sign: float) -> None:
+        self._situation, self._sign = situation, sign
+        self._step = self._shortest = _FIRST_STEP * situation.scale
+        self._growth = _GROWTH
+        self.here, self._value = start, situation.excess(start)
         self.found: float | None = None
 
     def go_on(self) -> bool:
         """Take a step, and find the balance on it if there is one; False where the way ends."""
         from scipy.optimize import brentq
 
-        ahead, self.found = self.here + self._step, None
-        try:
-            value = self._excess(ahead)
-            if value * self._value < 0.0 or value == 0.0 != self._value:
-                self.found = float(brentq(self._excess, self.here, ahead, xtol=1e-15, rtol=_ROUNDING))
-        except ValueError:
-            return False
+        excess, self.found = self._situation.excess, None
+        while True:
+            ahead = self.here + self._sign * min(self._step, self._situation.longest_step(self.here))
+            try:
+                value = excess(ahead)
+                if value * self._value < 0.0 or value == 0.0 != self._value:
+                    self.found = float(brentq(excess, self.here, ahead, xtol=1e-15, rtol=_ROUNDING))
+                break
+            except ValueError:
+                self._step, self._growth = 0.5 * abs(ahead - self.here), 1.0
+                if self._step < self._shortest:
+                    return False
         self.here, self._value = ahead, value
-        self._step *= _GROWTH
-        if abs(ahead - self._start) < self._near:
-            self._step = min(self._step, self._longest, key=abs)
+        self._step *= self._growth
         return True
+
+
+def _distances(path: Path, pulley: int) -> FloatArray:
+    """Distances of the centers of the other pulleys from one, m."""
+    others = np.delete(path.centers, pulley, axis=0)
+    return np.asarray(np.linalg.norm(others - path.centers[pulley], axis=1))
 
 
 def _covers_another(path: Path, pulley: int) -> bool:
     """Tell whether a pulley and another one cover the center of one of them: neither can pass the other."""
-    distances = np.linalg.norm(np.delete(path.centers, pulley, axis=0) - path.centers[pulley], axis=1)
     radii = np.abs(path.radii)
-    return bool(np.any(distances < np.maximum(np.delete(radii, pulley), radii[pulley])))
+    return bool(np.any(_distances(path, pulley) < np.maximum(np.delete(radii, pulley), radii[pulley])))
 
 
 def _no_balance(one: Carrier, excess: float) -> str:
