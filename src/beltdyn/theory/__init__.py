@@ -11,6 +11,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "hoop",
         "path",
         "running_drive",
+        "sagging_span",
         "sliding_flutter",
         "static_tension",
         "stretch",

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from beltdyn.contact.friction import LAWS
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import (
     across,
@@ -29,11 +30,12 @@ ROUNDING = 1e-9
 def serpentine(**contact: float | None) -> Any:
     """Three pulleys of which the belt's back touches the last, with as much of a drive as the formulas ask for."""
     contact = {"creep_rate_factor": 1e3, "creep_velocity": None} | contact
+    law = next(law for law in LAWS if contact[law.parameter] is not None)
     return SimpleNamespace(
         pulleys=[SimpleNamespace(turning=turning) for turning in (1, 1, -1)],
         radii=np.array([0.1, 0.05, 0.02]),
         frictions=np.array([0.5, 1.0, 0.3]),
-        contact=SimpleNamespace(**contact),
+        contact=SimpleNamespace(law=law, creep=contact[law.parameter]),
         belt=SimpleNamespace(mass_per_length=0.2),
     )
 

@@ -38,7 +38,8 @@ def loaded(**keys: Any) -> dict[str, Any]:
 
 
 FALLING = "weight"
-"""Laid around its pulleys the belt falls on them, with blows that outputs do not resolve."""
+"""Laid around its pulleys, with 30 N if it had no weight, the belt falls on them, with blows that outputs do not
+resolve; the account is open by nine times the tolerance when it has hardly begun, so that the tolerance is half."""
 CASES: dict[str, tuple[list[dict[str, Any]], dict[str, Any], set[str]]] = {
     # pulleys, what else differs, losses beside friction and contact damping
     "sliding tensioner against a stop": (
@@ -101,8 +102,7 @@ CASES: dict[str, tuple[list[dict[str, Any]], dict[str, Any], set[str]]] = {
     ),
     FALLING: (
         [CRANK, IDLER, loaded()],
-        {"belt": {"installed_tension": 30.0}, "gravity": (0.0, -300.0),
-         "simulation": {"start": "laid"}},
+        {"belt": {"length": 1.099814}, "gravity": (0.0, -300.0), "simulation": {"start": "laid", "rtol": 5e-5}},
         set(),
     ),
     "material damping": (

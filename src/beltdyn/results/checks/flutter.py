@@ -1,9 +1,10 @@
-"""Vibrations that could grow far while the belt slid."""
+"""Vibrations of a belt where it slides: those that could grow far, and those that take power."""
 
 import math
 from collections.abc import Iterator
 
 from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.results.checks.power import DAMPING_LIMIT, damping_share
 from beltdyn.results.recorded import attribute
 
 GROWTH_LIMIT = math.log(100.0)
@@ -14,16 +15,28 @@ _LARGEST = 700.0
 
 
 def flutter(evidence: Evidence) -> Iterator[Finding]:
-    """Vibrations that could grow further than the limit while the belt slid."""
+    """Vibrations that could grow further than the limit while the belt slid, or that contact damping tells of.
+
+    States in which the belt flutters already show less growth than those from which it begins; but then the vibrations
+    take power in contact damping.
+    """
     growth, start, end, frequency = (
         attribute(evidence.recorded, f"flutter_{name}", 0.0) for name in ("growth", "start", "end", "frequency")
     )
+    drive, share = evidence.drive, damping_share(evidence)
+    between = f"between t = {start:.4g} s and {end:.4g} s vibrations of {frequency:.0f} Hz"
+    fault = ""
     if growth > GROWTH_LIMIT:
-        drive = evidence.drive
+        factor = math.exp(min(growth, _LARGEST))
+        fault = f"the belt may flutter where it slides: {between} can grow by up to a factor of {factor:.1g}."
+    elif growth > 0.0 and share > DAMPING_LIMIT:
+        fault = (
+            f"the belt flutters where it slides: {between} grow, and take {share:.1%} of the power in contact damping."
+        )
+    if fault:
         critical = 2.0 * math.sqrt(drive.contact.stiffness * drive.belt.mass_per_length)
         yield Finding(
-            f"the belt may flutter where it slides: between t = {start:.4g} s and {end:.4g} s vibrations of "
-            f"{frequency:.0f} Hz can grow by up to a factor of {math.exp(min(growth, _LARGEST)):.1g}.",
+            fault,
             "Long time steps damp them, short ones follow them, and speeds may differ: compare a run with a smaller "
             "simulation.rtol.",
             f"Raise contact.damping = {drive.contact.damping:g} N s/m^2 (critical: {critical:.2g}).",

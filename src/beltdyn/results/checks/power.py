@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from beltdyn.model import Motor
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.results.recorded import attribute
 
 DAMPING_LIMIT = 0.01
 """Largest part of the power put in that contact damping may take without a warning."""
@@ -35,12 +36,21 @@ def negative_losses(evidence: Evidence) -> Iterator[Finding]:
             )
 
 
-def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
-    """Power that contact damping takes, which belongs to the numerical contact and not to a belt."""
+def damping_share(evidence: Evidence) -> float:
+    """Part of the power put in that contact damping takes; zero of a drive that takes no power out."""
     balance = power_balance(evidence.recorded, evidence.window)
+    loaded = min(balance.power_in, balance.power_out) > 0.0
+    return balance.losses["contact damping"] / balance.power_in if loaded else 0.0
+
+
+def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
+    """Power that contact damping takes, which belongs to the numerical contact and not to a belt.
+
+    Where vibrations grow it is they that take it: see `beltdyn.results.checks.flutter`.
+    """
+    balance, share = power_balance(evidence.recorded, evidence.window), damping_share(evidence)
     power, contact = balance.losses["contact damping"], evidence.drive.contact
-    if min(balance.power_in, balance.power_out) > 0.0 and power > DAMPING_LIMIT * balance.power_in:
-        share = power / balance.power_in
+    if share > DAMPING_LIMIT and not attribute(evidence.recorded, "flutter_growth", 0.0) > 0.0:
         critical = 2.0 * math.sqrt(contact.stiffness * evidence.drive.belt.mass_per_length)
         growing = min(contact.damping, critical)  # beyond it the loss no longer grows with the damping
         yield Finding(
