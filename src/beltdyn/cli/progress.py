@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from rich.console import Console
@@ -16,6 +17,8 @@ _EARLY = 5.0
 """Computing time, s, after which a run that takes long is told of."""
 _LONG = 60.0
 """Remaining computing time, s, that is long."""
+
+_SLOW_RUNS = "Fine meshes, steep friction and small tolerances make runs long; `beltdyn check` judges a drive file."
 
 _PHASES = {
     "compiling": "preparing kernels (the first run compiles them: about 20 s)",
@@ -40,7 +43,7 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
         def report(progress: "SolverProgress") -> None:
             nonlocal told
             if not told and progress.elapsed > _EARLY and progress.remaining > _LONG:
-                bar.console.print(_long(progress), highlight=False)
+                bar.console.print(_long("This run", progress.remaining, progress.bound), highlight=False)
                 told = True
             integrating = progress.phase == "integrating"
             bar.update(
@@ -54,11 +57,11 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
         yield report
 
 
-def _long(progress: "SolverProgress") -> str:
-    """How long a run takes, and what makes it so."""
-    minutes = progress.remaining / 60.0
+def _long(what: str, remaining: float, bound: str) -> str:
+    """How long it takes, in computing time that is left (s), and what makes it so."""
+    minutes = remaining / 60.0
     left = f"{minutes:.0f} minutes" if minutes < 120.0 else f"{minutes / 60.0:.0f} hours"
-    return f"This run will take about {left} more, if it goes on like this. {progress.bound}"
+    return f"{what} will take about {left} more, if it goes on like this. {bound}"
 
 
 def _state(progress: "SolverProgress") -> str:
@@ -82,14 +85,25 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
     with _bar() as bar:
         whole = bar.add_task("", total=None, state="", visible=False)
         lines: dict[Path, TaskID] = {}
+        begin: float | None = None
+        told = False
 
         def report(progress: "BatchProgress") -> None:
+            nonlocal begin, told
+            if begin is None and (progress.running or progress.done):
+                begin = perf_counter()
+            part = (progress.done + sum(progress.running.values())) / max(progress.total, 1)
+            elapsed = perf_counter() - begin if begin is not None else 0.0
+            remaining = elapsed * (1.0 - part) / part if part > 0.0 else 0.0
+            if not told and elapsed > _EARLY and remaining > _LONG:
+                told = True
+                bar.console.print(_long("These runs", remaining, _SLOW_RUNS), highlight=False)
             for file in lines.keys() - progress.running.keys():
                 bar.remove_task(lines.pop(file))
-            for file, part in progress.running.items():
+            for file, done in progress.running.items():
                 line = lines.get(file) or bar.add_task(f"  {file.stem}", total=1.0, state="")
                 lines[file] = line
-                bar.update(line, completed=part)
+                bar.update(line, completed=done)
             begun = bool(progress.running or progress.done)
             phase = _PHASES["integrating" if begun else "compiling"]
             bar.update(

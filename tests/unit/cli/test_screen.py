@@ -127,6 +127,18 @@ def test_a_short_run_is_not_told_of(capsys: pytest.CaptureFixture[str]) -> None:
     assert "will take" not in capsys.readouterr().err
 
 
+def test_runs_that_take_long_are_told_of_once(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr("beltdyn.cli.progress.perf_counter", lambda: now[0])
+    with runs_bar() as report:
+        for part, now[0] in ((0.0, 0.0), (0.01, 4.0), (0.02, 8.0), (0.03, 12.0)):
+            report(BatchProgress(0, 4, {Path("long.nc"): part}))
+    shown = " ".join(capsys.readouterr().err.split())
+    assert shown.count("These runs will take about 27 minutes more") == 1
+
+
 def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     """A line for all, and one for each that is on its way."""
     with runs_bar(at_end="writing the page") as report:

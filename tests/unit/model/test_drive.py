@@ -53,6 +53,22 @@ def test_installation_of_the_papers_drive(drive: Drive) -> None:
     np.testing.assert_allclose(installation.penetrations, 3.3e-5, rtol=0.02)
 
 
+def test_advice_on_the_time_that_a_run_takes(drive: Drive) -> None:
+    """Only where it is long, and by what makes it so."""
+
+    def told(**simulation: float) -> list[str]:
+        changed = drive.replace(simulation=drive.simulation.replace(**simulation))
+        return [text for text in advise(changed, install(changed)) if "of computing" in text]
+
+    assert told(duration=100.0, rtol=1e-4) == []
+    (fine,) = told(duration=1000.0, rtol=1e-4)
+    assert "about 3e+06 steps and 5.7 minutes of computing" in fine
+    assert "as short as simulation.rtol = 0.0001" in fine
+    (stepped,) = told(duration=1000.0, rtol=1e-2, max_step=1e-4)
+    assert "about 1e+07 steps" in stepped
+    assert "simulation.max_step = 0.0001 s asks for" in stepped
+
+
 def test_installed_belt_balances(drive: Drive) -> None:
     """The path shortened by the penetrations is as long as the belt at this tension."""
     installation = install(drive)
