@@ -27,10 +27,10 @@ test: install ## linters, types, layers, unit and verification tests
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -m "not slow" $(wildcard tests/unit tests/verification)
+	$(BIN)/pytest -m "not slow" $(wildcard tests/unit tests/verification tests/fuzz)
 
 validate: install ## slow verification tests and comparisons with the literature
-	$(BIN)/pytest -m slow $(wildcard tests/unit tests/verification)
+	$(BIN)/pytest -m slow $(wildcard tests/unit tests/verification tests/fuzz)
 	$(if $(wildcard tests/validation),$(BIN)/pytest tests/validation)
 	$(MAKE) compatibility
 
