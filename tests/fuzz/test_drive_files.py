@@ -1,6 +1,7 @@
 """Thousands of wrong drive files: each is taken, or refused with a message; none ends in a traceback or takes long.
 
-BELTDYN_MUTATIONS says how many are checked (a fifth of them is brought to rest, too), and BELTDYN_FIRST_MUTATION the first seed.
+BELTDYN_MUTATIONS says how many are checked (a fifth of them is brought to rest, too),
+and BELTDYN_FIRST_MUTATION the first seed.
 """
 
 import contextlib
