@@ -16,7 +16,10 @@ from beltdyn.system.arrays import FloatArray
 _WINDOW = (0.42, 0.5, 0.08)
 _FINEST = 0.25
 """Length of the pieces of the integral at most, in intervals."""
-_BLOCK = 32
+_BLOCK = 8
+"""Instants that are filtered at a time: many more would mostly meet points beyond the reach of the filter."""
+_NEAR = 1e-8
+"""Distance from an instant, in intervals, below which sin(pi x) / (pi x) is one."""
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
@@ -87,31 +90,49 @@ class BandLimit:
         """
         if not len(instants):
             return np.empty((0, self._values.shape[1]))
-        slopes: FloatArray = np.asarray(np.gradient(self._values, self._time, axis=0))
-        blocks = [self._filter(instants[k : k + _BLOCK], slopes) for k in range(0, len(instants), _BLOCK)]
+        points, weighted = self._integrand(instants[0] - self._reach, instants[-1] + self._reach)
+        filtered = np.empty((len(instants), weighted.shape[1]))
+        for first in range(0, len(instants), _BLOCK):
+            some = instants[first : first + _BLOCK]
+            part = slice(*np.searchsorted(points, (some[0] - self._reach, some[-1] + self._reach)))
+            filtered[first : first + _BLOCK] = self._kernel(some, points[part]) @ weighted[part]
         needed = max(0, int(np.searchsorted(self._time, instants[-1] - self._reach)) - 2)
         self._time, self._values = self._time[needed:], self._values[needed:]
-        return np.concatenate(blocks)
+        return filtered / (self._interval * self._gain)
 
-    def _filter(self, instants: FloatArray, slopes: FloatArray) -> FloatArray:
-        """Integrals over pieces between ends of steps, none of them long, by Gauss points."""
-        start, end = instants[0] - self._reach, instants[-1] + self._reach
+    def _integrand(self, start: float, end: float) -> tuple[FloatArray, FloatArray]:
+        """Gauss points of pieces between ends of steps, none of them long, and values there times their weights."""
         steps = self._time[np.searchsorted(self._time, start) : np.searchsorted(self._time, end)]
         grid = np.linspace(start, end, int(np.ceil((end - start) / (_FINEST * self._interval))) + 1)
         edges = np.union1d(steps, grid)
         half = 0.5 * np.diff(edges)[:, None]
         points = (edges[:-1, None] + half * (1.0 + _GAUSS)).ravel()
-        weights = (half * _WEIGHTS).ravel()
-        away = (instants[:, None] - points) / self._interval
-        window = sum(share * np.cos(k * np.pi * away / FILTER_REACH) for k, share in enumerate(_WINDOW))
-        kernel = np.where(np.abs(away) < FILTER_REACH, np.sinc(away) * window, 0.0)
-        return np.asarray(kernel * weights @ self._interpolate(points, slopes)) / (self._interval * self._gain)
+        return points, (half * _WEIGHTS).ravel()[:, None] * self._interpolate(points)
 
-    def _interpolate(self, points: FloatArray, slopes: FloatArray) -> FloatArray:
+    def _kernel(self, instants: FloatArray, points: FloatArray) -> FloatArray:
+        """K(t - s) by the sums of angles: sines and cosines of instants and of points alone."""
+        there, here = (instants[:, None] - instants[0]) / self._interval, (points - instants[0]) / self._interval
+        away = there - here
+        wave = _sine_of_difference(np.pi * there, np.pi * here)
+        turn = np.pi / FILTER_REACH
+        cosine = _sine_of_difference(turn * there + 0.5 * np.pi, turn * here)
+        constant, first, second = _WINDOW
+        window = constant - second + cosine * (first + 2.0 * second * cosine)
+        near = np.abs(away) < _NEAR
+        ideal = wave / np.where(near, 1.0, np.pi * away)
+        return np.where(np.abs(away) < FILTER_REACH, np.where(near, 1.0, ideal) * window, 0.0)
+
+    def _interpolate(self, points: FloatArray) -> FloatArray:
         """Cubics through the values at both ends of a step, with the slopes of parabolas through three ends."""
+        slopes = np.asarray(np.gradient(self._values, self._time, axis=0))
         end = np.clip(np.searchsorted(self._time, points), 1, len(self._time) - 1)
         step = (self._time[end] - self._time[end - 1])[:, None]
         x = (points - self._time[end - 1])[:, None] / step
         before, after = self._values[end - 1], self._values[end]
         bends = (1.0 - x) * (slopes[end - 1] * step - (after - before)) + x * ((after - before) - slopes[end] * step)
         return np.asarray(before + x * (after - before) + x * (1.0 - x) * bends)
+
+
+def _sine_of_difference(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Give sin(left - right) for a column and a row."""
+    return np.asarray(np.sin(left) * np.cos(right) - np.cos(left) * np.sin(right))
