@@ -1,0 +1,76 @@
+"""What the default tolerance leaves of errors of time: headline numbers and the energy account."""
+
+from collections.abc import Callable
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from beltdyn import Drive, Run, load, loads, simulate
+from beltdyn.published import cases
+from beltdyn.results.closure import largest_closure
+
+ALLOWED = 0.01
+"""Error of a headline number, of its limit in the tolerance."""
+CLOSURE = 5e-3
+"""Of the energy put in."""
+
+
+def packaged(folder: str, name: str) -> Drive:
+    return load(str(files("beltdyn").joinpath(folder, name)))
+
+
+DRIVES: dict[str, tuple[Callable[[], Drive], float, float]] = {
+    "two_pulley": (lambda: packaged("examples", "two_pulley.toml"), 0.8, 1.0),
+    "new": (lambda: packaged("cli", "new_drive.toml"), 0.8, 1.0),
+    "case_1": (cases.two_pulley, 0.8, 1.0),
+    "unequal_radii": (lambda: packaged("examples", "unequal_radii.toml"), 1.2, 1.5),
+}
+"""Name -> the drive, and the beginning and end of steady running, s."""
+
+
+def headlines(run: Run, start: float, end: float) -> dict[str, float]:
+    """Speeds and slips from angles; means of tensions and hub loads; the sum of the losses."""
+    part = run.dataset.sel(time=slice(start - 1e-9, end + 1e-9))
+    turned = part.pulley_angle.values[-1] - part.pulley_angle.values[0]
+    rims = np.abs(turned) * run.drive.radii
+    losses = ("friction_loss", "damping_loss", "material_loss", "tensioner_loss", "coupling_loss")
+    hubs = np.hypot(*part.hub_force.mean("time").values.T)
+    return {
+        **{f"speed_{number}": float(angle) for number, angle in enumerate(turned)},
+        **{f"slip_{number}": float(1.0 - rim / rims[0]) for number, rim in enumerate(rims) if number},
+        **{f"tension_{number}": float(value) for number, value in enumerate(part.span_tension.mean("time").values)},
+        **{f"hub_{number}": float(value) for number, value in enumerate(hubs)},
+        "losses": sum(float(part[name][-1] - part[name][0]) for name in losses),
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DRIVES)
+def test_headline_numbers(name: str, measured: Callable[..., None]) -> None:
+    """Against a tenth of the default tolerance."""
+    build, *window = DRIVES[name]
+    drive = build()
+    coarse, fine = (
+        headlines(simulate(drive.replace(simulation=drive.simulation.replace(rtol=rtol))), *window)
+        for rtol in (1e-4, 1e-5)
+    )
+    errors = {key: coarse[key] / fine[key] - 1.0 for key in fine}
+    measured(**errors)
+    assert {key: error for key, error in errors.items() if not abs(error) <= ALLOWED} == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rtol", [1e-3, 1e-4])
+def test_a_belt_that_slides_without_friction_keeps_its_energy(rtol: float, measured: Callable[..., None]) -> None:
+    """A load turns the driven pulley backwards within the belt, which rings as laid."""
+    drive = loads(cases.demo_text())
+    driver, driven = drive.pulleys
+    drive = drive.replace(
+        pulley=[driver, driven.replace(torque={"kind": "constant", "value": -0.5})],
+        contact=drive.contact.replace(friction=0.0),
+    )
+    run = simulate(drive.replace(simulation=drive.simulation.replace(rtol=rtol, duration=0.3)))
+    error = largest_closure(run.dataset).error
+    measured(closure=error)
+    assert abs(error) < CLOSURE
