@@ -141,5 +141,6 @@ def _solver(summary: "Summary") -> list[tuple[str, str]]:
 
 def _mesh(resolution: "Resolution") -> str:
     """The estimated errors of the mesh, of which some may not be known."""
-    errors = ", ".join(f"{name} {error:.1%}" for name, error in resolution.errors.items() if not math.isnan(error))
+    known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
+    errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} above 100%" for name, error in known.items())
     return f"errors of about: {errors}" if errors else "errors not known"
