@@ -1,10 +1,14 @@
 """How far a simulation has come."""
 
 import math
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
+
+_LATELY, _OFTEN = 5.0, 0.2
+"""Computing time over which the pace is taken, and between the marks that it is taken from, s."""
 
 Phase = Literal["compiling", "equilibrium", "integrating"]
 
@@ -29,6 +33,8 @@ class Progress:
         Computing time since the first step, s.
     bound : str
         What bounds the time steps, in words; empty before the first one.
+    pace : float
+        Simulated time over computing time of late; by default of all until now.
     """
 
     time: float
@@ -38,13 +44,43 @@ class Progress:
     phase: Phase = "integrating"
     elapsed: float = 0.0
     bound: str = ""
+    pace: float = math.nan
 
     @property
     def remaining(self) -> float:
-        """Computing time that is left if it goes on as until now, s; NaN before the first step."""
-        if self.time <= 0.0 or self.elapsed <= 0.0:
-            return math.nan
-        return self.elapsed * (self.duration - self.time) / self.time
+        """Computing time that is left if it goes on as of late, s; NaN before the first step."""
+        pace = self.pace
+        if math.isnan(pace) and self.time > 0.0 and self.elapsed > 0.0:
+            pace = self.time / self.elapsed
+        return (self.duration - self.time) / pace if pace > 0.0 else math.nan
+
+
+class Pace:
+    """How quickly a simulation gets on, over the last seconds of computing."""
+
+    def __init__(self) -> None:
+        self._marks: deque[tuple[float, float]] = deque()
+
+    def at(self, elapsed: float, reached: float) -> float:
+        """Note where it stands, and tell simulated time over computing time.
+
+        Parameters
+        ----------
+        elapsed, reached
+            Computing and simulated time until now, s, neither less than before.
+
+        Returns
+        -------
+        float
+            NaN as long as nothing is known.
+        """
+        marks = self._marks
+        if not marks or elapsed - marks[-1][0] > _OFTEN:
+            marks.append((elapsed, reached))
+        while len(marks) > 1 and elapsed - marks[1][0] >= _LATELY:
+            marks.popleft()
+        spent = elapsed - marks[0][0]
+        return (reached - marks[0][1]) / spent if spent > 0.0 else math.nan
 
 
 Report = Callable[[Progress], None]

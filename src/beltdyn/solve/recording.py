@@ -26,7 +26,7 @@ from beltdyn.solve.band_limit import BandLimit
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.outlook import step_bound
-from beltdyn.solve.progress import Phase, Progress, Report
+from beltdyn.solve.progress import Pace, Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
 from beltdyn.system.arrays import NODE, FloatArray, System
 from beltdyn.system.discretization import curve_lengths, point_coordinates
@@ -95,6 +95,7 @@ class Recording:
         self._done: Arrays = {}
         self._written = 0
         self._reached = self._step = 0.0
+        self._pace = Pace()
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
         self._ended: float | None = None
 
@@ -160,7 +161,8 @@ class Recording:
             outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
             elapsed = time.perf_counter() - self._started if phase == "integrating" else 0.0
             bound = step_bound(self._drive.simulation, self.statistics, reached)
-            self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound))
+            pace = self._pace.at(elapsed, reached)
+            self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound, pace))
 
     def check(self) -> None:
         """Look, when all is done, whether the belt may have fluttered."""

@@ -4,11 +4,13 @@ from collections.abc import Callable
 from dataclasses import FrozenInstanceError
 from itertools import pairwise
 
+import numpy as np
 import pytest
 
 from beltdyn import simulate
 from beltdyn.model import Drive
 from beltdyn.solve import Progress
+from beltdyn.solve.progress import Pace
 
 
 @pytest.fixture(scope="module")
@@ -39,3 +41,15 @@ def test_the_last_report_is_the_end(told: list[Progress]) -> None:
 def test_a_report_cannot_be_changed(told: list[Progress]) -> None:
     with pytest.raises(FrozenInstanceError):
         told[0].time = 1.0  # type: ignore[misc]
+
+
+def test_what_is_left_goes_by_the_pace_of_late() -> None:
+    """A second a second for ten seconds, then a hundredth of it: of 12 s, 1.95 s are left after 5 s more."""
+    pace = Pace()
+    for elapsed in np.arange(0.0, 10.0, 0.1):
+        assert np.isnan(pace.at(float(elapsed), float(elapsed))) == (elapsed == 0.0)
+    slow = [pace.at(10.0 + 0.1 * k, 10.0 + 0.001 * k) for k in range(60)]
+    assert slow[-1] == pytest.approx(0.01)
+    progress = Progress(10.05, 12.0, 1e-6, 3, elapsed=16.0, pace=slow[-1])
+    assert progress.remaining == pytest.approx(195.0)
+    assert Progress(10.05, 12.0, 1e-6, 3, elapsed=16.0).remaining == pytest.approx(16.0 * 1.95 / 10.05)
