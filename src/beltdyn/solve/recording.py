@@ -98,6 +98,7 @@ class Recording:
         self._pace = Pace()
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
         self._ended: float | None = None
+        self._cpu_started, self._cpu_ended = time.process_time(), 0.0
 
     def __enter__(self) -> Self:
         """Begin; see the class."""
@@ -122,6 +123,7 @@ class Recording:
         self.tell(0.0, "compiling")
         compile_kernels(self._system, laid(self._system, self._drive.path))
         self._compiled = self._started = time.perf_counter()
+        self._cpu_started = time.process_time()
 
     def start(self, drive: Drive, system: System, unstable: tuple[str, ...]) -> None:
         """Note that the state at time zero is known.
@@ -265,6 +267,7 @@ class Recording:
     def _attributes(self) -> dict[str, Any]:
         """Statistics of the solver, known at the end."""
         wall = (self._ended or time.perf_counter()) - self._compiled
+        cpu = (self._cpu_ended or time.process_time()) - self._cpu_started
         return {
             "integrator": self._drive.simulation.integrator,
             "steps": self.statistics.steps,
@@ -272,6 +275,7 @@ class Recording:
             "newton_iterations": self.statistics.newton_iterations,
             "evaluations": self.statistics.evaluations,
             "wall_time": wall,
+            "cpu_time": cpu,
             "compile_time": self._compiled - self._begun,
             "start_time": self._started - self._compiled,
             **({"real_time_factor": wall / self._reached} if self._reached > 0.0 else {}),

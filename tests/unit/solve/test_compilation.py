@@ -17,7 +17,7 @@ from beltdyn.system.state import laid
 
 drive = loaded_two_pulley()
 compile_kernels(drive_system(drive), laid(drive_system(drive), drive.path))
-print(sum(serve.stats.cache_hits.values()), sum(serve.stats.cache_misses.values()))
+print(sum(serve.dispatcher.stats.cache_hits.values()), sum(serve.dispatcher.stats.cache_misses.values()))
 """
 
 
