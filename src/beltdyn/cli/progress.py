@@ -61,7 +61,8 @@ def _long(what: str, remaining: float, bound: str) -> str:
     """How long it takes, in computing time that is left (s), and what makes it so."""
     minutes = remaining / 60.0
     left = f"{minutes:.0f} minutes" if minutes < 120.0 else f"{minutes / 60.0:.0f} hours"
-    return f"{what} will take about {left} more, if it goes on like this. {bound}"
+    about = "a minute or two" if minutes < 1.5 else f"about {left}"
+    return f"{what} will take {about} more, if it goes on as now. {bound}"
 
 
 def _state(progress: "SolverProgress") -> str:
