@@ -55,6 +55,11 @@ class Part(BaseModel):
         cls.__doc__ = document(cls, cls.alternatives())
         cls.__signature__ = signature(cls, cls.alternatives())
 
+    @classmethod
+    def __pydantic_on_complete__(cls) -> None:
+        """Keep the signature, which pydantic makes anew when it builds the part for its first use."""
+        cls.__signature__ = signature(cls, cls.alternatives())
+
     # Tells pydantic that parts inside parts need not go through this constructor, so that it reports
     # all errors of a drive at once, each with its path.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]

@@ -48,6 +48,11 @@ def test_defaults_and_limits_are_those_of_the_fields() -> None:
     assert entries(Pulley)["center"][0] == "(float or text with a unit, float or text with a unit)"
 
 
+def test_the_signature_outlives_the_first_use() -> None:
+    Belt(profile="PK", ribs=6, installed_tension=300.0)
+    assert "profile" in inspect.signature(Belt).parameters
+
+
 def test_forms_of_a_belt_are_arguments_too() -> None:
     parameters = inspect.signature(Belt).parameters
     assert {"profile", "ribs", "axial_stiffness", "mass_per_length"} <= parameters.keys()

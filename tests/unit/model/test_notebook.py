@@ -6,7 +6,7 @@ from importlib.resources import files
 
 import pytest
 
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive, advise, install, loads
 from beltdyn.model.picture import picture
 
 EXAMPLES = sorted(file.name for file in files("beltdyn").joinpath("examples").iterdir() if file.name.endswith(".toml"))
@@ -46,6 +46,6 @@ def test_a_notebook_shows_pulleys_tension_and_warnings(drive: Drive) -> None:
     assert shown.count("<circle") == 2
     assert "<td>driven</td>" in shown
     assert "N at rest" in shown
-    assert "Warning:" not in example("accessory_drive.toml")._repr_html_()
-    soft = drive.replace(contact=drive.contact.replace(stiffness=1e6))
-    assert "<strong>Warning:</strong>" in soft._repr_html_()
+    for shown_drive in (drive, example("accessory_drive.toml"), example("crossed_belt.toml")):
+        warnings = advise(shown_drive, install(shown_drive))
+        assert shown_drive._repr_html_().count("<strong>Warning:</strong>") == len(warnings)
