@@ -15,15 +15,14 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
 from beltdyn import simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.published import better, loaded_two_pulley, two_pulley
 
-FloatArray = NDArray[np.float64]
 Solution = tuple[FloatArray, float]
 """Driven speed at the output instants, rad/s, and seconds of computing."""
 

@@ -12,12 +12,13 @@ from rich.console import Console
 from rich.table import Table
 
 from beltdyn.ancf.elastic_force import element_force
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.build import drive_system
 from beltdyn.system.motion import Equations, new_equations

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from beltdyn import Drive, Run, simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Pulley
 from beltdyn.results import summarize
 from beltdyn.results.derived import capstan_margins
@@ -23,7 +23,6 @@ from beltdyn.theory.elastic_creep import gross_slip_tensions
 from beltdyn.theory.path import open_belt
 from beltdyn.theory.stretch import stretch
 
-FloatArray = NDArray[np.float64]
 RPM = pi / 30.0
 
 

@@ -6,17 +6,15 @@ from pathlib import Path
 
 import numpy as np
 from example_numbers import Number
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import curve_fit
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.cli.sweep import run_up
 from beltdyn.model import install
 from beltdyn.plot.style import new_figure, styled
 from beltdyn.plot.sweep import orders
-
-FloatArray = NDArray[np.float64]
 
 TURN = 0.075
 """A turn of the crank at idle, s."""

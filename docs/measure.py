@@ -12,10 +12,10 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from random_drives import SEEDS, Judged, judge
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.model import ERROR_LIMITS, layer_lengths
 from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
 from beltdyn.report.distribution import distribution, find_peak, fit_line
@@ -26,7 +26,6 @@ from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import at_rest
 
-FloatArray = NDArray[np.float64]
 Row = Sequence[str]
 Changes = Mapping[str, Any]
 

@@ -7,13 +7,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import beltdyn as bd
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import BeltdynError
 from beltdyn.quadrature import gauss_points
-
-FloatArray = NDArray[np.float64]
 
 _SEED = 2026
 _SUNK = 1.0

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike, NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
 from beltdyn.results.contact_scalars import contact_scalars
@@ -20,7 +21,6 @@ from beltdyn.results.friction_work import FrictionWork
 from beltdyn.results.mechanics import cells
 from beltdyn.results.schema import FILTERED
 
-FloatArray = NDArray[np.float64]
 Arrays = dict[str, NDArray[Any]]
 
 MEASURED = pytest.StashKey[list[str]]()

@@ -29,11 +29,9 @@ from exudyn.utilities import (
     ObjectRigidBody2D,
     SensorNode,
 )
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Profile, Pulley
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

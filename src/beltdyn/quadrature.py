@@ -4,9 +4,8 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre, leggauss
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import FloatArray
 
 
 @cache

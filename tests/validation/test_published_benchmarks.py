@@ -17,11 +17,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.integrate import trapezoid
 from scipy.optimize import fsolve
 
 from beltdyn import Belt, Contact, Drive, Pulley, Run, Simulation, simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model.load import Resistance
 from beltdyn.model.profile import CosineRamp, Ramp
 from beltdyn.results import derived
@@ -29,7 +30,6 @@ from beltdyn.theory.stretch import stretch
 
 pytestmark = pytest.mark.slow
 
-FloatArray = NDArray[np.float64]
 Law = Callable[[ArrayLike], FloatArray]
 """Length over reference length of a belt under a tension in N."""
 

@@ -12,14 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn import Run, simulate
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.published import better, loaded_two_pulley
 from beltdyn.theory.stretch import stretch, tangent_stiffness
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
 
 LOAD = 45.0
 ALLOWED = 3e-3

@@ -6,16 +6,14 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from hypothesis import settings
-from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, loads
 from beltdyn.quadrature import gauss_points
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_section, belt_system
 from beltdyn.system.state import State, at_rest
-
-FloatArray = NDArray[np.float64]
 
 settings.register_profile("patient", deadline=None)  # a kernel is compiled at its first call
 settings.load_profile("patient")

@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.solve.vibrations import Vibrations
@@ -21,8 +21,6 @@ from beltdyn.system.build import belt_section, belt_system
 from beltdyn.system.state import State
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import stretch
-
-FloatArray = NDArray[np.float64]
 
 GRAVITY = 9.81
 PINS = [(0, 0), (0, 1), (-1, 0), (-1, 1)]

@@ -9,9 +9,9 @@ from math import pi, sin
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.solve import find_equilibrium
 from beltdyn.system.arrays import NODE, System
@@ -21,7 +21,6 @@ from beltdyn.system.motion import new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
 
-FloatArray = NDArray[np.float64]
 Order = Callable[..., float]
 Measured = Callable[..., None]
 LINKS_OF = {"truss": 1, "three-node-beam": 2}

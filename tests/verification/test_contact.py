@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Constant, Contact, Path, Pulley
 from beltdyn.solve import find_equilibrium
 from beltdyn.system.arrays import NODE, Loads, System
@@ -23,7 +23,6 @@ from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
 from beltdyn.theory.capstan import capstan_ratio
 
-FloatArray = NDArray[np.float64]
 RADIUS = 0.1
 STIFFNESS, DAMPING, FRICTION = 1e7, 50.0, 0.4
 LAWS: dict[str, dict[str, Any]] = {

@@ -10,11 +10,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 
-FloatArray = NDArray[np.float64]
 Evaluate = Callable[[Belt, FloatArray], tuple[float, FloatArray, FloatArray]]
 
 ROUNDING = float(np.finfo(float).eps)

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import quad, solve_ivp
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Pulley, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.system.build_machines import Machines, body_inertias, machine_arrays
@@ -18,7 +18,6 @@ from beltdyn.system.tensioner import tensioner_force
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
 
-FloatArray = NDArray[np.float64]
 RTOL = 1e-10
 SOLVER: dict[str, Any] = {"rtol": RTOL, "atol": 1e-12, "method": "DOP853"}
 

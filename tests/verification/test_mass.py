@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from beltdyn.ancf.inertia import element_mass
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.system.build import belt_section
-
-FloatArray = NDArray[np.float64]
 
 SPEEDS = st.integers(-1000, 1000).map(lambda tenths: 0.1 * tenths)
 EXACT = 1e-13  # a dozen roundings

@@ -9,18 +9,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.linalg import eig
 
 from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
 from beltdyn.ancf.inertia import element_mass
 from beltdyn.ancf.material_damping import damping_force, damping_workspace
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.quadrature import gauss_points
 from beltdyn.system.build import belt_section
-
-FloatArray = NDArray[np.float64]
 
 TIME = 1e-4
 """Damping time, s."""

@@ -10,14 +10,13 @@ from typing import Literal
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.published.released_belt import closed, on_pulleys, release, released_belt
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 
-FloatArray = NDArray[np.float64]
 Method = Literal["globalised", "newton"]
 Start = Callable[[System], State]
 

@@ -15,16 +15,15 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_section
 from beltdyn.system.state import State, straight
 
-FloatArray = NDArray[np.float64]
 Cantilever = Callable[..., tuple[Belt, System]]
 FULL_CIRCLE = 2.0 * pi
 MESHES = [4, 8, 16, 32]

@@ -7,11 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 
-FloatArray = NDArray[np.float64]
 Stiffness = Callable[[Belt], float]
 SMALL = 1e-4  # strain; the next order adds 1.5 SMALL
 FACTORS = [1e-3, 1e-2, 1.0, 30.0]

@@ -10,17 +10,16 @@ from math import asin, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_section
 from beltdyn.system.state import straight
 
-FloatArray = NDArray[np.float64]
 Cantilever = Callable[..., tuple[Belt, System]]
 
 LOADS = range(1, 11)

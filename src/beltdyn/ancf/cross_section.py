@@ -3,9 +3,7 @@
 from math import sqrt
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 
 
@@ -75,7 +73,7 @@ def shear_gradient(shear: NodalShear) -> tuple[float, float, float, float]:
 
 
 @kernel
-def add_shear_curvature(shear: NodalShear, factor: float, tangent: NDArray[np.float64], first: int) -> None:
+def add_shear_curvature(shear: NodalShear, factor: float, tangent: FloatArray, first: int) -> None:
     """Add factor times the second derivative of s with respect to (r_x, r_y) to a block of an element tangent.
 
     Parameters
@@ -116,7 +114,7 @@ def add_shear_curvature(shear: NodalShear, factor: float, tangent: NDArray[np.fl
 
 
 @kernel(inline=True)
-def _add_symmetric(tangent: NDArray[np.float64], first: int, xx: float, xy: float, yy: float) -> None:
+def _add_symmetric(tangent: FloatArray, first: int, xx: float, xy: float, yy: float) -> None:
     """Add a symmetric 2 x 2 block on the diagonal of an element tangent."""
     tangent[first, first] += xx
     tangent[first, first + 1] += xy

@@ -9,17 +9,14 @@ derivatives.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.ancf.cross_section import NodalShear, add_shear_curvature, nodal_shear, shear_gradient
 from beltdyn.ancf.section import Section
 from beltdyn.ancf.shape_functions import Four, bends, slopes
 from beltdyn.ancf.strain_energy import energy_curvature, energy_density, energy_gradient, thickness_energy
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-
-FloatArray = NDArray[np.float64]
-
 
 ELASTIC_WORKSPACE = record(
     xx="(4,4)f8",  # d2U / d(x of vector a) d(x of vector b)

@@ -1,12 +1,12 @@
 """Constant mass matrix of the belt element (kinetic energy of Eq. 2; section 4)."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 
 
-def element_mass(section: Section, length: float) -> NDArray[np.float64]:
+def element_mass(section: Section, length: float) -> FloatArray:
     """Mass matrix, the integral of rho S^T S over the volume.
 
     The centreline carries rho A with cubic Hermite functions, the section vectors r_y carry rho I with linear ones;

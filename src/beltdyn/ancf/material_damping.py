@@ -13,17 +13,14 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.ancf.cross_section import add_shear_curvature, nodal_shear, shear_gradient
 from beltdyn.ancf.elastic_force import centreline
 from beltdyn.ancf.section import Section
 from beltdyn.ancf.shape_functions import Four, bends, slopes
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-
-FloatArray = NDArray[np.float64]
-
 
 DAMPING_WORKSPACE = record(
     slope="(2,12)f8",  # derivatives of eps and kappa with respect to the coordinates e at a point

@@ -4,14 +4,10 @@ Points p0 to p2 belong to one block of coordinates, p3 to p5 to the next.  A pie
 p1-p2, p2-p3 and of the springs at p1, p2 and p3, so that pieces put together make the whole chain.
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.torsional_spring import add_spring, spring_energy
 from beltdyn.chain.truss import add_truss, truss_energy
 from beltdyn.kernel import kernel
-
-FloatArray = NDArray[np.float64]
 
 LINKS = 3
 """Links of a piece of chain."""

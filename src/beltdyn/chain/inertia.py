@@ -1,12 +1,12 @@
 """Constant mass matrix of a piece of chain: the mass of the links, lumped at their ends as Leamy and Wasfy do."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import LINKS
 
 
-def lumped_mass(mass: float, length: float) -> NDArray[np.float64]:
+def lumped_mass(mass: float, length: float) -> FloatArray:
     """Mass matrix of three links; the places p4 and p5 belong to the next piece and carry nothing here.
 
     Parameters

@@ -7,12 +7,8 @@ is that of the curvature phi / L over the length L.
 from math import atan2
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-
-FloatArray = NDArray[np.float64]
 
 
 class Direction(NamedTuple):

@@ -1,11 +1,7 @@
 """Truss element: a straight link between two points that stretches, with the strain measure of Eq. 14."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-
-FloatArray = NDArray[np.float64]
 
 
 @kernel

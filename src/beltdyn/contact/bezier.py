@@ -1,11 +1,8 @@
 """The centreline of an element as a cubic Bezier curve, a form that every belt discretisation can give (Eq. 24)."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 
-FloatArray = NDArray[np.float64]
 Four = tuple[float, float, float, float]
 
 

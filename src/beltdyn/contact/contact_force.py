@@ -8,8 +8,8 @@ f_t t) dx.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Four, bernstein, bernstein_rates, combine, shape_functions
 from beltdyn.contact.contact_zone import MAX_INTERVALS, PIECES, touching_intervals
 from beltdyn.contact.law import ContactLaw, Wheel
@@ -18,9 +18,6 @@ from beltdyn.contact.point_force import PointForce, PointTangent, point_force, p
 from beltdyn.contact.pulley_moment import pulley_moment
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-
-FloatArray = NDArray[np.float64]
-
 
 CONTACT_WORKSPACE = record(
     force="8f8",  # forces on the four vectors, N: x and y in turn

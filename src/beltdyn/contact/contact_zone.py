@@ -7,13 +7,11 @@ than once, the element is halved (Lane and Riesenfeld, Bounds on a polynomial, B
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
 from beltdyn.contact.law import Wheel
 from beltdyn.kernel import kernel
-
-FloatArray = NDArray[np.float64]
 
 MAX_INTERVALS = 6
 """More touching intervals than a polynomial of degree six can have on one element."""

@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.path import Path
 from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner, SlidingTensioner, path_gradient
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,9 @@ from itertools import combinations
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.path import Path
-
-FloatArray = NDArray[np.float64]
 
 
 class Obstacle(NamedTuple):

@@ -5,9 +5,9 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, PrivateAttr, model_validator
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.completion import complete, take_up
 from beltdyn.model.contact import Contact
@@ -19,8 +19,6 @@ from beltdyn.model.quantity import Acceleration
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.tensioner import AnyTensioner, Tensioner
 from beltdyn.model.toml_writer import dumps
-
-FloatArray = NDArray[np.float64]
 
 
 class Drive(Part):

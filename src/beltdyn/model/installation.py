@@ -4,16 +4,14 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
 from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, come_to_rest
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import tension as tension_of
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 
 SAME = 1e-11
 """Instants nearer to each other than this are one, s."""
@@ -40,11 +39,11 @@ class Instants:
         """At how many of them fields are recorded."""
         return (self.count - 1) // self.stride + 1 + ((self.count - 1) % self.stride > 0)
 
-    def has_fields(self, numbers: NDArray[np.integer]) -> NDArray[np.bool_]:
+    def has_fields(self, numbers: IntArray) -> BoolArray:
         """Whether fields are recorded at some of them, by their numbers."""
         return np.asarray((numbers % self.stride == 0) | (numbers == self.count - 1))
 
-    def __getitem__(self, numbers: NDArray[np.integer]) -> FloatArray:
+    def __getitem__(self, numbers: IntArray) -> FloatArray:
         """Some of them, s, by their numbers."""
         return np.where(numbers < self.count - 1, self.interval * numbers, self.end)
 

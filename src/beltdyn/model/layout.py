@@ -5,8 +5,8 @@ from itertools import combinations, pairwise, permutations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.clearance import Surroundings, crossings, obstacle
 from beltdyn.model.path import Path
@@ -56,7 +56,7 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt) -> Path:
     return path
 
 
-def radii(pulleys: Sequence[Pulley], belt: Belt) -> NDArray[np.float64]:
+def radii(pulleys: Sequence[Pulley], belt: Belt) -> FloatArray:
     """Effective radii, at which the line that carries the tension runs, shape (n,), m."""
     return np.array([pulley.radius + belt.offset(pulley.side) for pulley in pulleys])
 

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import FloatArray
+
 _ROUNDING = 1e-12  # rad: a turning angle this far below zero is zero
 
 

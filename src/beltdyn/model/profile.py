@@ -4,15 +4,15 @@ from abc import abstractmethod
 from typing import Annotated, Any, Generic, Literal, Self, cast
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 from typing_extensions import TypeVar
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.part import Part
 from beltdyn.model.quantity import Angle, AngularSpeed, Ratio, Time, Torque, quantity
 from beltdyn.model.table_file import check_points, describe_file, take_file
 
-FloatArray = NDArray[np.float64]
 Value = TypeVar("Value", bound=float, default=float)
 
 

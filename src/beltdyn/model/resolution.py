@@ -19,12 +19,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import layer_lengths
-
-FloatArray = NDArray[np.float64]
 
 ERROR_LIMITS: Mapping[str, float] = MappingProxyType(
     {"tension": 0.01, "mean pressure": 0.05, "peak pressure": 0.2, "slip": 0.1, "losses": 0.2}

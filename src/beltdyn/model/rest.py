@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
 from beltdyn.theory.stretch import stretch as stretch_under
 from beltdyn.theory.stretch import tension as tension_of
 from beltdyn.theory.sunk_belt import sunk_stretch
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from typing import Annotated, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import AfterValidator, Field, model_validator
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.part import Part
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Name, Pulley
@@ -28,7 +28,6 @@ from beltdyn.model.quantity import (
     TorsionalStiffness,
 )
 
-FloatArray = NDArray[np.float64]
 _ROUNDING = 4 * np.finfo(float).eps
 LEAST_LEVERAGE = 1e-3
 """Smallest part of a unit motion of the pulley's center that must lengthen the path."""

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, moved
 from beltdyn.model.contact import Contact
@@ -13,7 +13,6 @@ from beltdyn.model.path import Path
 from beltdyn.model.rest import Rest, settle
 from beltdyn.model.tensioner import RotaryTensioner, path_gradient, place_of
 
-FloatArray = NDArray[np.float64]
 _FIRST_STEP, _GROWTH = 1e-3, 1.3
 """Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
 _LONGEST_STEP = 0.02

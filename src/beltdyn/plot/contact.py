@@ -6,13 +6,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, styled, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Run, derived
 
-FloatArray = NDArray[np.float64]
 Kind = Literal["normal", "friction"]
 _KILO = 1e3
 _SLIDING = "#f6d9c9"

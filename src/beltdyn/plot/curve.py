@@ -2,9 +2,8 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import FloatArray
 
 POINTS = 17
 """Points drawn on an element, ends included."""

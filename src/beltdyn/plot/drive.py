@@ -10,15 +10,15 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path as Outline
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
 from beltdyn.model.tensioner import RotaryTensioner
 from beltdyn.plot.curve import centerline, element_lengths
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
 from beltdyn.results import Run
 
-FloatArray = NDArray[np.float64]
 _ARROW_RADIUS = 0.62
 _ARROW_ANGLE = np.radians(60.0)
 _MARK = (0.84, 0.97)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyArrowPatch, Wedge
 from matplotlib.path import Path as Outline
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Installation, Path, install
@@ -18,7 +18,6 @@ from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 
-FloatArray = NDArray[np.float64]
 _BELT, _TENSIONER = COLORS[0], COLORS[1]
 _ARROW = "-|>,head_length=5,head_width=2.4"
 

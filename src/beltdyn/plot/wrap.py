@@ -3,10 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.intp]
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +23,7 @@ class Wrap:
     distance: FloatArray
 
 
-def unwrap(belt_coordinate: FloatArray, touching: NDArray[np.bool_], length: float, speed: float) -> Wrap:
+def unwrap(belt_coordinate: FloatArray, touching: BoolArray, length: float, speed: float) -> Wrap:
     """Find the contiguous part of a closed belt that lies on a pulley.
 
     The part is what is left of the belt when its longest free stretch is taken away.

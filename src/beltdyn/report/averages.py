@@ -5,9 +5,9 @@ from math import pi
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from beltdyn.report.measures import SETTLED, FloatArray
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.report.measures import SETTLED
 from beltdyn.results import Run
 from beltdyn.system.build import contact_points
 
@@ -38,7 +38,7 @@ class ContactSamples:
     friction: FloatArray
 
     @property
-    def bin(self) -> NDArray[np.intp]:
+    def bin(self) -> IntArray:
         """Part of the arc that every point lies in."""
         return np.asarray(self.place * BINS, dtype=np.intp)
 

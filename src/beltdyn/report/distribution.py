@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.plot.wrap import unwrap
 from beltdyn.report.kept import sliding
-from beltdyn.report.measures import FloatArray, rms
+from beltdyn.report.measures import rms
 from beltdyn.results import Run
 
 END = 0.2
@@ -37,7 +37,7 @@ class Distribution:
     place: FloatArray
     normal: FloatArray
     friction: FloatArray
-    gliding: NDArray[np.bool_]
+    gliding: BoolArray
 
     def force(self, kind: str) -> FloatArray:
         """Normal force for "normal", friction force for "friction"."""

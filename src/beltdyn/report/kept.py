@@ -5,10 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.report.averages import BINS, contact_samples
-from beltdyn.report.measures import FloatArray
 from beltdyn.results import Run
 from beltdyn.results.atomic import atomic_path
 from beltdyn.results.dataset import is_result
@@ -107,7 +106,7 @@ def reduce(run: Run) -> xr.Dataset:
     )
 
 
-def _mean_where(values: FloatArray, chosen: NDArray[np.bool_]) -> FloatArray:
+def _mean_where(values: FloatArray, chosen: BoolArray) -> FloatArray:
     """Mean of the chosen values of each row; NaN where none is."""
     counts = chosen.sum(axis=1)
     return np.where(counts, (values * chosen).sum(axis=1) / np.maximum(counts, 1), np.nan)
@@ -125,7 +124,7 @@ def sliding(run: Run) -> xr.DataArray:
     return friction >= COULOMB * run.drive.contact.friction * normal
 
 
-def mixed_elements(run: Run) -> NDArray[np.intp]:
+def mixed_elements(run: Run) -> IntArray:
     """Count, at each instant with fields, the elements with points that slide and points that stick.
 
     Parameters

@@ -2,11 +2,9 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.results import Run
-
-FloatArray = NDArray[np.float64]
 
 DRIVER, DRIVEN = 0, 1
 RAMP_START, RAMP_END = 0.05, 0.6

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.report.kept import keep, open_kept
-from beltdyn.report.measures import FloatArray
 from beltdyn.results import Run
 from beltdyn.results.atomic import make_folder
 from beltdyn.solve import BatchProgress, simulate, simulate_all

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beltdyn.report.measures import FloatArray
+from beltdyn.arrays import FloatArray
 from beltdyn.report.numbers import shown
 from beltdyn.report.statement import Value, Verdict
 

@@ -1,12 +1,11 @@
 """Places on the arcs of pulleys, from circles alone."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.model.path import span_directions, span_points, wrap_angles
-
-FloatArray = NDArray[np.float64]
 
 
 def arc_ends(drive: Drive, centers: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.results.recorded import Recorded
 
 
@@ -60,7 +60,7 @@ def largest_numerical_share(recorded: Recorded) -> Closure:
     return Closure(float(recorded["time"][worst]), float(shares[worst]))
 
 
-def energy_put_in(recorded: Recorded) -> NDArray[np.float64]:
+def energy_put_in(recorded: Recorded) -> FloatArray:
     """Energy put in up to each output: what was stored at first, and the largest works of each kind by then.
 
     Parameters
@@ -74,7 +74,7 @@ def energy_put_in(recorded: Recorded) -> NDArray[np.float64]:
         J; works of drivers and torques, and of springs and weight, either way.
     """
 
-    def values(name: str) -> NDArray[np.float64]:
+    def values(name: str) -> FloatArray:
         return np.asarray(recorded[name], dtype=np.float64)
 
     stored = sum(float(values(name)[0]) for name in ("kinetic_energy", "strain_energy", "penalty_energy"))

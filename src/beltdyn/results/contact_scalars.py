@@ -1,14 +1,9 @@
 """What contact along the belt amounts to for every pulley and span."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import cells, gross_sliding, pressing, sliding_shares, sliding_velocity
 from beltdyn.results.mid_span import mid_span_displacements
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.integer]
 
 
 def contact_scalars(

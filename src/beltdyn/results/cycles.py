@@ -6,14 +6,12 @@ from functools import reduce
 from math import floor, gcd, lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.model.profile import Harmonic, Profile, Table
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.window import Cycle, Window, plain_window
-
-FloatArray = NDArray[np.float64]
 
 SHORTEST, LONGEST = 0.1, 0.5
 """Parts of the recorded time that the window of means is at least and at most."""

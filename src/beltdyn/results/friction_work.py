@@ -1,13 +1,10 @@
 """Work of friction by place on the arcs and by place on the belt, integrated over the steps of a run."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.results.arc import angle_from_inlet, arc_ends
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.integer]
 
 ARC_PARTS = 60
 """Equal parts of an arc in which work is summed up."""

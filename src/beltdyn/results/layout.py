@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.results.friction_work import ARC_PARTS, arc_shares
 from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, COORDINATES, RECORDED, Variable
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.model import Drive
 from beltdyn.results.cycles import mean_window
@@ -14,8 +13,6 @@ from beltdyn.results.mechanics import (
 from beltdyn.results.recorded import Recorded, names
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,12 +4,9 @@ Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.integer]
 
 UNLOADED = 1e-4
 """Difference of the tensions at a pulley, over their sum, up to which it counts as unloaded."""
@@ -125,7 +122,7 @@ def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: Int
     return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
 
 
-def sliding_shares(sliding: FloatArray, pressed: NDArray[np.bool_], cell: FloatArray) -> FloatArray:
+def sliding_shares(sliding: FloatArray, pressed: BoolArray, cell: FloatArray) -> FloatArray:
     """Part of every arc of contact on which the belt slides.
 
     Parameters
@@ -147,12 +144,12 @@ def sliding_shares(sliding: FloatArray, pressed: NDArray[np.bool_], cell: FloatA
     return np.asarray(np.divide(slid, lengths, out=np.zeros_like(lengths), where=lengths > 0.0))
 
 
-def pressing(normal: FloatArray, touched: IntArray, pulleys: int) -> NDArray[np.bool_]:
+def pressing(normal: FloatArray, touched: IntArray, pulleys: int) -> BoolArray:
     """Where the belt presses on each pulley, shape (k, points, pulleys)."""
     return np.asarray((touched[..., None] == np.arange(pulleys)) & (normal > 0.0)[..., None])
 
 
-def gross_sliding(sliding: FloatArray, pressed: NDArray[np.bool_], drive: Drive) -> FloatArray:
+def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> FloatArray:
     """Velocity at which the belt slides on the whole arc of each pulley, m/s along the belt.
 
     The sliding velocity nearest to zero of all points that press; zero as soon as one of them only creeps, or slides

@@ -1,13 +1,10 @@
 """How far spans move sideways, from where the belt is."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.model.path import span_points
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.integer]
 
 
 def mid_span_displacements(drive: Drive, centers: FloatArray, places: FloatArray, touched: IntArray) -> FloatArray:
@@ -49,7 +46,7 @@ def _last_touched(touched: IntArray) -> IntArray:
     return np.take_along_axis(touched, index, axis=1)
 
 
-def _middle(places: FloatArray, free: NDArray[np.bool_], points: FloatArray) -> FloatArray:
+def _middle(places: FloatArray, free: BoolArray, points: FloatArray) -> FloatArray:
     """Distance of the belt from the middle of lines, shape (time,).
 
     Parameters

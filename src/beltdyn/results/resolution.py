@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, layer_lengths, mesh_errors
 from beltdyn.results.recorded import Recorded
 
@@ -69,7 +69,7 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
     return Resolution(errors, elements_needed(drive, running), layer_lengths(drive, tension))
 
 
-def _last(recorded: Recorded, name: str, clock: str) -> NDArray[np.float64]:
+def _last(recorded: Recorded, name: str, clock: str) -> FloatArray:
     """Values of a variable over the last fifth of the run."""
     time = np.asarray(recorded[clock])
     first = int(np.searchsorted(time, time[-1] - _WINDOW * (time[-1] - time[0])))

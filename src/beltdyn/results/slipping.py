@@ -1,13 +1,11 @@
 """Slip of the pulleys against the first, and what it is made of."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import across, relative_loss, slip
 from beltdyn.theory.stretch import stretch
-
-FloatArray = NDArray[np.float64]
 
 
 def slip_parts(

@@ -11,11 +11,9 @@ taken as straight.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.results.recorded import Recorded
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,8 +10,8 @@ ends of steps by cubics.  `transfer` is the closed form of what a sinusoid is mu
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.results.schema import FILTER_REACH
-from beltdyn.system.arrays import FloatArray
 
 _WINDOW = (0.42, 0.5, 0.08)
 _FINEST = 0.25

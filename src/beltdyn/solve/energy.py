@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beltdyn.system.arrays import FloatArray
+from beltdyn.arrays import FloatArray
 
 
 class EnergyAccount:

@@ -8,11 +8,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
 from beltdyn.solve import generalized_alpha
 from beltdyn.solve.march import March, Settings, Steps, empty_steps, new_march
-from beltdyn.system.arrays import DRIVER_WORK, FloatArray, System
+from beltdyn.system.arrays import DRIVER_WORK, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.missed_action import jump_work

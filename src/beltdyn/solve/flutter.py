@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.friction import LAWS
 from beltdyn.solve.vibrations import Vibrations
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 
 _ELEMENTS = 1
 """Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
@@ -140,13 +141,13 @@ def last_slid(time: FloatArray, transit: FloatArray, before: float = -np.inf) ->
     return np.maximum(np.maximum.accumulate(np.where(transit > 0.0, time, -np.inf)), before)
 
 
-def longest_pieces(points: NDArray[np.bool_]) -> NDArray[np.intp]:
+def longest_pieces(points: BoolArray) -> IntArray:
     """Number of true points in the longest row of them on a closed belt, shape (k,), of points of shape (k, n)."""
     count = points.shape[1]
     around = np.concatenate([points, points], axis=1)
     number = np.arange(1, 2 * count + 1)
     rows = number - np.maximum.accumulate(np.where(around, 0, number), axis=1)
-    longest: NDArray[np.intp] = np.minimum(np.max(rows, axis=1, initial=0), count)
+    longest: IntArray = np.minimum(np.max(rows, axis=1, initial=0), count)
     return longest
 
 

@@ -8,9 +8,7 @@ add up to what the tension of the belt feels.
 from math import ceil, floor, inf, sqrt
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import follow_profiles
 from beltdyn.solve.alpha_method import Method, method_of
@@ -21,8 +19,6 @@ from beltdyn.system.arrays import ENERGY_WORKS, NODE, System
 from beltdyn.system.end_of_step import find_loads, numerical_loss
 from beltdyn.system.missed_action import Motion, missed_work
 from beltdyn.system.motion import Equations
-
-FloatArray = NDArray[np.float64]
 
 REACHED: Final = 0
 """Status: the stop was reached, the room for steps is full, or the budget is spent."""

@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Installation, describe, install
 from beltdyn.model import Path as BeltPath
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.static import find_equilibrium, standing, tensioner_compliance
-from beltdyn.system.arrays import FloatArray, System
+from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe

@@ -3,13 +3,11 @@
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import ENERGY_WORKS, NODE, POWERS, FloatArray
+from beltdyn.system.arrays import ENERGY_WORKS, NODE, POWERS
 from beltdyn.system.missed_action import Motion
-
-IntArray = NDArray[np.int64]
 
 STEPS: Final = 0
 REJECTED: Final = 1

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results.contact_scalars import contact_scalars
@@ -12,7 +13,7 @@ from beltdyn.results.friction_work import FrictionWork
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import ENERGY_WORKS, FloatArray, System
+from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.observe import observe
 

@@ -8,6 +8,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.results import (
     COORDINATE_NAMES,
@@ -28,7 +29,7 @@ from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.outlook import step_bound
 from beltdyn.solve.progress import Pace, Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 from beltdyn.system.discretization import curve_lengths, point_coordinates
 from beltdyn.system.state import laid
 
@@ -37,8 +38,6 @@ _MOST_WAITING = 512
 """States that wait to be observed."""
 _BLOCK = 512
 """Outputs that are made at a time."""
-
-IntArray = NDArray[np.intp]
 
 
 class Recording:

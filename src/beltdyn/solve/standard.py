@@ -10,12 +10,13 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.instants import SAME
 from beltdyn.solve.march import Settings
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import ENERGY_WORKS, POWERS, FloatArray, System
+from beltdyn.system.arrays import ENERGY_WORKS, POWERS, System
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.missed_action import Motion
 

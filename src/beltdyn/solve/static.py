@@ -13,10 +13,11 @@ from typing import Literal
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
 from beltdyn.solve.engine import correct, linearise, move
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.state import State
 

@@ -5,14 +5,12 @@ from dataclasses import dataclass, fields, replace
 from typing import Protocol, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive, Motor, Pulley, install
 from beltdyn.model.instants import SAME, Instants
-from beltdyn.system.arrays import ENERGY_WORKS, FloatArray, System
+from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.state import State
-
-IntArray = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)

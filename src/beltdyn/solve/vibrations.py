@@ -8,17 +8,16 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.solve.engine import linearise
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import entries, places
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-ComplexArray = NDArray[np.complex128]
 
 _BATCH, _BATCHES = 40, 2
 """Steps of the Arnoldi method after which it looks what it has found, and how often it does at most."""

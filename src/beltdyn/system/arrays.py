@@ -8,16 +8,11 @@ made of one or several curves; beyond that the system does not ask how a belt is
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
 from beltdyn.records import Records, record
 from beltdyn.system.machine_arrays import Profiles, Torques
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 NODE = 6
 """Coordinates of a node: r, r_x, r_y (Eq. 6), or the places of three points of a chain of links."""
@@ -50,7 +45,7 @@ BODY = record(
 class Supports(NamedTuple):
     """What holds and loads the nodes of a belt beside its pulleys."""
 
-    fixed: NDArray[np.bool_]
+    fixed: BoolArray
     """Coordinates that do not move, shape (6 N,)."""
     any_fixed: bool
     force: FloatArray

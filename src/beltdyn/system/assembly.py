@@ -6,10 +6,10 @@ C a = 0                                                      joint, where the ri
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import ELASTIC_WORKSPACE, element_force
 from beltdyn.ancf.material_damping import DAMPING_WORKSPACE, damping_force
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import chain_force
 from beltdyn.contact.contact_force import CONTACT_WORKSPACE, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
@@ -21,9 +21,6 @@ from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
 from beltdyn.system.wheels import law_of, wheel_of
-
-FloatArray = NDArray[np.float64]
-
 
 ASSEMBLY_WORKSPACE = record(
     elastic=ELASTIC_WORKSPACE,

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import LAWS
 from beltdyn.contact.law import ContactLaw
 from beltdyn.errors import ModelError
@@ -15,7 +16,7 @@ from beltdyn.model.pulley import friction_on
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
 from beltdyn.records import Records, records
-from beltdyn.system.arrays import BODY, NODE, PULLEY, FloatArray, Quadrature, Supports, System
+from beltdyn.system.arrays import BODY, NODE, PULLEY, Quadrature, Supports, System
 from beltdyn.system.build_machines import (
     body_inertias,
     machine_arrays,

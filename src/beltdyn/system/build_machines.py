@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import (
     FixedTensioner,
@@ -38,8 +39,6 @@ from beltdyn.system.machine_arrays import (
     SEGMENT,
     TABLE,
     TENSIONER,
-    FloatArray,
-    IntArray,
     Profiles,
     Torques,
 )

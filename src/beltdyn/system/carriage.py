@@ -11,14 +11,12 @@ vectors, and hub force -sum_a w_a F_a:
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.tensioner import tensioner_place
 from beltdyn.system.wheels import tensioner_coordinate
-
-FloatArray = NDArray[np.float64]
 
 
 class Carriage(NamedTuple):

@@ -6,10 +6,11 @@ import numpy as np
 
 from beltdyn.ancf.inertia import element_mass
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import LINKS
 from beltdyn.chain.inertia import lumped_mass
 from beltdyn.model import Belt
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 
 
 class Discretization(NamedTuple):

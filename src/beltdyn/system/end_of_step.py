@@ -1,9 +1,9 @@
 """What the energy account needs of a step that is accepted: the loads at its end, and what the integrator took."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.ancf.material_damping import damping_force
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
@@ -12,8 +12,6 @@ from beltdyn.system.assembly import fill_control
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.missed_action import Motion
 from beltdyn.system.wheels import law_of, wheel_of
-
-FloatArray = NDArray[np.float64]
 
 
 @kernel

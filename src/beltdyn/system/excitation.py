@@ -3,13 +3,11 @@
 from math import cos, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.machine_arrays import Profiles
-
-FloatArray = NDArray[np.float64]
 
 
 @kernel

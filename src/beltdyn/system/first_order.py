@@ -3,9 +3,9 @@
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from beltdyn.system.arrays import DRIVER_WORK, NODE, POWERS, FloatArray, RingMatrix, System
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.system.arrays import DRIVER_WORK, NODE, POWERS, RingMatrix, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
@@ -132,7 +132,7 @@ class FirstOrder:
         return np.asarray(np.linalg.inv(mass_matrix(self._system)), dtype=np.float64)
 
     @cached_property
-    def _free(self) -> NDArray[np.intp]:
+    def _free(self) -> IntArray:
         """Numbers of the free bodies."""
         return np.flatnonzero(self._system.bodies.unknown >= 0)
 

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 
 
 @dataclass(frozen=True, eq=False)

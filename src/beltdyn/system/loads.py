@@ -1,8 +1,8 @@
 """What the bodies feel at one state: contact summed over the belt, machines, and the powers of the energy account."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, POWERS, Loads, System
@@ -10,8 +10,6 @@ from beltdyn.system.coupling import coupling_torque
 from beltdyn.system.shaft_torque import shaft_torque
 from beltdyn.system.tensioner import tensioner_force, tensioner_place
 from beltdyn.system.wheels import tensioner_coordinate
-
-FloatArray = NDArray[np.float64]
 
 
 def new_loads(system: System) -> Loads:

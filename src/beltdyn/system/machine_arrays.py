@@ -2,13 +2,8 @@
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import IntArray
 from beltdyn.records import Records, record
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 POLYNOMIAL, TABLE, KLOSS = 0, 1, 2
 """Kinds of loads: see `shaft_torque`."""

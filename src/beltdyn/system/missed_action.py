@@ -9,16 +9,14 @@ ends of the step, the step misses the integral of d: an angle of a prescribed sp
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.coupling import coupling_torque
 from beltdyn.system.excitation import after_jump, prescribed_motion, profile_bend, profile_value
 from beltdyn.system.machine_arrays import NO_SCHEDULE, TABLE
 from beltdyn.system.shaft_torque import shaft_torque
-
-FloatArray = NDArray[np.float64]
 
 _PARTS: Final = 4
 """A step that holds a wave is seen in so many parts at least,"""

@@ -3,15 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
 from beltdyn.system.assembly import assembly_workspace, border_size
 from beltdyn.system.loads import new_loads
 from beltdyn.system.ring_matrix import ring_matrix
-
-FloatArray = NDArray[np.float64]
 
 
 class Equations(NamedTuple):

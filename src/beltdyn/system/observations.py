@@ -3,15 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.contact_force import contact_workspace
 from beltdyn.contact.contact_zone import MAX_INTERVALS, zone_scratch
 from beltdyn.system.arrays import NODE, Loads, System
 from beltdyn.system.loads import new_loads
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int8]
 
 
 class Observations(NamedTuple):
@@ -65,9 +62,9 @@ class Samples(NamedTuple):
     speed: FloatArray
     weight: FloatArray
     """Length of the free belt in each span."""
-    touched: NDArray[np.int64]
+    touched: IntArray
     """Pulley that each point counts to, -1 where it is free."""
-    nearest: NDArray[np.int64]
+    nearest: IntArray
     """A point that touches each pulley, or is nearest to where the belt touches it, -1 without contact."""
     element: FloatArray
     """Coordinates and velocities of one element, shape (2, 12)."""

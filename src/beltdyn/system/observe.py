@@ -3,11 +3,11 @@
 from math import atan2, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import element_energy
 from beltdyn.ancf.material_damping import damping_tension
 from beltdyn.ancf.strain_energy import axial_force
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import chain_energy
 from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
 from beltdyn.contact.contact_force import contact_force
@@ -23,8 +23,6 @@ from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.tensioner import tensioner_place
 from beltdyn.system.wheels import law_of, tensioner_coordinate, wheel_of
-
-FloatArray = NDArray[np.float64]
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:

@@ -7,12 +7,10 @@ costs a sixth of a factorisation.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, IntArray, RingFactors, RingMatrix
-
-FloatArray = NDArray[np.float64]
+from beltdyn.system.arrays import NODE, RingFactors, RingMatrix
 
 _LANES = 16
 """Rows are padded to a multiple of this many numbers, so that the inner loops run in whole vector registers."""
@@ -78,7 +76,7 @@ def entries(matrix: RingMatrix) -> FloatArray:
     return np.concatenate([block.ravel() for block in blocks])
 
 
-def places(matrix: RingMatrix) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def places(matrix: RingMatrix) -> tuple[IntArray, IntArray]:
     """Rows and columns of the entries among the 6 N + m unknowns; entries of equal place add up."""
     nodes, border = len(matrix.diagonal), len(matrix.corner)
     own = np.arange(NODE * nodes).reshape(nodes, NODE)

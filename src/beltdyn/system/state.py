@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Path
-from beltdyn.system.arrays import NODE, FloatArray, System
+from beltdyn.system.arrays import NODE, System
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 
 

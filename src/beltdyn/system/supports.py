@@ -1,12 +1,8 @@
 """Supports and loads of single nodes: what makes a cantilever of a belt."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, RingMatrix, System
-
-FloatArray = NDArray[np.float64]
 
 
 @kernel

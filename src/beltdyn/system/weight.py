@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from beltdyn.system.arrays import NODE, FloatArray
+from beltdyn.arrays import FloatArray
+from beltdyn.system.arrays import NODE
 from beltdyn.system.discretization import Discretization
 
 

@@ -1,14 +1,10 @@
 """Pulleys as contact meets them at a state: turning, and moving where a tensioner carries them."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NODE, System
 from beltdyn.system.tensioner import tensioner_place
-
-FloatArray = NDArray[np.float64]
 
 
 @kernel

@@ -9,11 +9,9 @@ and has the speed v = c g where its stretch is g.  Along the reference coordinat
 from math import exp, expm1, tanh
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.theory.stretch import stretch, tangent_stiffness
-
-FloatArray = NDArray[np.float64]
 
 
 def layer_length(

@@ -17,14 +17,12 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.theory.path import OpenBelt, open_belt
 from beltdyn.theory.static_tension import static_tension
 from beltdyn.theory.stretch import stretch, tangent_stiffness, tension
-
-FloatArray = NDArray[np.float64]
 
 _X, _Y, _SECTION, _SECTION_RATE, _FORCE_X, _FORCE_Y, _TORQUE = range(7)
 

@@ -1,9 +1,9 @@
 """Tension and stretch of a belt by Green's strain, N = EA (g^2 - 1) g / 2 (first term of Eq. 14)."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import FloatArray
 
 
 def tension(stretch: ArrayLike, axial_stiffness: float) -> FloatArray:

@@ -2,13 +2,11 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.system.build import belt_section
-
-FloatArray = NDArray[np.float64]
 
 
 @pytest.fixture(scope="session")

@@ -1,10 +1,8 @@
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.ancf.cross_section import add_shear_curvature, nodal_shear, shear_gradient
-
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import FloatArray
 
 GRADIENTS = [(1.0, 0.0, 0.0, 1.0), (0.9, 0.3, -0.1, 1.2), (-0.4, 1.1, -0.9, -0.8), (0.2, -1.3, 0.7, 0.1)]
 

@@ -1,12 +1,10 @@
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 from beltdyn.quadrature import gauss_points
-
-FloatArray = NDArray[np.float64]
 
 
 @pytest.fixture

@@ -3,13 +3,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from numpy.typing import NDArray
 
 from beltdyn.ancf.inertia import element_mass
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 from beltdyn.quadrature import gauss_points
-
-FloatArray = NDArray[np.float64]
 
 
 @given(velocity=arrays(np.float64, 12, elements=st.floats(-10.0, 10.0)))

@@ -2,14 +2,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
 from beltdyn.ancf.material_damping import damping_force, damping_tension, damping_workspace
 from beltdyn.ancf.section import Section
+from beltdyn.arrays import FloatArray
 from beltdyn.quadrature import gauss_points
 
-FloatArray = NDArray[np.float64]
 Damping = Callable[..., tuple[float, FloatArray, FloatArray]]
 
 STRETCH, BENDING = 3e-3, 7e-3

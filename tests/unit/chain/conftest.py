@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
+from beltdyn.arrays import FloatArray
+
 Scalar = Callable[[FloatArray], float]
 LINK = 0.05
 """Reference length of a link, m."""

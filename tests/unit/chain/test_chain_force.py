@@ -5,11 +5,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import LINKS, chain_energy, chain_force
 
-FloatArray = NDArray[np.float64]
 AXIAL, BENDING = 1e4, 0.02
 DIFFERENCES = 1e-8
 """Central differences with a step of 1e-5 lengths, relative to the largest entry."""

@@ -5,11 +5,10 @@ from math import pi
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.torsional_spring import add_spring, bend_angle, spring_energy
 
-FloatArray = NDArray[np.float64]
 STIFFNESS = 3.0
 DIFFERENCES = 1e-8
 """Central differences with a step of 1e-5 lengths, relative to the largest entry."""

@@ -4,11 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.chain.truss import add_truss, truss_energy
 
-FloatArray = NDArray[np.float64]
 AXIAL = 1e4
 DIFFERENCES = 1e-8
 """Central differences with a step of 1e-5 lengths, relative to the largest entry."""

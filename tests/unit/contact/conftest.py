@@ -5,12 +5,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import LAWS
 from beltdyn.contact.law import ContactLaw, Wheel
-
-FloatArray = NDArray[np.float64]
 
 
 @pytest.fixture(scope="session")

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import bernstein
 from beltdyn.contact.contact_zone import MAX_INTERVALS, out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import Wheel
 
-FloatArray = NDArray[np.float64]
 UNIT = Wheel(0.0, 0.0, 1.0, 0.0)
 XI = np.linspace(0.0, 1.0, 2001)
 WEIGHTS = np.array([bernstein(xi) for xi in XI])

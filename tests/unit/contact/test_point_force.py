@@ -4,14 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import Approach, approach
 from beltdyn.contact.point_force import point_force, point_tangent
 from beltdyn.contact.pulley_moment import pulley_moment
 
-FloatArray = NDArray[np.float64]
 Place = Callable[[Wheel, float, float], tuple[float, float]]
 CASES = {
     "creeping": (1e-3, 0.5, (0.1, 0.02)),

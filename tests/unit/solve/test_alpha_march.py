@@ -4,12 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.solve.alpha_march import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Task
 
-FloatArray = NDArray[np.float64]
 Spin = Callable[..., Task]
 INTERVAL = 2.5e-3
 TIMES: FloatArray = INTERVAL * np.arange(201, dtype=np.float64)

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.results.schema import FILTER_REACH, PASS_BAND, STOP_BAND
 from beltdyn.solve.band_limit import BandLimit, transfer
 
-FloatArray = NDArray[np.float64]
 INTERVAL = 2e-3
 OUTPUTS = INTERVAL * np.arange(20, 120, dtype=np.float64)
 GAIN = float(transfer(np.zeros(1))[0])

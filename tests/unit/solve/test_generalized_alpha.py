@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.solve.engine import advance, restart
@@ -13,7 +12,6 @@ from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
-FloatArray = NDArray[np.float64]
 SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0)
 ACCELERATION = 5.0
 ROUNDING = 1e-10

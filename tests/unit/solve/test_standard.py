@@ -6,14 +6,13 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.solve.standard import Name, StandardIntegrator
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import System
 
-FloatArray = NDArray[np.float64]
 Spin = Callable[..., Task]
 INTERVAL = 0.025
 TIMES: FloatArray = INTERVAL * np.arange(21, dtype=np.float64)

@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
-
-FloatArray = NDArray[np.float64]
 
 FRICTION: dict[str, dict[str, Any]] = {
     "force_slope": {"creep_rate_factor": 300.0},

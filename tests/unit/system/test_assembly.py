@@ -4,14 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.assembly import assemble, border_size
 from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.state import State
 
-FloatArray = NDArray[np.float64]
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 MULTIPLIERS = np.array([9.0, -4.0, 0.3, 0.2, -0.1, 0.5])
 STEP = 1e-8

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
 from beltdyn.system.arrays import NODE, RingMatrix, System
 from beltdyn.system.assembly import assemble, border_size
@@ -15,7 +15,6 @@ from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
 
-FloatArray = NDArray[np.float64]
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 
 COMMON: dict[str, Any] = {

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import bernstein
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, Path
@@ -18,7 +18,6 @@ from beltdyn.system.motion import new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
 
-FloatArray = NDArray[np.float64]
 Make = Callable[..., Drive]
 CHAINS = {"truss": 1, "three-node-beam": 2}
 """Links of an element."""

@@ -2,15 +2,14 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import NODE, POWERS, System
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import State
 
-FloatArray = NDArray[np.float64]
 TIME = 0.3
 
 

@@ -4,7 +4,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
 from beltdyn.solve.engine import accelerate
@@ -14,7 +13,6 @@ from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, subtract_multipliers, subtract_solution
 from beltdyn.system.state import State, straight
 
-FloatArray = NDArray[np.float64]
 TIME = 0.3
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, install
 from beltdyn.solve import find_equilibrium
 from beltdyn.system.arrays import NODE, System
@@ -14,7 +14,6 @@ from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
 
-FloatArray = NDArray[np.float64]
 SPEED = 3.0
 
 

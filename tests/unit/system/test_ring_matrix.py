@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.system.arrays import NODE, RingMatrix
 from beltdyn.system.ring_matrix import clear, entries, places, ring_matrix, solve_ring, substitute
 
-FloatArray = NDArray[np.float64]
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 PARTS = ("diagonal", "upper", "lower", "column", "row", "corner", "node_side", "border_side")
 

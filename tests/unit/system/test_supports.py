@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.solve.engine import linearise
 from beltdyn.system.arrays import NODE, RingMatrix, System
@@ -14,7 +14,6 @@ from beltdyn.system.motion import Equations, new_equations
 from beltdyn.system.state import straight
 from beltdyn.system.supports import add_nodal_loads
 
-FloatArray = NDArray[np.float64]
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 FIXED = [(0, 0), (2, 3), (-1, 5)]
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve.engine import advance, restart
 from beltdyn.solve.generalized_alpha import REACHED
@@ -14,7 +14,6 @@ from beltdyn.solve.march import REJECTED, STEPS, Settings, empty_steps, new_marc
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations
 
-FloatArray = NDArray[np.float64]
 Change = Callable[..., Drive]
 
 

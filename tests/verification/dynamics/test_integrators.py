@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 
 from beltdyn import simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.solve.engine import advance
 from beltdyn.solve.generalized_alpha import REACHED
@@ -23,7 +23,6 @@ from beltdyn.system.motion import new_equations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import straight
 
-FloatArray = NDArray[np.float64]
 Change = Callable[..., Drive]
 Measured = Callable[..., None]
 FixedSteps = Callable[[System, FloatArray, float, int, FloatArray], tuple[FloatArray, FloatArray]]

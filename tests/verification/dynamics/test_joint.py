@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn import simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.engine import accelerate
@@ -17,7 +17,6 @@ from beltdyn.system.joint_constraint import joint_constraint
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import laid
 
-FloatArray = NDArray[np.float64]
 Change = Callable[..., Drive]
 Measured = Callable[..., None]
 TIME = 0.01
@@ -29,7 +28,7 @@ def tied(small: Drive, change: Change) -> Drive:
 
 
 @pytest.fixture(scope="module")
-def nodes(small: Drive) -> NDArray[np.float64]:
+def nodes(small: Drive) -> FloatArray:
     """Positions and velocities of the nodes in contact and motion, shape (2, N, 6)."""
     system = drive_system(small)
     rest = find_equilibrium(system, laid(system, small.path)).state.nodes(system)

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import NODE, System
@@ -16,8 +16,6 @@ from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.joint_constraint import mass_matrix
 from beltdyn.system.state import State, laid
 
-FloatArray = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Changes = Mapping[str, Any]
 
 BELT = {

@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
 from beltdyn.solve import equilibrium
 
-FloatArray = NDArray[np.float64]
 Make = Callable[..., Drive]
 Measured = Callable[..., None]
 

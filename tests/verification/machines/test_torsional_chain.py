@@ -11,12 +11,11 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn import simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, install
 
-FloatArray = NDArray[np.float64]
 Make = Callable[..., Drive]
 Measured = Callable[..., None]
 

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from scipy.optimize import fsolve
 
 from beltdyn import simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, install, loads
 
-FloatArray = NDArray[np.float64]
 Data = dict[str, Any]
 Make = Callable[..., Drive]
 Measured = Callable[..., None]

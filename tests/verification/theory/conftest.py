@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.system.build import belt_section
 from beltdyn.theory.running_drive import RunningDrive
 
-FloatArray = NDArray[np.float64]
 Changes = Mapping[str, Any]
 RISE = {"start": 0.05, "end": 0.6}
 

@@ -19,10 +19,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from beltdyn import Belt, Contact, Drive, Pulley, Run, Simulation, simulate
+from beltdyn.arrays import FloatArray
 from beltdyn.model.profile import CosineRamp
 from beltdyn.results import derived
 from beltdyn.theory.stretch import stretch
@@ -39,9 +39,6 @@ LINEAR = 3.0 * LOAD / RADIUS / AXIAL
 """Relative change of the stiffness of Green's law between the spans, which theory takes as constant."""
 FROM = 0.5
 """s; means are taken from here."""
-
-
-FloatArray = NDArray[np.float64]
 
 
 class Arc(NamedTuple):

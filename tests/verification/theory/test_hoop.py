@@ -8,8 +8,8 @@ from math import pi
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.model.instants import Instants
 from beltdyn.solve.alpha_march import GeneralizedAlpha
@@ -21,7 +21,6 @@ from beltdyn.system.state import State
 from beltdyn.theory.hoop import hoop_stretch, hoop_tension
 from beltdyn.theory.stretch import tension
 
-FloatArray = NDArray[np.float64]
 SPEED, TURNS = 200.0, 2.0
 
 

@@ -9,15 +9,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import xarray as xr
-from numpy.typing import NDArray
 
 from beltdyn import simulate
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.theory.creep import creep_speed_loss, friction_along_arc, layer_length
 from beltdyn.theory.running_drive import RunningBelt, RunningDrive, run_steadily
 from beltdyn.theory.stretch import stretch
 
-FloatArray = NDArray[np.float64]
 Around = Callable[[FloatArray, tuple[float, float]], FloatArray]
 SPEED, LOAD = 120.0, 45.0
 MESHES = [30, 60, 120]
@@ -46,9 +45,7 @@ def outputs(loaded: Callable[..., Drive], factor: float) -> dict[int, xr.Dataset
     return {n: simulate(loaded(n, factor, rtol=1e-4)).fields_at() for n in MESHES}
 
 
-def angles(
-    numbers: RunningDrive, theory: RunningBelt, pulley: int, around: Around
-) -> tuple[NDArray[np.intp], FloatArray]:
+def angles(numbers: RunningDrive, theory: RunningBelt, pulley: int, around: Around) -> tuple[IntArray, FloatArray]:
     """Points of the theory that touch a pulley, in the order of their angle, and the angles, rad."""
     center = np.array([pulley * numbers.distance, 0.0])
     side = (2 * pulley - 1.0, 0.0)

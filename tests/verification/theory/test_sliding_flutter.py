@@ -10,7 +10,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from beltdyn.model import Contact, Drive
 from beltdyn.published import better, two_pulley
@@ -20,8 +19,6 @@ from beltdyn.system.build import belt_section, belt_system, drive_system
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.state import State
 from beltdyn.theory.sliding_flutter import SlidingBelt, fastest_flutter, flutter_at
-
-FloatArray = NDArray[np.float64]
 
 HIGHEST = 2e3
 """Hz; above it are vibrations of the section, which no contact touches."""

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beltdyn.contact.friction.law import FloatArray, FrictionLaw
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.friction.law import FrictionLaw
 from beltdyn.kernel import kernel
 
 

@@ -5,8 +5,8 @@ from math import pi
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
-from beltdyn.report.measures import FloatArray
 from beltdyn.report.numbers import power_of_ten
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, verdict

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
+from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import friction_force
 from beltdyn.contact.law import ContactLaw
 from beltdyn.model import Drive
 from beltdyn.plot.style import color, dash, new_figure
 from beltdyn.published import two_pulley
-from beltdyn.report.measures import FloatArray
 from beltdyn.report.numbers import power_of_ten
 from beltdyn.report.picture import picture
 from beltdyn.report.runs import Runs

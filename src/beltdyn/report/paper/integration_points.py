@@ -5,9 +5,10 @@ from itertools import product
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.report.distribution import distribution
-from beltdyn.report.measures import FloatArray, largest, rms, settled_mean, speed
+from beltdyn.report.measures import largest, rms, settled_mean, speed
 from beltdyn.report.paper.loaded_runs import (
     FACTORS,
     KINDS,

@@ -6,9 +6,10 @@ from typing import Self
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.report.averages import mean_forces
-from beltdyn.report.measures import FloatArray, rms, settled, speed
+from beltdyn.report.measures import rms, settled, speed
 from beltdyn.report.paper.model_runs import COARSER_REFERENCE, MODELS, Case, Model, reference_name, run_name
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Verdict

@@ -5,11 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.figure import Figure
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.plot.style import INK, color, dash, new_figure
 from beltdyn.published import better, loaded_case_1, three_pulleys, unequal_pulleys
 from beltdyn.report.hand_formulas import creep_lag, gross_slip_torque
-from beltdyn.report.measures import DRIVER, RAMP_START, FloatArray, settled, settled_mean, speed, times
+from beltdyn.report.measures import DRIVER, RAMP_START, settled, settled_mean, speed, times
 from beltdyn.report.picture import picture
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, verdict

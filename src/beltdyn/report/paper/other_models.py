@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Mapping, Sequence
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.report.measures import FloatArray
 from beltdyn.report.numbers import shown
 from beltdyn.report.paper.model_errors import Bracket, Comparison, Errors, Series, compare
 from beltdyn.report.paper.model_runs import (

@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy.spatial import cKDTree
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, install
 from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, new_figure
 from beltdyn.published import two_pulley
 from beltdyn.published.released_belt import closed, on_pulleys, release, released_belt
-from beltdyn.report.measures import FloatArray
 from beltdyn.report.picture import picture
 from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, Verdict, verdict

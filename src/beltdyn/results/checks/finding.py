@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.means import PulleySummary, pulley_means
@@ -56,7 +56,7 @@ class Evidence:
     resolution: Resolution
 
     @cached_property
-    def time(self) -> NDArray[np.float64]:
+    def time(self) -> FloatArray:
         """Times of the outputs, s."""
         return np.asarray(self.recorded["time"])
 

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.model import unstable_balance
 from beltdyn.results.checks.finding import Evidence, Finding
 
@@ -34,7 +34,7 @@ def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
                 )
 
 
-def _when(on: NDArray[np.bool_], time: NDArray[np.float64], stop: str) -> str:
+def _when(on: BoolArray, time: FloatArray, stop: str) -> str:
     """Say since when it is on a stop, or from when to when it was and how often."""
     starts = np.flatnonzero(on & ~np.append(False, on[:-1]))
     if on[-1]:

@@ -2,7 +2,6 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from beltdyn.results.cycles import turn_window
 from beltdyn.results.derived.labels import labelled, window
@@ -10,8 +9,6 @@ from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.run import Run
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
-
-FloatArray = NDArray[np.float64]
 
 _STANDING = 0.01
 """Part of its largest speed below which the first pulley counts as standing still."""

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.schema import PASS_BAND
@@ -13,7 +13,6 @@ from beltdyn.results.schema import PASS_BAND
 if TYPE_CHECKING:
     from scipy.signal import ShortTimeFFT
 
-FloatArray = NDArray[np.float64]
 
 _FEWEST = 16
 _OVERLAP = 4
@@ -236,7 +235,7 @@ def _over_speed(
     return xr.DataArray(amplitude[kept], coordinates, ("speed", name), attrs=_amplitude_of(values))
 
 
-def _records(speed: FloatArray) -> NDArray[np.intp]:
+def _records(speed: FloatArray) -> IntArray:
     """Find the pieces whose speed is higher than all before, or lower in a run-down, in ascending order of speed."""
     sign = 1.0 if speed[-1] >= speed[0] else -1.0
     highest = np.maximum.accumulate(sign * speed)

@@ -2,15 +2,13 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.results.arc import arc_ends
 from beltdyn.results.derived.labels import window
 from beltdyn.results.friction_work import ARC_PARTS, BEYOND
 from beltdyn.results.run import Run
-
-FloatArray = NDArray[np.float64]
 
 
 def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
