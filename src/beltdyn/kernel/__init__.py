@@ -1,5 +1,6 @@
 """Compiled code: the decorator of kernels and the folder that keeps their machine code."""
 
+from beltdyn.kernel.by_type import by_type
 from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, kernel_cache, source_hash
 from beltdyn.kernel.decorator import Kernel, kernel
 from beltdyn.kernel.version import PLAIN_VARIABLE, compiles_quickly
@@ -9,6 +10,7 @@ __all__ = [
     "PACKAGE",
     "PLAIN_VARIABLE",
     "Kernel",
+    "by_type",
     "compiles_quickly",
     "kernel",
     "kernel_cache",

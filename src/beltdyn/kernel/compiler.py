@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numba
+from numba.extending import overload
 
+from beltdyn.kernel.by_type import ByType
 from beltdyn.kernel.cache import kernel_cache
 from beltdyn.kernel.setting import setting
 from beltdyn.kernel.version import compiles_quickly
@@ -38,10 +40,19 @@ def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
 
         return QuickDispatcher(function, {"nopython": True, **OPTIONS}, inline, str(kernel_cache()))
     _say_once()
+    while ByType.unregistered:
+        _register(ByType.unregistered.pop())
     dispatcher = numba.njit(forceinline=inline, **OPTIONS)(function)
     with setting("CACHE_DIR", str(kernel_cache())):
         dispatcher.enable_caching()
     return dispatcher
+
+
+def _register(choice: ByType) -> None:
+    """Tell Numba which kernel a choice by type stands for."""
+    overload(choice, jit_options=OPTIONS, strict=False)(
+        lambda subject, *rest: choice.kernel_for(subject, *rest).py_func
+    )
 
 
 @functools.cache

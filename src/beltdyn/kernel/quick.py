@@ -6,6 +6,7 @@ with all that it calls, and kept on disk.
 """
 
 import gc
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
@@ -75,6 +76,42 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
         finally:
             if collecting:
                 gc.enable()
+
+
+def choice_type(kernel_for: Callable[..., Any]) -> Any:
+    """Type of a function that stands for several kernels.
+
+    Parameters
+    ----------
+    kernel_for
+        Gives the kernel for the types of the arguments.
+    """
+    return _ChoiceType(_Choice(kernel_for))
+
+
+class _Choice:
+    """What another kernel calls, when it is compiled, in place of the kernel that is chosen."""
+
+    is_compiling, nopython_signatures = False, ()
+
+    def __init__(self, kernel_for: Callable[..., Any]) -> None:
+        self._kernel_for = kernel_for
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Type a call."""
+        return self._kernel_for(*args).dispatcher.get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """What is called, for some types of arguments."""
+        return self._kernel_for(*sig).dispatcher.get_overload(sig)
+
+
+class _ChoiceType(numba.types.Dispatcher):  # type: ignore[misc]
+    """A type that keeps its choice alive: Numba's holds a compiled function weakly."""
+
+    def __init__(self, choice: _Choice) -> None:
+        self._choice = choice
+        super().__init__(choice)
 
 
 class _Stored(CompileResultCacheImpl):  # type: ignore[misc]

@@ -1,0 +1,91 @@
+"""Kernels of which the type of the first argument chooses one, when their callers are compiled."""
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, ClassVar
+
+from beltdyn.kernel.version import compiles_quickly
+
+
+class ByType:
+    """Several kernels under one name.
+
+    Parameters
+    ----------
+    kernels
+        The kernel for each class of named tuples.
+    name
+        What error messages call it.
+    """
+
+    unregistered: ClassVar[list["ByType"]] = []
+    """Those that plain compilation has not heard of."""
+
+    def __init__(self, kernels: Mapping[type, Callable[..., Any]], name: str) -> None:
+        self.kernels: dict[Any, Any] = dict(kernels)
+        self.__name__ = name
+        self.unregistered.append(self)
+
+    def __call__(self, subject: Any, *rest: Any) -> Any:
+        """Call the kernel for the type of the first argument."""
+        return self.kernels[type(subject)](subject, *rest)
+
+    def kernel_for(self, subject: Any, *_rest: Any) -> Any:
+        """The kernel for a first argument of a type of Numba."""
+        chosen = self.kernels.get(getattr(subject, "instance_class", None))
+        if chosen is None:
+            known = ", ".join(kind.__name__ for kind in self.kernels)
+            raise TypeError(f"{self.__name__} takes {known}, not {subject}. Register a kernel for it.")
+        return chosen
+
+    @property
+    def _numba_type_(self) -> Any:
+        """Type by which kernels know this choice; plain compilation asks `numba.extending` instead."""
+        if not compiles_quickly():
+            raise AttributeError("_numba_type_")
+        return self._quick_type
+
+    @cached_property
+    def _quick_type(self) -> Any:
+        from beltdyn.kernel.quick import choice_type
+
+        return choice_type(self.kernel_for)
+
+
+def by_type(kernels: Mapping[type, Callable[..., Any]], name: str) -> Callable[..., Any]:
+    """Put several kernels under one name: the type of the first argument chooses.
+
+    Where a kernel calls it, the choice is made as the caller is compiled, for the types of its arguments; it costs
+    nothing at run time, and what is not chosen is not compiled.
+
+    Parameters
+    ----------
+    kernels
+        The kernel for each class of named tuples that may come first. All take the same further arguments, by position.
+    name
+        What error messages call it.
+
+    Returns
+    -------
+    Callable
+        What Python and kernels call like a kernel.
+
+    Examples
+    --------
+    >>> from typing import NamedTuple
+    >>> from beltdyn.kernel import by_type, kernel
+    >>> class Disc(NamedTuple):
+    ...     radius: float
+    >>> class Square(NamedTuple):
+    ...     side: float
+    >>> @kernel
+    ... def disc_area(disc):
+    ...     return 3.14159 * disc.radius**2
+    >>> @kernel
+    ... def square_area(square):
+    ...     return square.side**2
+    >>> area = by_type({Disc: disc_area, Square: square_area}, "area")
+    >>> area(Square(2.0))
+    4.0
+    """
+    return ByType(kernels, name)
