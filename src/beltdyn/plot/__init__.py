@@ -1,39 +1,28 @@
 """Figures of a run: ``f(run, ax=None) -> Axes``; labels and units come from its dataset. And the layout of a drive."""
 
-from beltdyn.plot.animation import animate
-from beltdyn.plot.configuration import configuration
-from beltdyn.plot.contact import contact_forces, contact_pressure
-from beltdyn.plot.gallery import FIGURES, save_all
-from beltdyn.plot.history import energy, span_tensions, speeds, torques
-from beltdyn.plot.layout import layout, save_layout
-from beltdyn.plot.pulleys import capstan_margins, hub_loads, losses, powers, slip
-from beltdyn.plot.spans import mid_spans, tension_spectrum, tensioners
-from beltdyn.plot.sweep import orders, waterfall
-from beltdyn.plot.wear import wear_by_arc, wear_by_belt
+from beltdyn.plot.animation import animate as animate
+from beltdyn.plot.configuration import configuration as configuration
+from beltdyn.plot.contact import contact_forces as contact_forces
+from beltdyn.plot.contact import contact_pressure as contact_pressure
+from beltdyn.plot.figures import save_all as save_all
+from beltdyn.plot.history import energy as energy
+from beltdyn.plot.history import span_tensions as span_tensions
+from beltdyn.plot.history import speeds as speeds
+from beltdyn.plot.history import torques as torques
+from beltdyn.plot.layout import layout as layout
+from beltdyn.plot.layout import save_layout as save_layout
+from beltdyn.plot.pulleys import capstan_margins as capstan_margins
+from beltdyn.plot.pulleys import hub_loads as hub_loads
+from beltdyn.plot.pulleys import losses as losses
+from beltdyn.plot.pulleys import powers as powers
+from beltdyn.plot.pulleys import slip as slip
+from beltdyn.plot.registry import FIGURES as FIGURES
+from beltdyn.plot.spans import mid_spans as mid_spans
+from beltdyn.plot.spans import tension_spectrum as tension_spectrum
+from beltdyn.plot.spans import tensioners as tensioners
+from beltdyn.plot.sweep import orders as orders
+from beltdyn.plot.sweep import waterfall as waterfall
+from beltdyn.plot.wear import wear_by_arc as wear_by_arc
+from beltdyn.plot.wear import wear_by_belt as wear_by_belt
 
-__all__ = [
-    "FIGURES",
-    "animate",
-    "capstan_margins",
-    "configuration",
-    "contact_forces",
-    "contact_pressure",
-    "energy",
-    "hub_loads",
-    "layout",
-    "losses",
-    "mid_spans",
-    "orders",
-    "powers",
-    "save_all",
-    "save_layout",
-    "slip",
-    "span_tensions",
-    "speeds",
-    "tension_spectrum",
-    "tensioners",
-    "torques",
-    "waterfall",
-    "wear_by_arc",
-    "wear_by_belt",
-]
+__all__ = ["FIGURES", "animate", "layout", "save_all", "save_layout", *FIGURES]

@@ -1,14 +1,25 @@
 """The drive as it stands at one instant."""
 
+from collections.abc import Callable
+
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
 from beltdyn.plot.drive import DrivePicture, draw_rotation, size_of
-from beltdyn.plot.style import axes_or_new, styled
+from beltdyn.plot.registry import Choice, always, figure
+from beltdyn.plot.style import axes_or_new, new_figure
 from beltdyn.results import Run
 
 
-@styled
+def _one_large_panel(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a figure of one panel, as large as the drive asks for."""
+    page = new_figure(size_of(run.drive))
+    draw(run, ax=page.add_subplot())
+    return page
+
+
+@figure(always, _one_large_panel)
 def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw belt and pulleys at one instant, the belt's tension in color.
 

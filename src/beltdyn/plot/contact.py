@@ -1,14 +1,19 @@
 """Contact on a pulley: forces over the belt laid straight, as in Figs. 10-13 of the paper; pressure over the arc."""
 
-from typing import Literal
+from collections.abc import Callable
+from functools import partial
+from typing import Literal, get_args
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 
 from beltdyn.arrays import FloatArray
-from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, styled, unit
+from beltdyn.plot.panels import panels, rows
+from beltdyn.plot.registry import Choice, always, figure
+from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Run, derived
 
@@ -17,7 +22,25 @@ _KILO = 1e3
 _SLIDING = "#f6d9c9"
 
 
-@styled
+def _pulleys(run: Run, choice: Choice) -> list[list[int]]:
+    """Numbers of the chosen pulleys, in rows."""
+    return rows(list(range(len(run.drive.pulleys))) if choice.pulley is None else [choice.pulley])
+
+
+def _kinds_by_pulleys(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a panel for each kind of force and pulley."""
+    blocks = [(block, kind) for block in _pulleys(run, choice) for kind in get_args(Kind)]
+    return panels([[partial(draw, run, number, kind=kind) for number in block] for block, kind in blocks])
+
+
+def _by_pulleys(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a panel for each pulley, with one legend for all."""
+    page = panels([[partial(draw, run, number) for number in row] for row in _pulleys(run, choice)])
+    page.legend(*page.axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
+    return page
+
+
+@figure(always, _kinds_by_pulleys)
 def contact_forces(
     run: Run, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
 ) -> Axes:
@@ -73,7 +96,7 @@ def contact_forces(
     return ax
 
 
-@styled
+@figure(always, _by_pulleys)
 def contact_pressure(run: Run, pulley: str | int, time: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw pressure and shear over the angle on a pulley from where the belt enters.
 

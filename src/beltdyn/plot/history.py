@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, styled, unit
+from beltdyn.plot.registry import figure, over_time
+from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, unit
 from beltdyn.results import Run
 from beltdyn.results.balance import LOSSES
 from beltdyn.results.closure import largest_closure
@@ -23,7 +24,7 @@ _WAVES = 5.0
 """Vibrations as high as the figure above which dashes cannot be told from them."""
 
 
-@styled
+@figure(over_time)
 def speeds(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the speeds of the pulleys over time, and those of the shafts behind hub chains.
 
@@ -49,7 +50,7 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@styled
+@figure(over_time)
 def torques(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the torques of the belt on the pulleys over time.
 
@@ -68,7 +69,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
     return lines(run.dataset["pulley_torque"], axes_or_new(ax))
 
 
-@styled
+@figure(over_time)
 def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the tensions of the spans over time, marked where the mesh does not resolve them.
 
@@ -90,7 +91,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@styled
+@figure(over_time)
 def energy(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the energy account over time: work put in, energy stored, energy lost; without what is always zero.
 

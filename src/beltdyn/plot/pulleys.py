@@ -1,14 +1,18 @@
 """Figures of the pulleys: hub loads, slip, capstan margin, powers and losses."""
 
+from collections.abc import Callable
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import lines
-from beltdyn.plot.style import axes_or_new, color, label, name_lines, polar_or_new, styled
+from beltdyn.plot.registry import Choice, figure, over_time
+from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, name_lines, new_figure, polar_or_new
 from beltdyn.results import Run, derived, power_balance, summarize
 from beltdyn.results.cycles import mean_window
 
@@ -16,7 +20,7 @@ _LARGEST_MARGIN = 10.0
 _RINGS = 4
 
 
-@styled
+@figure(over_time)
 def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the first over time, and dotted the part of it that is elastic creep.
 
@@ -60,7 +64,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@styled
+@figure(over_time)
 def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     """Draw how many times its load each pulley could transmit, over time; below 1 its whole arc slides.
 
@@ -92,54 +96,7 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@styled
-def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None) -> Axes:
-    """Draw the forces of the belt on pulleys over their direction, as they wander in the plane.
-
-    A dot marks the last output. What happened before the last half of the run is drawn pale.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    pulley : str or int, optional
-        Name or number of the pulley; all of them by default.
-    ax : Axes, optional
-        Where to draw: polar axes; a new figure by default.
-
-    Returns
-    -------
-    Axes
-        Polar axes.
-
-    Raises
-    ------
-    ModelError
-        If there is no such pulley, the axes are not polar, or the run holds no output.
-    """
-    ax = polar_or_new(ax)
-    if not isinstance(ax, PolarAxes):
-        raise ModelError('hub loads are drawn over their direction: give polar axes (projection="polar").')
-    loads = derived.hub_loads(run)
-    numbers = range(len(run.drive.pulleys)) if pulley is None else [derived.pulley_number(run, pulley)]
-    half = loads.sizes["time"] // 2
-    for number in numbers:
-        of_pulley = loads.isel(pulley=number)
-        angle, load = of_pulley["hub_direction"].values, of_pulley["hub_load"].values
-        ax.plot(angle[: half + 1], load[: half + 1], color=color(number), linewidth=0.6, alpha=0.35)
-        ax.plot(angle[half:], load[half:], color=color(number), linewidth=1.2)
-        name = run.drive.pulleys[number].name
-        ax.plot(angle[-1:], load[-1:], color=color(number), marker="o", markersize=5.0, label=name, linestyle="")
-    ax.set_rmin(0.0)
-    ax.yaxis.set_major_locator(MaxNLocator(_RINGS))
-    ax.tick_params(axis="y", labelsize=8)
-    ax.set_rlabel_position(_widest_gap(loads["hub_direction"].values[half:, numbers]))
-    ax.set_title(label(loads["hub_load"]), loc="left")
-    ax.legend(loc="center left", bbox_to_anchor=(1.12, 0.5))
-    return ax
-
-
-@styled
+@figure(over_time)
 def powers(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the power that comes in at each shaft over time; negative where a load takes it out.
 
@@ -163,7 +120,7 @@ def powers(run: Run, ax: Axes | None = None) -> Axes:
     return lines(derived.pulley_powers(run)["power_in"], axes_or_new(ax))
 
 
-@styled
+@figure(over_time)
 def losses(run: Run, ax: Axes | None = None) -> Axes:
     """Draw where the power goes that is lost, by cause: means over the end of the run, as in the summary.
 
@@ -208,6 +165,60 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     ax.set_xlim(left=0.0)
     ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {over.start:.4g} to {over.end:.4g} s")
     name_lines(ax)
+    return ax
+
+
+def _one_polar_panel(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a figure of one polar panel."""
+    page = new_figure(POLAR_SIZE)
+    draw(run, choice.pulley, ax=page.add_subplot(projection="polar"))
+    return page
+
+
+@figure(over_time, _one_polar_panel)
+def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None) -> Axes:
+    """Draw the forces of the belt on pulleys over their direction, as they wander in the plane.
+
+    A dot marks the last output. What happened before the last half of the run is drawn pale.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    pulley : str or int, optional
+        Name or number of the pulley; all of them by default.
+    ax : Axes, optional
+        Where to draw: polar axes; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        Polar axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley, the axes are not polar, or the run holds no output.
+    """
+    ax = polar_or_new(ax)
+    if not isinstance(ax, PolarAxes):
+        raise ModelError('hub loads are drawn over their direction: give polar axes (projection="polar").')
+    loads = derived.hub_loads(run)
+    numbers = range(len(run.drive.pulleys)) if pulley is None else [derived.pulley_number(run, pulley)]
+    half = loads.sizes["time"] // 2
+    for number in numbers:
+        of_pulley = loads.isel(pulley=number)
+        angle, load = of_pulley["hub_direction"].values, of_pulley["hub_load"].values
+        ax.plot(angle[: half + 1], load[: half + 1], color=color(number), linewidth=0.6, alpha=0.35)
+        ax.plot(angle[half:], load[half:], color=color(number), linewidth=1.2)
+        name = run.drive.pulleys[number].name
+        ax.plot(angle[-1:], load[-1:], color=color(number), marker="o", markersize=5.0, label=name, linestyle="")
+    ax.set_rmin(0.0)
+    ax.yaxis.set_major_locator(MaxNLocator(_RINGS))
+    ax.tick_params(axis="y", labelsize=8)
+    ax.set_rlabel_position(_widest_gap(loads["hub_direction"].values[half:, numbers]))
+    ax.set_title(label(loads["hub_load"]), loc="left")
+    ax.legend(loc="center left", bbox_to_anchor=(1.12, 0.5))
     return ax
 
 

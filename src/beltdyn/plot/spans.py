@@ -6,14 +6,15 @@ from matplotlib.axes import Axes
 from beltdyn.errors import ModelError
 from beltdyn.model.tensioner import MovingTensioner
 from beltdyn.plot.history import lines
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, styled
+from beltdyn.plot.registry import figure, over_time
+from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
 from beltdyn.results import Run, derived
 
 _FLOOR = 1e-6
 """Part of the largest amplitude below which a spectrum is cut off."""
 
 
-@styled
+@figure()
 def mid_spans(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the transverse displacements of the spans at their middle over time.
 
@@ -38,7 +39,7 @@ def mid_spans(run: Run, ax: Axes | None = None) -> Axes:
     return lines((1e3 * displacement).assign_attrs(displacement.attrs | {"units": "mm"}), axes_or_new(ax))
 
 
-@styled
+@figure()
 def tension_spectrum(run: Run, start: float | None = None, end: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw the amplitude spectra of the span tensions.
 
@@ -77,7 +78,11 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     return ax
 
 
-@styled
+def _moves_over_time(run: Run) -> bool:
+    return over_time(run) and "tensioner_position" in run.dataset
+
+
+@figure(_moves_over_time)
 def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the positions of the tensioners over time: mm along a line, degrees of an arm.
 

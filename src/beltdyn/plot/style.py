@@ -32,6 +32,9 @@ DASHES: tuple[Dash, ...] = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (6, 1.4, 1.
 SIZE = (7.0, 3.8)
 """Width and height of a figure, inches."""
 
+POLAR_SIZE = (6.2, 4.6)
+"""Those of a polar one."""
+
 _IN_A_ROW = 4
 _ROW = 60
 """Letters of a legend that fit beside each other."""
@@ -121,7 +124,7 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float] = SIZE) -> Axes:
     return plt.subplots(figsize=size, layout="constrained")[1] if ax is None else ax
 
 
-def polar_or_new(ax: Axes | None, size: tuple[float, float] = (6.2, 4.6)) -> Axes:
+def polar_or_new(ax: Axes | None, size: tuple[float, float] = POLAR_SIZE) -> Axes:
     """Give the axes to draw on; new ones are polar. See `axes_or_new`."""
     if ax is not None:
         return ax

@@ -1,12 +1,18 @@
 """Figures of a run-up: spectra over speed, and orders."""
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.style import axes_or_new, color, dash, label, styled, unit
+from beltdyn.plot.panels import panels, rows
+from beltdyn.plot.registry import Choice, figure, on_request
+from beltdyn.plot.style import axes_or_new, color, dash, label, unit
 from beltdyn.results import Run, derived
 
 _RPM = 30.0 / np.pi
@@ -18,7 +24,14 @@ _DISTANCE = 0.4
 """Orders nearer to each other than this are one, and lower ones a trend."""
 
 
-@styled
+def _one_by_one(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a panel for each pulley, span or tensioner that the chosen variable is recorded for."""
+    names = names_of(run, choice.variable)
+    calls = [partial(draw, run, choice.variable, name, choice.pulley or 0) for name in names]
+    return panels(rows(calls), sharey=False)
+
+
+@figure(on_request, _one_by_one)
 def waterfall(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:
@@ -74,7 +87,7 @@ def waterfall(
     return ax
 
 
-@styled
+@figure(on_request, _one_by_one)
 def orders(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:

@@ -3,11 +3,12 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, styled
+from beltdyn.plot.registry import figure
+from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
 from beltdyn.results import Run, derived
 
 
-@styled
+@figure()
 def wear_by_arc(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the work of friction over the arcs of the pulleys, from where the belt enters.
 
@@ -38,7 +39,7 @@ def wear_by_arc(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@styled
+@figure()
 def wear_by_belt(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the work of friction over the belt, and what each pulley does of it.
 

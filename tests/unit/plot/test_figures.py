@@ -13,7 +13,8 @@ from matplotlib.patches import Circle
 from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.plot.gallery import _panels, _rows
+from beltdyn.plot.panels import panels as lay_out
+from beltdyn.plot.panels import rows as in_rows
 from beltdyn.results import Run, summarize
 from beltdyn.results.derived import slips
 
@@ -129,7 +130,9 @@ def test_chosen_figures(tmp_path: Path, run: Run) -> None:
 
 
 def test_unknown_figure_is_a_model_error(tmp_path: Path, run: Run) -> None:
-    with pytest.raises(ModelError, match=r"figure 'speed' is not known\. Choose out of configuration, speeds, "):
+    with pytest.raises(
+        ModelError, match=r"figure 'speed' is not known\. Choose out of configuration, contact_forces, "
+    ):
         plot.save_all(run, tmp_path / "figures", ["slip", "speed"])
     assert not (tmp_path / "figures").exists()
 
@@ -179,9 +182,9 @@ def test_all_figures_of_a_drive_with_a_tensioner(tmp_path: Path, run: Run) -> No
 )
 def test_panels_of_many_pulleys_are_in_rows(pulleys: int, columns: int, rows: int) -> None:
     """Two kinds of force for each block of pulleys, no more than four beside each other."""
-    blocks = _rows(list(range(pulleys)))
+    blocks = in_rows(list(range(pulleys)))
     assert [number for block in blocks for number in block] == list(range(pulleys))
-    figure = _panels([[lambda ax: ax for _ in block] for block in blocks for _ in range(2)])
+    figure = lay_out([[lambda ax: ax for _ in block] for block in blocks for _ in range(2)])
     assert len(figure.axes) == 2 * pulleys
     assert figure.get_size_inches().tolist() == pytest.approx([4.2 * columns, 2.9 * rows])
 

@@ -1,0 +1,64 @@
+"""Figures of a run, in files."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from beltdyn.errors import ModelError
+from beltdyn.plot.registry import FIGURES, Choice
+from beltdyn.plot.saving import save
+from beltdyn.plot.style import styled
+from beltdyn.results import Run, derived
+from beltdyn.results.atomic import is_marked, make_folder, require_replaceable
+
+
+@styled
+def save_all(
+    run: Run,
+    folder: Path | str,
+    figures: Iterable[str] | None = None,
+    pulley: str | int | None = None,
+    variable: str = "span_tension",
+    overwrite: bool = False,
+) -> list[Path]:
+    """Write figures as PNG.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    folder : Path or str
+        Where to write; made if need be.
+    figures : iterable of str, optional
+        Names out of `FIGURES`; by default the essential ones, those over time only if there is more than one output.
+    pulley : str or int, optional
+        Name or number of the pulley of hub loads and contact, all by default, and of the speed in a sweep, the first by
+        default.
+    variable : str
+        What is drawn in a sweep: a variable over time and pulley, span or tensioner.
+    overwrite : bool
+        Replace any regular files, and not only figures of beltdyn.
+
+    Returns
+    -------
+    list of Path
+        A file for each, named after it.
+
+    Raises
+    ------
+    ModelError
+        If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, a file cannot
+        be written, or would replace one that is no figure of ours.
+    """
+    run.require_output()
+    essential = (name for name, figure in FIGURES.items() if figure.by_default(run))
+    chosen = tuple(essential if figures is None else figures)
+    unknown = [name for name in chosen if name not in FIGURES]
+    if unknown:
+        raise ModelError(f"figure {unknown[0]!r} is not known. Choose out of {', '.join(FIGURES)}.")
+    choice = Choice(None if pulley is None else derived.pulley_number(run, pulley), variable)
+    paths = {name: Path(folder) / f"{name}.png" for name in chosen}
+    for path in paths.values():
+        require_replaceable(path, is_marked, overwrite)
+    drawn = {name: FIGURES[name].arrange(run, choice) for name in chosen}
+    make_folder(Path(folder))
+    return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]

@@ -1,0 +1,91 @@
+"""Figures by name. A figure registers itself with the decorator `figure`, and is then drawn by `save_all`."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, ParamSpec
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from beltdyn.plot.panels import one_panel
+from beltdyn.plot.style import styled
+from beltdyn.results import Run
+
+P = ParamSpec("P")
+
+
+class Choice(NamedTuple):
+    """What a user chose for the figures of a run.
+
+    Attributes
+    ----------
+    pulley : int or None
+        Number of the pulley to show; None for all.
+    variable : str
+        Name of the variable whose spectra are shown.
+    """
+
+    pulley: int | None = None
+    variable: str = "span_tension"
+
+
+@dataclass(frozen=True, slots=True)
+class Registered:
+    """A figure and how it is saved.
+
+    Attributes
+    ----------
+    arrange : callable
+        ``arrange(run, choice) -> Figure``: all its panels on one page.
+    by_default : callable
+        ``by_default(run) -> bool``: whether it is drawn where no figures are chosen.
+    """
+
+    arrange: Callable[[Run, Choice], Figure]
+    by_default: Callable[[Run], bool]
+
+
+FIGURES: dict[str, Registered] = {}
+"""All figures by name."""
+
+
+def on_request(run: Run) -> bool:
+    """Draw a figure only where it is chosen."""
+    return False
+
+
+def always(run: Run) -> bool:
+    """Draw a figure of every run."""
+    return True
+
+
+def over_time(run: Run) -> bool:
+    """Draw a figure of every run with more than one output."""
+    return run.dataset.sizes["time"] > 1
+
+
+def figure(
+    by_default: Callable[[Run], bool] = on_request,
+    arrange: Callable[[Callable[..., Axes], Run, Choice], Figure] = one_panel,
+) -> Callable[[Callable[P, Axes]], Callable[P, Axes]]:
+    """Register a figure under the name of the function that draws it, and draw it in the style of this package.
+
+    Parameters
+    ----------
+    by_default : callable
+        Whether it is drawn where no figures are chosen: `on_request`, `always`, `over_time`, or a function of the run.
+    arrange : callable
+        ``arrange(draw, run, choice) -> Figure`` lays its panels out where it is saved; one panel by default.
+
+    Returns
+    -------
+    callable
+        The decorator of ``draw(run, ..., ax=None) -> Axes``.
+    """
+
+    def register(draw: Callable[P, Axes]) -> Callable[P, Axes]:
+        drawn = styled(draw)
+        FIGURES[draw.__name__] = Registered(lambda run, choice: arrange(drawn, run, choice), by_default)
+        return drawn
+
+    return register
