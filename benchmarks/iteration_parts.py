@@ -18,10 +18,10 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 from beltdyn.system.state import laid
@@ -64,9 +64,10 @@ def repeat_elasticity(system: System, state: FloatArray, _r: FloatArray, work: E
     scratch, points = work.work, system.elastic
     for _ in range(REPEATS):
         for element in range(system.length.size):
-            for c in range(NODE):
-                scratch.coordinates[0, c] = state[NODE * element + c]
-                scratch.coordinates[0, NODE + c] = state[NODE * ((element + 1) % system.nodes) + c]
+            dof = len(system.scale)
+            for c in range(dof):
+                scratch.coordinates[0, c] = state[dof * element + c]
+                scratch.coordinates[0, dof + c] = state[dof * ((element + 1) % system.nodes) + c]
             element_force(
                 scratch.coordinates[0],
                 system.section,
@@ -86,9 +87,10 @@ def repeat_contact(system: System, state: FloatArray, rates: FloatArray, work: E
     scratch, points = work.work, system.contact
     for _ in range(REPEATS):
         for element in range(system.length.size):
-            for c in range(NODE):
-                scratch.coordinates[0, c] = state[NODE * element + c]
-                scratch.coordinates[0, NODE + c] = state[NODE * ((element + 1) % system.nodes) + c]
+            dof = len(system.scale)
+            for c in range(dof):
+                scratch.coordinates[0, c] = state[dof * element + c]
+                scratch.coordinates[0, dof + c] = state[dof * ((element + 1) % system.nodes) + c]
             fill_control(system, element, 0, scratch.coordinates[0], scratch.control)
             for p in range(system.pulleys.size):
                 wheel = wheel_of(system, p, state, rates)
@@ -127,7 +129,7 @@ def main() -> None:
     drive = better(two_pulley(elements))
     system = drive_system(drive)
     state = find_equilibrium(system, laid(system, drive.path)).state.position
-    arguments = (system, state, np.zeros_like(state), new_equations(system), np.zeros(NODE))
+    arguments = (system, state, np.zeros_like(state), new_equations(system), no_multipliers(system))
     table = Table("part", "µs per element", title=f"{elements} elements")
     parts = {
         "assembly": repeat_assembly,

@@ -15,10 +15,10 @@ from beltdyn.kernel import kernel
 from beltdyn.model import Drive
 from beltdyn.published import two_pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.ring_matrix import solve_ring
 from beltdyn.system.state import laid
 
@@ -55,7 +55,7 @@ def time_iterations(drive: Drive) -> list[float]:
     system = drive_system(drive)
     state = find_equilibrium(system, laid(system, drive.path)).state
     velocity = np.zeros_like(state.position)
-    equations, none = new_equations(system), np.zeros(NODE)
+    equations, none = new_equations(system), no_multipliers(system)
     count = ITERATIONS // system.nodes
     iterate(system, state.position, velocity, equations, none, 1)
     rounds = []

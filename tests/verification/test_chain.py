@@ -14,10 +14,10 @@ from scipy.optimize import brentq
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system, drive_system
-from beltdyn.system.motion import new_equations
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
 
@@ -170,7 +170,7 @@ class TestSpinningRing:
         angle = 2.0 * pi / links * np.arange(links)
         place = stretch * length / (2.0 * half) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         system = belt_system(belt, closure="shared_node")
-        rest = at_rest(system, place.reshape(-1, NODE))
+        rest = at_rest(system, place.reshape(-1, len(system.scale)))
         around = self.SPEED * np.stack([-place[:, 1], place[:, 0]], axis=1)
         return system, State(rest.position, around.ravel(), -(self.SPEED**2) * rest.position), tension(stretch)
 
@@ -185,7 +185,7 @@ class TestSpinningRing:
             state.position,
             state.velocity,
             state.acceleration,
-            np.zeros(NODE),
+            no_multipliers(system),
             0.0,
             0.0,
             0.0,

@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Constant, Contact, Path, Pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import NODE, Loads, System
+from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import new_equations
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, laid
 from beltdyn.theory.capstan import capstan_ratio
@@ -48,7 +48,7 @@ def turning(speed: float, center: tuple[float, float] = (0.0, 0.0), name: str = 
 def load(system: System, state: State) -> tuple[FloatArray, Loads]:
     """Residual of the nodes, shape (N, 6), and the loads on the pulleys."""
     equations, zero = new_equations(system), np.zeros_like(state.position)
-    velocity, none = state.velocity, np.zeros(NODE)
+    velocity, none = state.velocity, no_multipliers(system)
     assemble(
         system,
         0.0,
@@ -89,7 +89,7 @@ class TestStraightBelt:
         along = np.linspace(-0.16, 0.14, belt.elements + 1)
         ones, zeros = np.ones_like(along), np.zeros_like(along)
         state = at_rest(system, np.stack([along, self.HEIGHT * ones, ones, zeros, zeros, ones], axis=1))
-        return load(system, moving(state, np.zeros((along.size, NODE)), request.param))[1]
+        return load(system, moving(state, np.zeros((along.size, len(system.scale))), request.param))[1]
 
     @pytest.mark.parametrize("loads", [0.0], indirect=True)
     def test_normal_force(self, loads: Loads) -> None:
@@ -176,8 +176,8 @@ def test_belt_and_pulleys_act_on_each_other(
     system = belt_system(belt, pulleys, contact.model_copy(update={"integration": integration}), "shared_node")
     alone = belt_system(belt, closure="shared_node")
     state = laid(system, Path(np.array(centers), np.full(2, RADIUS - 1e-3)))
-    nodes = state.nodes(system) + shake * random.normal(size=(12, NODE))
-    motion = speed * random.normal(size=(12, NODE))
+    nodes = state.nodes(system) + shake * random.normal(size=(12, len(system.scale)))
+    motion = speed * random.normal(size=(12, len(system.scale)))
     state = moving(at_rest(system, nodes), motion, *(10.0 * speed * random.normal(size=2)))
     with_contact, loads = load(system, state)
     without, _ = load(alone, moving(at_rest(alone, nodes), motion))

@@ -10,7 +10,7 @@ from math import isnan
 from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_method import Method
 from beltdyn.solve.march import March, motion_of
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.excitation import after_jump, profile_value
 from beltdyn.system.machine_arrays import FRICTION_CLUTCH, NO_SCHEDULE
 from beltdyn.system.missed_action import missed_impulses
@@ -33,7 +33,7 @@ def add_missed_impulses(system: System, method: Method, march: March, length: fl
         Length of the step, s.
     """
     missed_impulses(system, motion_of(march), length, march.impulse)
-    first = NODE * system.nodes
+    first = system.first_body
     for k in range(2):
         for body in range(system.bodies.size):
             _push(system, march, body, march.impulse[k, first + body], length)
@@ -78,7 +78,7 @@ def follow_profiles(system: System, method: Method, march: March, length: float)
 def _push(system: System, march: March, body: int, impulse: float, length: float) -> None:
     """Change the trial state of a free body by an angular impulse that acts evenly over the step."""
     if impulse != 0.0 and system.bodies[body].unknown >= 0:
-        i, gain = NODE * system.nodes + body, impulse / system.bodies[body].inertia
+        i, gain = system.first_body + body, impulse / system.bodies[body].inertia
         march.trial[0, i] += 0.5 * length * gain
         march.trial[1, i] += gain
 
@@ -87,7 +87,7 @@ def _push(system: System, march: March, body: int, impulse: float, length: float
 def _lag_of_shaft(system: System, method: Method, march: March, pulley: int, length: float) -> float:
     """What the method leaves of the impulses of a shaft's torque and loads, N m s."""
     torques = system.torques
-    i = NODE * system.nodes + system.pulleys[pulley].shaft
+    i = system.first_body + system.pulleys[pulley].shaft
     impulse = lag_of(system, method, march, pulley, length)
     for load in range(torques.first[pulley], torques.first[pulley + 1]):
         schedule = torques.table[load].schedule

@@ -20,7 +20,6 @@ from beltdyn.solve.march import (
     new_march,
 )
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import NODE
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
 
@@ -64,8 +63,7 @@ class GeneralizedAlpha:
             output_interval=task.instants.interval,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
-        profiles = system.profiles.table.size - 1
-        march = new_march(0.0, first_step, start.position, start.velocity, profiles)
+        march = new_march(system, 0.0, first_step, start.position, start.velocity)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
         yield Chunk.start(start)
@@ -95,7 +93,7 @@ def _count(task: Task, march: March) -> None:
 def _message(task: Task, march: March, method: GeneralizedAlpha) -> str:
     """Where and when the march ended, and what to try."""
     places, accelerations = (
-        vector[: NODE * task.system.nodes].reshape(-1, NODE // task.system.points)[:, :2]
+        vector[: task.system.first_body].reshape(-1, len(task.system.scale) // task.system.points)[:, :2]
         for vector in (march.position, march.acceleration)
     )
     worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))

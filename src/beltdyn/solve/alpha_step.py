@@ -17,7 +17,7 @@ from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import add_missed_impulses
 from beltdyn.solve.alpha_method import Method
 from beltdyn.solve.march import ITERATIONS, SLOWEST, March, Settings, allowed_error
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
@@ -186,7 +186,7 @@ def _imbalance(equations: Equations) -> float:
     """Residual along the last solution, J."""
     matrix, total = equations.matrix, 0.0
     for node in range(matrix.node_side.shape[0]):
-        for c in range(NODE):
+        for c in range(len(matrix.unknowns)):
             total += matrix.node_side[node, c] * equations.node_part[node, c]
     for i in range(matrix.border_side.size):
         total += matrix.border_side[i] * equations.border_part[i]
@@ -198,9 +198,9 @@ def _size(system: System, equations: Equations) -> float:
     """Root mean square of the change of the nodes, or the largest change of a body, m."""
     total = 0.0
     for node in range(system.nodes):
-        for c in range(NODE):
+        for c in range(len(system.scale)):
             total += (system.scale[c] * equations.node_part[node, c]) ** 2
-    size = sqrt(total / (NODE * system.nodes))
+    size = sqrt(total / system.first_body)
     for body in range(system.bodies.size):
         unknown = system.bodies[body].unknown
         if unknown >= 0:

@@ -15,9 +15,9 @@ import numpy as np
 from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
 from beltdyn.model import Belt
 from beltdyn.solve.engine import accelerate
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import new_equations
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, straight
 
@@ -51,7 +51,7 @@ def compile_solving() -> None:
 
 def _compile_solving(system: System, state: State) -> None:
     velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
-    accelerate(system, 0.0, state.position, velocity, acceleration, np.zeros(NODE), new_equations(system))
+    accelerate(system, 0.0, state.position, velocity, acceleration, no_multipliers(system), new_equations(system))
 
 
 @contextmanager

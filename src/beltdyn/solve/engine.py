@@ -201,7 +201,7 @@ def _serve(
 ) -> bool:
     """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
     size = motion[0].size
-    march = new_march(request.time, 0.0, np.zeros(size), np.zeros(size), 0)._replace(multipliers=multipliers)
+    march = new_march(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
     march.trial[:3] = motion
     solved = serve(system, request, _NO_SETTINGS, march, equations, empty_steps(0, size))[0] == 1
     for changed, vector in zip(motion, march.trial, strict=False):

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.friction import LAWS
 from beltdyn.solve.vibrations import Vibrations
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 
 _ELEMENTS = 1
 """Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
@@ -121,7 +121,7 @@ class FlutterWatch:
         longest = longest_pieces(points[some])
         some, longest = some[longest > needed], longest[longest > needed]
         length = longest / points.shape[1] * float(np.sum(system.length))
-        nodes = velocity[some, : NODE * system.nodes].reshape(len(some), system.nodes, NODE)
+        nodes = velocity[some, : system.first_body].reshape(len(some), system.nodes, len(system.scale))
         speed = np.mean(np.hypot(nodes[..., 0], nodes[..., 1]), axis=1)
         result[some] = np.divide(length, speed, out=np.full(len(some), np.inf), where=speed > 0.0)
         return result

@@ -15,7 +15,7 @@ from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import try_step
 from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
 from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import ENERGY_WORKS, NODE, System
+from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.end_of_step import find_loads, numerical_loss
 from beltdyn.system.missed_action import Motion, missed_work
 from beltdyn.system.motion import Equations
@@ -120,12 +120,12 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
     auxiliary, total = march.trial[3], 0.0
     for node in range(system.nodes):
         for c in range(2 * system.points):
-            i = NODE * node + c
+            i = len(system.scale) * node + c
             total += (auxiliary[i] - march.auxiliary[i]) ** 2
     largest = sqrt(total / (system.nodes * system.points))
     for body in range(system.bodies.size):
         if system.bodies[body].unknown >= 0:
-            i = NODE * system.nodes + body
+            i = system.first_body + body
             largest = max(largest, system.bodies[body].reach * abs(auxiliary[i] - march.auxiliary[i]))
     return method.error * step * step * largest / allowed_error(settings, step)
 

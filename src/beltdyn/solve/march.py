@@ -6,8 +6,9 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import ENERGY_WORKS, NODE, POWERS
+from beltdyn.system.arrays import ENERGY_WORKS, POWERS, System
 from beltdyn.system.missed_action import Motion
+from beltdyn.system.motion import no_multipliers
 
 STEPS: Final = 0
 REJECTED: Final = 1
@@ -108,17 +109,17 @@ def empty_steps(count: int, size: int) -> Steps:
     )
 
 
-def new_march(time: float, step: float, position: FloatArray, velocity: FloatArray, profiles: int) -> March:
+def new_march(system: System, time: float, step: float, position: FloatArray, velocity: FloatArray) -> March:
     """Begin an integration.
 
     Parameters
     ----------
+    system
+        What is integrated.
     time, step
         Where to begin, and the first step to try, s.
     position, velocity : ndarray, shape (6 N + D,)
         State to begin from; copied.
-    profiles
-        Number of functions of time.
 
     Returns
     -------
@@ -132,11 +133,11 @@ def new_march(time: float, step: float, position: FloatArray, velocity: FloatArr
         velocity=velocity.copy(),
         acceleration=np.zeros(size),
         auxiliary=np.zeros(size),
-        multipliers=np.zeros(NODE),
+        multipliers=no_multipliers(system),
         work=np.zeros(len(ENERGY_WORKS)),
         power=np.zeros(len(POWERS)),
         impulse=np.zeros((2, size)),
-        lagged=np.full(profiles, np.nan),
+        lagged=np.full(system.profiles.table.size - 1, np.nan),
         missed=np.zeros(len(POWERS)),
         trial=np.zeros((4, size)),
         counts=np.zeros(4, dtype=np.int64),

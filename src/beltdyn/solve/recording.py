@@ -29,7 +29,7 @@ from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.outlook import step_bound
 from beltdyn.solve.progress import Pace, Phase, Progress, Report
 from beltdyn.solve.trajectory import Chunk, Statistics
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths, point_coordinates
 from beltdyn.system.state import laid
 
@@ -242,7 +242,7 @@ class Recording:
     def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
         """Coordinates and speeds of bodies, from states of shape (k, 6 N + D)."""
         system = self._system
-        nodes, pulleys = NODE * system.nodes, len(system.pulleys)
+        nodes, pulleys = system.first_body, len(system.pulleys)
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
         carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
         return {
@@ -256,10 +256,10 @@ class Recording:
     def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
         """Coordinates and velocities of nodes."""
         system = self._system
-        shape = len(instants), system.nodes * system.points, NODE // system.points
+        shape = len(instants), system.nodes * system.points, len(system.scale) // system.points
         names = "nodal_coordinates", "nodal_velocities"
         return {
-            name: motion[:, : NODE * system.nodes].reshape(shape)
+            name: motion[:, : system.first_body].reshape(shape)
             for name, motion in zip(names, states.at(instants), strict=True)
         }
 
@@ -327,6 +327,6 @@ def result_layout(drive: Drive, system: System) -> Layout:
         node_coordinate=point_coordinates(system),
         element_coordinate=starts + 0.5 * lengths,
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
-        coordinate_names=COORDINATE_NAMES[: NODE // system.points],
+        coordinate_names=COORDINATE_NAMES[: len(system.scale) // system.points],
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
     )

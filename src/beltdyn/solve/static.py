@@ -17,8 +17,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
 from beltdyn.solve.engine import correct, linearise, move
-from beltdyn.system.arrays import NODE, System
-from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.arrays import System
+from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.state import State
 
 _TOLERANCE = 1e-11
@@ -160,7 +160,7 @@ class _Search:
     def __init__(self, system: System, start: State) -> None:
         self._system = system._replace(bodies=_only_tensioners(system))
         self.position, self._velocity = start.position.copy(), start.velocity
-        self._multipliers = np.zeros(NODE)
+        self._multipliers = no_multipliers(system)
         self._here: Equations = new_equations(self._system)
         self._ahead: Equations = _with_sides_of_its_own(self._here)
         self._length = float(np.sum(system.length))
@@ -171,7 +171,7 @@ class _Search:
     @property
     def nodes(self) -> FloatArray:
         """Nodal coordinates, shape (N, 6)."""
-        return self.position[: NODE * self._system.nodes].reshape(-1, NODE)
+        return self.position[: self._system.first_body].reshape(self._system.nodes, -1)
 
     @property
     def force(self) -> float:

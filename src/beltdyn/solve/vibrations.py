@@ -11,8 +11,8 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.solve.engine import linearise
-from beltdyn.system.arrays import NODE, System
-from beltdyn.system.motion import new_equations
+from beltdyn.system.arrays import System
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
 
 if TYPE_CHECKING:
@@ -36,10 +36,10 @@ class Vibrations:
 
     def __init__(self, system: System) -> None:
         self._system, self._equations = system, new_equations(system)
-        self._no_multipliers = np.zeros(NODE)
+        self._no_multipliers = no_multipliers(system)
         self._rows, self._columns = places(self._equations.matrix)
-        self.size = NODE * system.nodes + len(self._equations.matrix.corner)
-        multipliers = self.size - NODE * system.joint
+        self.size = system.first_body + len(self._equations.matrix.corner)
+        multipliers = self.size - len(system.scale) * system.joint
         self._ties = np.maximum(self._rows, self._columns) >= multipliers
 
     def tangents(

@@ -1,8 +1,8 @@
 """What the kernels of the system work on: named tuples of arrays and scalars, nothing else.
 
-The state of a system with N nodes is the vector of 6 N nodal coordinates followed by D coordinates of bodies: the
-angles of the P rims, those of the bodies behind the rims in hub chains, and the places of tensioners.  Velocities and
-accelerations are ordered alike.  Elements couple a node with the next one only, and the centreline of an element is
+The state of a system with N nodes is the vector of n N nodal coordinates, n to a node (six of the paper's element),
+followed by D coordinates of bodies: the angles of the P rims, those of the bodies behind the rims in hub chains, and
+the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a node with the next one only, and the centreline of an element is
 made of one or several curves; beyond that the system does not ask how a belt is discretised.
 """
 
@@ -13,9 +13,6 @@ from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
 from beltdyn.records import Records, record
 from beltdyn.system.machine_arrays import Profiles, Torques
-
-NODE = 6
-"""Coordinates of a node: r, r_x, r_y (Eq. 6), or the places of three points of a chain of links."""
 
 
 class Quadrature(NamedTuple):
@@ -46,10 +43,10 @@ class Supports(NamedTuple):
     """What holds and loads the nodes of a belt beside its pulleys."""
 
     fixed: BoolArray
-    """Coordinates that do not move, shape (6 N,)."""
+    """Coordinates that do not move, shape (n N,)."""
     any_fixed: bool
     force: FloatArray
-    """Constant generalised forces on the nodal coordinates, weight among them, shape (6 N,)."""
+    """Constant generalised forces on the nodal coordinates, weight among them, shape (n N,)."""
     moment: FloatArray
     """Constant moments that turn the section r_y of a node, N m, shape (N,)."""
 
@@ -66,8 +63,10 @@ class System(NamedTuple):
     """Whether an element is a piece of chain (`beltdyn.chain`), or the paper's (`beltdyn.ancf`)."""
     points: int
     """Material points whose places are the first coordinates of a node: 1, or 3 of a chain."""
-    scale: FloatArray
-    """Lengths that turn changes of the coordinates of a node into m, shape (6,)."""
+    scale: tuple[float, ...]
+    """Lengths that turn changes of the n coordinates of a node into m; of a tuple the compiler knows how many."""
+    first_body: int
+    """Place of the first body in a state, after the nodes: n N."""
     length: FloatArray
     """Reference lengths of the elements, m, shape (elements,)."""
     mass: FloatArray
@@ -99,16 +98,16 @@ class RingFactors(NamedTuple):
     """Factors of a `RingMatrix`; b is the border with the node that a closed ring moves there."""
 
     rows: FloatArray
-    """Rows of the node in hand, shape (6, width)."""
+    """Rows of the node in hand, shape (n, width)."""
     panels: FloatArray
-    """What the chain without border answers to each column of the border, after six columns that are worked in; padded,
-    shape (N, 6, width)."""
+    """What the chain without border answers to each column of the border, after n columns that are worked in; padded,
+    shape (N, n, width)."""
     squares: FloatArray
-    """Triangular factors of the nodes' blocks, shape (N, 6, 6)."""
+    """Triangular factors of the nodes' blocks, shape (N, n, n)."""
     pivots: IntArray
-    """Rows exchanged in them, shape (N, 6)."""
+    """Rows exchanged in them, shape (N, n)."""
     links: FloatArray
-    """Part of the next node's unknowns in those of a node, shape (N, 6, 6)."""
+    """Part of the next node's unknowns in those of a node, shape (N, n, n)."""
     dense: FloatArray
     """Triangular factors of what elimination leaves of the border, shape (b, b)."""
     dense_pivots: IntArray
@@ -122,20 +121,22 @@ class RingFactors(NamedTuple):
 class RingMatrix(NamedTuple):
     """A block-tridiagonal matrix, cyclic for a closed belt, with a border of m unknowns, and a right-hand side."""
 
+    unknowns: tuple[int, ...]
+    """Numbers of the n unknowns of a node, 0 to n - 1; of a tuple the compiler knows how many."""
     diagonal: FloatArray
-    """Shape (N, 6, 6)."""
+    """Shape (N, n, n)."""
     upper: FloatArray
-    """Row k, column k + 1 (cyclic), shape (N, 6, 6)."""
+    """Row k, column k + 1 (cyclic), shape (N, n, n)."""
     lower: FloatArray
-    """Row k + 1 (cyclic), column k, shape (N, 6, 6)."""
+    """Row k + 1 (cyclic), column k, shape (N, n, n)."""
     column: FloatArray
-    """Rows of the nodes, columns of the border, shape (N, 6, m)."""
+    """Rows of the nodes, columns of the border, shape (N, n, m)."""
     row: FloatArray
-    """Rows of the border, columns of the nodes, shape (N, m, 6)."""
+    """Rows of the border, columns of the nodes, shape (N, m, n)."""
     corner: FloatArray
     """Shape (m, m)."""
     node_side: FloatArray
-    """Right-hand side of the nodes, shape (N, 6)."""
+    """Right-hand side of the nodes, shape (N, n)."""
     border_side: FloatArray
     """Right-hand side of the border, shape (m,)."""
     factors: RingFactors

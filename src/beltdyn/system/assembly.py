@@ -15,7 +15,7 @@ from beltdyn.contact.contact_force import CONTACT_WORKSPACE, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
+from beltdyn.system.arrays import Loads, RingMatrix, System
 from beltdyn.system.carriage import carriage_of, couple_carriage, keep_drift
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.ring_matrix import clear
@@ -44,7 +44,7 @@ def assembly_workspace() -> np.record:
 def border_size(system: System) -> int:
     """Unknowns beside the nodes: free bodies, and the multipliers of the joint where there is one."""
     free = int(np.count_nonzero(system.bodies.unknown >= 0))
-    return free + (NODE if system.joint else 0)
+    return free + (len(system.scale) if system.joint else 0)
 
 
 @kernel
@@ -90,7 +90,7 @@ def assemble(
     damped = system.section.axial_damping > 0.0 or system.section.bending_damping > 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
-        _gather(element, node_j, position, velocity, acceleration, work)
+        _gather(system, element, node_j, position, velocity, acceleration, work)
         _elastic_and_inertia(system, element, by_position, by_acceleration, wanted, work)
         if damped:
             loads.power[4] += damping_force(
@@ -120,16 +120,23 @@ def assemble(
 
 @kernel(inline=True)
 def _gather(
-    i: int, j: int, position: FloatArray, velocity: FloatArray, acceleration: FloatArray, work: np.record
+    system: System,
+    i: int,
+    j: int,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    work: np.record,
 ) -> None:
     """Coordinates of the element between nodes i and j."""
-    for c in range(NODE):
-        work.coordinates[0, c] = position[NODE * i + c]
-        work.coordinates[0, NODE + c] = position[NODE * j + c]
-        work.coordinates[1, c] = velocity[NODE * i + c]
-        work.coordinates[1, NODE + c] = velocity[NODE * j + c]
-        work.coordinates[2, c] = acceleration[NODE * i + c]
-        work.coordinates[2, NODE + c] = acceleration[NODE * j + c]
+    dof = len(system.scale)
+    for c in range(dof):
+        work.coordinates[0, c] = position[dof * i + c]
+        work.coordinates[0, dof + c] = position[dof * j + c]
+        work.coordinates[1, c] = velocity[dof * i + c]
+        work.coordinates[1, dof + c] = velocity[dof * j + c]
+        work.coordinates[2, c] = acceleration[dof * i + c]
+        work.coordinates[2, dof + c] = acceleration[dof * j + c]
 
 
 @kernel(inline=True)
@@ -137,7 +144,7 @@ def _elastic_and_inertia(
     system: System, element: int, by_position: float, by_acceleration: float, wanted: bool, work: np.record
 ) -> None:
     """Overwrite residual and tangent of the element by those of elasticity and inertia."""
-    section, length = system.section, system.length[element]
+    dof, section, length = len(system.scale), system.section, system.length[element]
     if system.chain:
         chain_force(work.coordinates[0], section.axial, section.bending, length, work.gradient, work.tangent)
     else:
@@ -153,13 +160,13 @@ def _elastic_and_inertia(
             work.tangent,
         )
     mass, acceleration = system.mass[element], work.coordinates[2]
-    for row in range(2 * NODE):
+    for row in range(2 * dof):
         total = 0.0
-        for column in range(2 * NODE):
+        for column in range(2 * dof):
             total += mass[row, column] * acceleration[column]
         work.gradient[row] += total
         if wanted:
-            for column in range(2 * NODE):
+            for column in range(2 * dof):
                 tangent = by_position * work.tangent[row, column]
                 work.tangent[row, column] = tangent + by_acceleration * mass[row, column]
 
@@ -280,9 +287,10 @@ def _couple(
     matrix: RingMatrix,
 ) -> None:
     """Coupling of the element with the speed of a free pulley."""
+    dof = len(system.scale)
     for a in range(4):
         first = system.vectors[a]
-        node, c = (node_i, first) if first < NODE else (node_j, first - NODE)
+        node, c = (node_i, first) if first < dof else (node_j, first - dof)
         for axis in range(2):
             matrix.column[node, c + axis, unknown] -= by_velocity * contact.by_speed[2 * a + axis]
             matrix.row[node, unknown, c + axis] -= contact.moment[2 * a + axis]
@@ -291,22 +299,23 @@ def _couple(
 @kernel(inline=True)
 def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
     """Add residual and tangent of the element between nodes i and j."""
-    for row in range(NODE):
+    dof = len(matrix.unknowns)
+    for row in range(dof):
         matrix.node_side[i, row] += work.gradient[row]
-        matrix.node_side[j, row] += work.gradient[NODE + row]
+        matrix.node_side[j, row] += work.gradient[dof + row]
         if not wanted:
             continue
-        for column in range(NODE):
+        for column in range(dof):
             matrix.diagonal[i, row, column] += work.tangent[row, column]
-            matrix.upper[i, row, column] += work.tangent[row, NODE + column]
-            matrix.lower[i, row, column] += work.tangent[NODE + row, column]
-            matrix.diagonal[j, row, column] += work.tangent[NODE + row, NODE + column]
+            matrix.upper[i, row, column] += work.tangent[row, dof + column]
+            matrix.lower[i, row, column] += work.tangent[dof + row, column]
+            matrix.diagonal[j, row, column] += work.tangent[dof + row, dof + column]
 
 
 @kernel(inline=True)
 def _bodies(system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads) -> None:
     """Motion of the free bodies (Eq. 23)."""
-    bodies, first = system.bodies, NODE * system.nodes
+    bodies, first = system.bodies, system.first_body
     for body in range(bodies.size):
         unknown = bodies[body].unknown
         if unknown >= 0:
@@ -324,13 +333,13 @@ def _joint(
     matrix: RingMatrix,
 ) -> None:
     """Tie the last node to the first (Eq. 25): forces +-lambda on them, equal accelerations; at rest, equal steps."""
-    last = system.nodes - 1
-    first_unknown = matrix.corner.shape[0] - NODE
+    dof, last = len(system.scale), system.nodes - 1
+    first_unknown = matrix.corner.shape[0] - dof
     tie = by_acceleration if by_acceleration != 0.0 else 1.0
-    for c in range(NODE):
+    for c in range(dof):
         matrix.node_side[0, c] += multipliers[c]
         matrix.node_side[last, c] -= multipliers[c]
-        matrix.border_side[first_unknown + c] = acceleration[c] - acceleration[NODE * last + c]
+        matrix.border_side[first_unknown + c] = acceleration[c] - acceleration[dof * last + c]
         if not wanted:
             continue
         matrix.column[0, c, first_unknown + c] = 1.0

@@ -16,7 +16,7 @@ from beltdyn.model.pulley import friction_on
 from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import gauss_points, lobatto_points
 from beltdyn.records import Records, records
-from beltdyn.system.arrays import BODY, NODE, PULLEY, Quadrature, Supports, System
+from beltdyn.system.arrays import BODY, PULLEY, Quadrature, Supports, System
 from beltdyn.system.build_machines import (
     body_inertias,
     machine_arrays,
@@ -119,11 +119,12 @@ def belt_system(
     radii = effective_radii(pulleys, belt)
     frictions = [friction_on(pulley, belt, contact) for pulley in pulleys] if contact else []
     machines = machine_arrays(pulleys, tensioners, path, gravity)
-    supports = _supports(nodes, fixed, forces, moments)
+    supports = _supports(nodes, len(mesh.scale), fixed, forces, moments)
     return System(
         nodes=nodes,
         closed=closure == "shared_node",
         joint=closure == "multipliers",
+        first_body=nodes * len(mesh.scale),
         **mesh._asdict(),
         section=section,
         elastic=_elastic_points(belt),
@@ -245,13 +246,14 @@ def _bodies(
 
 def _supports(
     nodes: int,
+    dof: int,
     fixed: Sequence[tuple[int, int]],
     forces: Sequence[tuple[int, tuple[float, float]]],
     moments: Sequence[tuple[int, float]],
 ) -> Supports:
     """Supports and nodal loads as full vectors; negative node numbers count from the end."""
-    held = np.zeros((nodes, NODE), dtype=bool)
-    force = np.zeros((nodes, NODE))
+    held = np.zeros((nodes, dof), dtype=bool)
+    force = np.zeros((nodes, dof))
     moment = np.zeros(nodes)
     for node, coordinate in fixed:
         held[node, coordinate] = True

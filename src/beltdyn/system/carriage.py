@@ -14,7 +14,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.arrays import RingMatrix, System
 from beltdyn.system.tensioner import tensioner_place
 from beltdyn.system.wheels import tensioner_coordinate
 
@@ -43,7 +43,7 @@ def carriage_of(system: System, pulley: int, position: FloatArray, velocity: Flo
     at = tensioner_coordinate(system, carrier)
     _, _, dx, dy, ddx, ddy = tensioner_place(system.tensioners, carrier, position[at])
     drift_x, drift_y = ddx * velocity[at], ddy * velocity[at]
-    unknown = system.bodies[at - NODE * system.nodes].unknown
+    unknown = system.bodies[at - system.first_body].unknown
     return Carriage(unknown, dx, dy, drift_x, drift_y, drift_x != 0.0 or drift_y != 0.0)
 
 
@@ -114,10 +114,11 @@ def couple_carriage(
     matrix
         Changed in place.
     """
+    dof = len(system.scale)
     own, x, y = carriage.unknown, carriage.x, carriage.y
     for a in range(4):
         first, weight = system.vectors[a], system.shift[a]
-        node, c = (node_i, first) if first < NODE else (node_j, first - NODE)
+        node, c = (node_i, first) if first < dof else (node_j, first - dof)
         fx, fy = _along(system, contact, a, x, y)
         if drifting != 0.0:
             fx, fy = fx + drifting * drift[2 * a], fy + drifting * drift[2 * a + 1]

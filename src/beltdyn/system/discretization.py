@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import LINKS
 from beltdyn.chain.inertia import lumped_mass
 from beltdyn.model import Belt
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 
 
 class Discretization(NamedTuple):
@@ -18,7 +18,7 @@ class Discretization(NamedTuple):
 
     chain: bool
     points: int
-    scale: FloatArray
+    scale: tuple[float, ...]
     length: FloatArray
     mass: FloatArray
     vectors: tuple[int, int, int, int]
@@ -47,7 +47,7 @@ def discretize(belt: Belt, section: Section) -> Discretization:
         return Discretization(
             chain=False,
             points=1,
-            scale=np.array([1.0, 1.0, length, length, length, length]),
+            scale=(1.0, 1.0, length, length, length, length),
             length=np.full(belt.elements, length),
             mass=np.tile(element_mass(section, length), (belt.elements, 1, 1)),
             vectors=(0, 2, 6, 8),
@@ -59,7 +59,7 @@ def discretize(belt: Belt, section: Section) -> Discretization:
     return Discretization(
         chain=True,
         points=LINKS,
-        scale=np.ones(NODE),
+        scale=(1.0,) * 6,
         length=np.full(pieces, length),
         mass=np.tile(lumped_mass(section.mass, length), (pieces, 1, 1)),
         vectors=(0, 2, 4, 6),
@@ -97,7 +97,7 @@ def nodal_coordinates(system: System, place: FloatArray, slope: FloatArray) -> F
     ndarray, shape (N, 6)
     """
     if system.chain:
-        return place.reshape(system.nodes, NODE)
+        return place.reshape(system.nodes, -1)
     normal = np.stack([-slope[:, 1], slope[:, 0]], axis=1)
     return np.hstack([place, slope, normal / np.linalg.norm(slope, axis=1, keepdims=True)])
 

@@ -7,7 +7,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, Loads, System
+from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import fill_control
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.missed_action import Motion
@@ -102,22 +102,22 @@ def numerical_loss(
         J; of belt and free bodies.
     """
     way, change, mean, speed = work.coordinates[0], work.coordinates[1], work.coordinates[2], work.gradient
-    total = 0.0
+    dof, total = len(system.scale), 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
-        for c in range(2 * NODE):
-            i = NODE * element + c if c < NODE else NODE * node_j + c - NODE
+        for c in range(2 * dof):
+            i = dof * element + c if c < dof else dof * node_j + c - dof
             way[c], change[c] = after.position[i] - before.position[i], after.velocity[i] - before.velocity[i]
             mean[c] = 0.5 * (after.acceleration[i] + before.acceleration[i])
             speed[c] = 0.5 * (after.velocity[i] + before.velocity[i])
         mass = system.mass[element]
-        for row in range(2 * NODE):
+        for row in range(2 * dof):
             inertia = momentum = 0.0
-            for column in range(2 * NODE):
+            for column in range(2 * dof):
                 inertia += mass[row, column] * way[column]
                 momentum += mass[row, column] * change[column]
             total += mean[row] * inertia - speed[row] * momentum
-    first = NODE * system.nodes
+    first = system.first_body
     for body in range(system.bodies.size):
         if system.bodies[body].unknown >= 0:
             i = first + body
@@ -131,10 +131,10 @@ def numerical_loss(
 @kernel(inline=True)
 def _gather(system: System, element: int, vector: FloatArray, coordinates: FloatArray) -> None:
     """Entries of an element, shape (12,)."""
-    node_j = (element + 1) % system.nodes
-    for c in range(NODE):
-        coordinates[c] = vector[NODE * element + c]
-        coordinates[NODE + c] = vector[NODE * node_j + c]
+    dof, node_j = len(system.scale), (element + 1) % system.nodes
+    for c in range(dof):
+        coordinates[c] = vector[dof * element + c]
+        coordinates[dof + c] = vector[dof * node_j + c]
 
 
 @kernel(inline=True)

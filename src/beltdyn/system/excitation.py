@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.machine_arrays import Profiles
 
 
@@ -148,7 +148,7 @@ def prescribe(
     for p in range(system.pulleys.size):
         body = system.pulleys[p].shaft
         if system.bodies[body].unknown < 0:
-            i = NODE * system.nodes + body
+            i = system.first_body + body
             position[i], velocity[i], acceleration[i] = prescribed_motion(system.profiles, p, time)
 
 

@@ -5,12 +5,12 @@ from functools import cached_property
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.system.arrays import DRIVER_WORK, NODE, POWERS, RingMatrix, System
+from beltdyn.system.arrays import DRIVER_WORK, POWERS, RingMatrix, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
 from beltdyn.system.missed_action import jump_work
-from beltdyn.system.motion import new_equations
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
 
@@ -33,9 +33,9 @@ class FirstOrder:
 
     def __init__(self, system: System) -> None:
         self._system = system
-        self._half = NODE * system.nodes + system.bodies.size
+        self._half = system.first_body + system.bodies.size
         self._equations = new_equations(system)
-        self._no_multipliers = np.zeros(NODE)
+        self._no_multipliers = no_multipliers(system)
         self.size = 2 * self._half + len(POWERS)
         self.evaluations = 0
 
@@ -83,7 +83,7 @@ class FirstOrder:
         """dy/dt at a time (s): velocities, accelerations (Eq. 27, or Eq. 26 with multipliers) and powers."""
         self.evaluations += 1
         velocity, acceleration = self._assemble(time, y, 0.0, 0.0)
-        matrix, nodes, free = self._equations.matrix, NODE * self._system.nodes, self._free
+        matrix, nodes, free = self._equations.matrix, self._system.first_body, self._free
         acceleration[:nodes] = self._flexibility @ -matrix.node_side.ravel()
         acceleration[nodes + free] = -matrix.border_side[: free.size] / self._system.bodies.inertia[free]
         return np.concatenate([velocity, acceleration, self._equations.loads.power])
@@ -93,7 +93,7 @@ class FirstOrder:
         half = self._half
         result = np.zeros((self.size, self.size))
         result[:half, half : 2 * half] = np.eye(half)
-        prescribed = NODE * self._system.nodes + np.flatnonzero(self._system.bodies.unknown < 0)
+        prescribed = self._system.first_body + np.flatnonzero(self._system.bodies.unknown < 0)
         result[prescribed, half + prescribed] = 0.0
         self._assemble(time, y, 1.0, 0.0)
         result[half : 2 * half, :half] = self._by_tangent(self._equations.matrix)
@@ -139,7 +139,7 @@ class FirstOrder:
     def _by_tangent(self, matrix: RingMatrix) -> FloatArray:
         """Minus the inverse mass times a tangent, dense, shape (6 N + D, 6 N + D)."""
         free = self._free
-        nodes = NODE * self._system.nodes
+        nodes = self._system.first_body
         size = nodes + len(matrix.corner)
         whole, tangent = np.zeros((size, size)), np.zeros((self._half, self._half))
         np.add.at(whole, places(matrix), entries(matrix))

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +64,10 @@ def joint_constraint(system: System) -> JointConstraint:
     """
     if not system.joint:
         raise ModelError('the belt has no joint with multipliers. Set simulation.joint = "multipliers".')
-    jacobian = np.zeros((NODE, NODE * system.nodes))
-    jacobian[:, :NODE] = np.eye(NODE)
-    jacobian[:, -NODE:] = -np.eye(NODE)
+    dof = len(system.scale)
+    jacobian = np.zeros((dof, system.first_body))
+    jacobian[:, :dof] = np.eye(dof)
+    jacobian[:, -dof:] = -np.eye(dof)
     inverse: FloatArray = np.linalg.inv(mass_matrix(system)).astype(np.float64)
     flexibility = inverse @ jacobian.T
     by_constraint: FloatArray = flexibility @ np.linalg.inv(jacobian @ flexibility).astype(np.float64)
@@ -75,10 +76,10 @@ def joint_constraint(system: System) -> JointConstraint:
 
 def mass_matrix(system: System) -> FloatArray:
     """Mass matrix of the belt, dense, shape (6 N, 6 N)."""
-    size = NODE * system.nodes
+    dof, size = len(system.scale), system.first_body
     matrix = np.zeros((size, size))
     for element, mass in enumerate(system.mass):
         nodes = np.array([element, (element + 1) % system.nodes])
-        rows = (NODE * nodes[:, None] + np.arange(NODE)).ravel()
+        rows = (dof * nodes[:, None] + np.arange(dof)).ravel()
         matrix[np.ix_(rows, rows)] += mass
     return matrix

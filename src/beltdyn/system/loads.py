@@ -5,7 +5,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, POWERS, Loads, System
+from beltdyn.system.arrays import POWERS, Loads, System
 from beltdyn.system.coupling import coupling_torque
 from beltdyn.system.shaft_torque import shaft_torque
 from beltdyn.system.tensioner import tensioner_force, tensioner_place
@@ -102,7 +102,7 @@ def _add_tensioners(
     loads: Loads,
 ) -> None:
     """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
-    tensioners, first = system.tensioners, NODE * system.nodes
+    tensioners, first = system.tensioners, system.first_body
     for k in range(tensioners.size):
         at = tensioner_coordinate(system, k)
         _, _, dx, dy, ddx, ddy = tensioner_place(tensioners, k, position[at])
@@ -130,7 +130,7 @@ def _add_couplings(
     loads: Loads,
 ) -> None:
     """Torques between the bodies of hub chains."""
-    couplings, first = system.couplings, NODE * system.nodes
+    couplings, first = system.couplings, system.first_body
     for number in range(couplings.size):
         front, back = couplings[number].front, couplings[number].back
         torque, by_twist, by_rate, energy, loss = coupling_torque(
@@ -171,7 +171,7 @@ def _take_shafts(
     loads: Loads,
 ) -> None:
     """Torques on the shafts from outside, and their powers."""
-    first = NODE * system.nodes
+    first = system.first_body
     for p in range(system.pulleys.size):
         body = system.pulleys[p].shaft
         unknown, speed = system.bodies[body].unknown, velocity[first + body]

@@ -12,7 +12,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.coupling import coupling_torque
 from beltdyn.system.excitation import after_jump, prescribed_motion, profile_bend, profile_value
 from beltdyn.system.machine_arrays import NO_SCHEDULE, TABLE
@@ -96,7 +96,7 @@ def missed_impulses(system: System, motion: Motion, length: float, impulse: Floa
         Overwritten by those of torques on the shafts, and those of couplings, in the places of the bodies, N m s.
     """
     impulse[:] = 0.0
-    first = NODE * system.nodes
+    first = system.first_body
     for p in range(system.pulleys.size):
         body = system.pulleys[p].shaft
         if system.bodies[body].unknown >= 0:
@@ -132,7 +132,7 @@ def missed_work(
         Overwritten, in the order of `POWERS`, J.
     """
     work[:] = 0.0
-    first, length = NODE * system.nodes, end.time - motion.time
+    first, length = system.first_body, end.time - motion.time
     for body in range(system.bodies.size):
         i = first + body
         before, after = motion.velocity[i], end.velocity[i]
@@ -167,7 +167,7 @@ def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
     float
         The change of the kinetic energy of prescribed bodies, J.
     """
-    first = NODE * system.nodes
+    first = system.first_body
     inertia = np.where(system.bodies.unknown < 0, system.bodies.inertia, 0.0)
     return float(0.5 * inertia @ (after[first:] ** 2 - before[first:] ** 2))
 
@@ -175,7 +175,7 @@ def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
 @kernel
 def action_at(system: System, source: int, motion: Motion, time: float) -> float:
     """Prescribed speed, torque on a shaft or torque of a coupling at an instant of a step."""
-    first = NODE * system.nodes
+    first = system.first_body
     if source >= system.pulleys.size:
         number = source - system.pulleys.size
         front, back = first + system.couplings[number].front, first + system.couplings[number].back
@@ -190,7 +190,7 @@ def action_at(system: System, source: int, motion: Motion, time: float) -> float
 @kernel
 def extrapolated_torque(system: System, pulley: int, motion: Motion, time: float) -> float:
     """Torque on a free shaft at an instant (s), with its motion extrapolated."""
-    i, since = NODE * system.nodes + system.pulleys[pulley].shaft, time - motion.time
+    i, since = system.first_body + system.pulleys[pulley].shaft, time - motion.time
     speed = motion.velocity[i] + since * motion.acceleration[i]
     angle = motion.position[i] + 0.5 * since * (motion.velocity[i] + speed)
     return shaft_torque(system.profiles, system.torques, pulley, time, angle, speed)[0]
@@ -211,7 +211,7 @@ def next_instant(system: System, source: int, motion: Motion, time: float, lengt
             for h in range(profiles.table[source].harmonic, profiles.table[source + 1].harmonic):
                 frequency = max(frequency, profiles.harmonic[h].order * mean)
         else:
-            i = NODE * system.nodes + body
+            i = system.first_body + body
             rate = motion.acceleration[i]
             speed = motion.velocity[i] + (time - motion.time) * rate
             for load in range(system.torques.first[source], system.torques.first[source + 1]):

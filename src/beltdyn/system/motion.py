@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, Loads, RingMatrix, System
+from beltdyn.system.arrays import Loads, RingMatrix, System
 from beltdyn.system.assembly import assembly_workspace, border_size
 from beltdyn.system.loads import new_loads
 from beltdyn.system.ring_matrix import ring_matrix
@@ -26,14 +26,19 @@ class Equations(NamedTuple):
 
 def new_equations(system: System) -> Equations:
     """Make the arrays for a system."""
-    border = border_size(system)
+    dof, border = len(system.scale), border_size(system)
     return Equations(
-        ring_matrix(system.nodes, border),
-        np.zeros((system.nodes, NODE)),
+        ring_matrix(dof, system.nodes, border),
+        np.zeros((system.nodes, dof)),
         np.zeros(border),
         new_loads(system),
         assembly_workspace(),
     )
+
+
+def no_multipliers(system: System) -> FloatArray:
+    """Multipliers of a joint that transmits nothing, or where there is none, shape (n,)."""
+    return np.zeros(len(system.scale))
 
 
 @kernel
@@ -51,10 +56,11 @@ def subtract_solution(system: System, equations: Equations, factor: float, vecto
     vector : ndarray, shape (6 N + D,)
         Positions, velocities or accelerations, changed in place; prescribed bodies keep theirs.
     """
+    dof = len(system.scale)
     for node in range(system.nodes):
-        for c in range(NODE):
-            vector[NODE * node + c] -= factor * equations.node_part[node, c]
-    first = NODE * system.nodes
+        for c in range(dof):
+            vector[dof * node + c] -= factor * equations.node_part[node, c]
+    first = system.first_body
     for body in range(system.bodies.size):
         unknown = system.bodies[body].unknown
         if unknown >= 0:
@@ -65,6 +71,7 @@ def subtract_solution(system: System, equations: Equations, factor: float, vecto
 def subtract_multipliers(system: System, equations: Equations, factor: float, multipliers: FloatArray) -> None:
     """Take factor times the solution off the multipliers of the joint, if there is one."""
     if system.joint:
-        first = equations.border_part.size - NODE
-        for c in range(NODE):
+        dof = len(system.scale)
+        first = equations.border_part.size - dof
+        for c in range(dof):
             multipliers[c] -= factor * equations.border_part[first + c]

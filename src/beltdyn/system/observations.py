@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.contact_force import contact_workspace
 from beltdyn.contact.contact_zone import MAX_INTERVALS, zone_scratch
-from beltdyn.system.arrays import NODE, Loads, System
+from beltdyn.system.arrays import Loads, System
 from beltdyn.system.loads import new_loads
 
 
@@ -117,12 +117,12 @@ def new_samples(system: System) -> Samples:
         weight=np.zeros(system.pulleys.size),
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
-        element=np.zeros((2, 2 * NODE)),
+        element=np.zeros((2, 2 * len(system.scale))),
         control=np.zeros((4, 2)),
         control_velocity=np.zeros((4, 2)),
         intervals=np.zeros((MAX_INTERVALS, 2)),
         pieces=zone_scratch(),
-        acceleration=np.zeros(NODE * system.nodes + system.bodies.size),
+        acceleration=np.zeros(system.first_body + system.bodies.size),
         corner=np.zeros((0, 0)),
         contact=contact_workspace(),
         loads=new_loads(system),

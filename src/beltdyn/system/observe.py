@@ -16,7 +16,7 @@ from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, Loads, System
+from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import fill_control
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
@@ -114,12 +114,12 @@ def _keep_loads(loads: Loads, result: Observations, k: int) -> None:
 @kernel(inline=True)
 def _gather(system: System, element: int, position: FloatArray, velocity: FloatArray, samples: Samples) -> None:
     """Coordinates and velocities of an element."""
-    node_j = (element + 1) % system.nodes
-    for c in range(NODE):
-        samples.element[0, c] = position[NODE * element + c]
-        samples.element[0, NODE + c] = position[NODE * node_j + c]
-        samples.element[1, c] = velocity[NODE * element + c]
-        samples.element[1, NODE + c] = velocity[NODE * node_j + c]
+    dof, node_j = len(system.scale), (element + 1) % system.nodes
+    for c in range(dof):
+        samples.element[0, c] = position[dof * element + c]
+        samples.element[0, dof + c] = position[dof * node_j + c]
+        samples.element[1, c] = velocity[dof * element + c]
+        samples.element[1, dof + c] = velocity[dof * node_j + c]
 
 
 @kernel(inline=True)
@@ -130,10 +130,10 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
         result.strain_energy[k] += chain_energy(e, section.axial, section.bending, length)
     else:
         result.strain_energy[k] += element_energy(e, section, length, system.elastic.points, system.elastic.weights)
-    kinetic, mass = 0.0, system.mass[element]
-    for row in range(2 * NODE):
+    dof, kinetic, mass = len(system.scale), 0.0, system.mass[element]
+    for row in range(2 * dof):
         momentum = 0.0
-        for column in range(2 * NODE):
+        for column in range(2 * dof):
             momentum += mass[row, column] * v[column]
         kinetic += 0.5 * v[row] * momentum
     result.kinetic_energy[k] += kinetic
@@ -318,7 +318,7 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
 @kernel(inline=True)
 def _observe_bodies(system: System, position: FloatArray, velocity: FloatArray, result: Observations, k: int) -> None:
     """Centres of the pulleys, kinetic energy of the bodies and potential energy of weight."""
-    first = NODE * system.nodes
+    first = system.first_body
     for body in range(system.bodies.size):
         result.kinetic_energy[k] += 0.5 * system.bodies[body].inertia * velocity[first + body] ** 2
     for c in range(first):

@@ -10,17 +10,19 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, RingFactors, RingMatrix
+from beltdyn.system.arrays import RingFactors, RingMatrix
 
 _LANES = 16
 """Rows are padded to a multiple of this many numbers, so that the inner loops run in whole vector registers."""
 
 
-def ring_matrix(nodes: int, border: int) -> RingMatrix:
+def ring_matrix(dof: int, nodes: int, border: int) -> RingMatrix:
     """Make a zero matrix.
 
     Parameters
     ----------
+    dof
+        Number of unknowns of a node, even.
     nodes
         Number of nodes.
     border
@@ -31,23 +33,24 @@ def ring_matrix(nodes: int, border: int) -> RingMatrix:
     RingMatrix
         With room to solve it.
     """
-    size = NODE + border
-    width = (NODE + size + _LANES - 1) // _LANES * _LANES
+    size = dof + border
+    width = (dof + size + _LANES - 1) // _LANES * _LANES
     return RingMatrix(
-        diagonal=np.zeros((nodes, NODE, NODE)),
-        upper=np.zeros((nodes, NODE, NODE)),
-        lower=np.zeros((nodes, NODE, NODE)),
-        column=np.zeros((nodes, NODE, border)),
-        row=np.zeros((nodes, border, NODE)),
+        unknowns=tuple(range(dof)),
+        diagonal=np.zeros((nodes, dof, dof)),
+        upper=np.zeros((nodes, dof, dof)),
+        lower=np.zeros((nodes, dof, dof)),
+        column=np.zeros((nodes, dof, border)),
+        row=np.zeros((nodes, border, dof)),
         corner=np.zeros((border, border)),
-        node_side=np.zeros((nodes, NODE)),
+        node_side=np.zeros((nodes, dof)),
         border_side=np.zeros(border),
         factors=RingFactors(
-            rows=np.zeros((NODE, width)),
-            panels=np.zeros((nodes, NODE, width)),
-            squares=np.zeros((nodes, NODE, NODE)),
-            pivots=np.zeros((nodes, NODE), dtype=np.int64),
-            links=np.zeros((nodes, NODE, NODE)),
+            rows=np.zeros((dof, width)),
+            panels=np.zeros((nodes, dof, width)),
+            squares=np.zeros((nodes, dof, dof)),
+            pivots=np.zeros((nodes, dof), dtype=np.int64),
+            links=np.zeros((nodes, dof, dof)),
             dense=np.zeros((size, size)),
             dense_pivots=np.zeros(size, dtype=np.int64),
             no_columns=np.zeros((size, 0)),
@@ -77,10 +80,11 @@ def entries(matrix: RingMatrix) -> FloatArray:
 
 
 def places(matrix: RingMatrix) -> tuple[IntArray, IntArray]:
-    """Rows and columns of the entries among the 6 N + m unknowns; entries of equal place add up."""
+    """Rows and columns of the entries among the n N + m unknowns; entries of equal place add up."""
     nodes, border = len(matrix.diagonal), len(matrix.corner)
-    own = np.arange(NODE * nodes).reshape(nodes, NODE)
-    after, extra = np.roll(own, -1, axis=0), NODE * nodes + np.arange(border)
+    dof = len(matrix.unknowns)
+    own = np.arange(dof * nodes).reshape(nodes, dof)
+    after, extra = np.roll(own, -1, axis=0), dof * nodes + np.arange(border)
     blocks = ((own, own), (own, after), (after, own), (own, extra), (extra, own), (extra, extra))
     pairs = [np.broadcast_arrays(rows[..., :, None], columns[..., None, :]) for rows, columns in blocks]
     rows, columns = (np.concatenate([pair[axis].ravel() for pair in pairs]) for axis in (0, 1))
@@ -118,30 +122,30 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
     bool
         False if a pivot vanished (singular to working precision); the factors are then meaningless.
     """
-    nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
-    cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
+    dof, nodes, extra = len(matrix.unknowns), matrix.diagonal.shape[0], matrix.corner.shape[0]
+    cut, chain = (dof, nodes - 1) if closed else (0, nodes)
     rows, panels, squares, pivots, links, dense, dense_pivots, no_columns, _ = matrix.factors
     for k in range(chain):
         _load_node(matrix, k, closed, chain, rows)
         if k > 0:
-            _subtract_product(matrix.lower[k - 1], panels[k - 1], rows)
-        _split(rows, matrix.upper[k], k < chain - 1, squares[k], panels[k])
-        if not _eliminate(squares[k], pivots[k], panels[k], NODE):
+            _subtract_product(dof, matrix.lower[k - 1], panels[k - 1], rows)
+        _split(dof, rows, matrix.upper[k], k < chain - 1, squares[k], panels[k])
+        if not _eliminate(squares[k], pivots[k], panels[k], dof):
             return False
     for k in range(chain - 2, -1, -1):
-        for i in range(NODE):
-            for j in range(NODE):
+        for i in range(dof):
+            for j in range(dof):
                 links[k, i, j] = panels[k, i, j]
-        _subtract_product(links[k], panels[k + 1], panels[k])
-        panels[k, :, :NODE] = 0.0  # so that the next product, over whole rows, leaves these columns alone
+        _subtract_product(dof, links[k], panels[k + 1], panels[k])
+        panels[k, :, :dof] = 0.0  # so that the next product, over whole rows, leaves these columns alone
     _load_border(matrix, closed, dense)
     if closed:
-        for i in range(NODE):
-            _reduce(matrix.upper[chain, i], panels[0], cut + extra, dense[i])
-            _reduce(matrix.lower[chain - 1, i], panels[chain - 1], cut + extra, dense[i])
+        for i in range(dof):
+            _reduce(dof, matrix.upper[chain, i], panels[0], cut + extra, dense[i])
+            _reduce(dof, matrix.lower[chain - 1, i], panels[chain - 1], cut + extra, dense[i])
     for k in range(chain):
         for i in range(extra):
-            _reduce(matrix.row[k, i], panels[k], cut + extra, dense[cut + i])
+            _reduce(dof, matrix.row[k, i], panels[k], cut + extra, dense[cut + i])
     return _eliminate(dense, dense_pivots, no_columns, cut + extra)
 
 
@@ -160,26 +164,26 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
     border_part : ndarray, shape (m,)
         Overwritten by the solution.
     """
-    nodes, extra = matrix.diagonal.shape[0], matrix.corner.shape[0]
-    cut, chain = (NODE, nodes - 1) if closed else (0, nodes)
+    dof, nodes, extra = len(matrix.unknowns), matrix.diagonal.shape[0], matrix.corner.shape[0]
+    cut, chain = (dof, nodes - 1) if closed else (0, nodes)
     _, panels, squares, pivots, links, dense, dense_pivots, _, answer = matrix.factors
     for k in range(chain):
-        for i in range(NODE):
+        for i in range(dof):
             node_part[k, i] = matrix.node_side[k, i]
         if k > 0:
-            _subtract_image(matrix.lower[k - 1], node_part[k - 1], node_part[k])
-        _solve_factorised(squares[k], pivots[k], NODE, node_part[k])
+            _subtract_image(dof, matrix.lower[k - 1], node_part[k - 1], node_part[k])
+        _solve_factorised(squares[k], pivots[k], dof, node_part[k])
     for k in range(chain - 2, -1, -1):
-        _subtract_image(links[k], node_part[k + 1], node_part[k])
+        _subtract_image(dof, links[k], node_part[k + 1], node_part[k])
     if closed:
-        for i in range(NODE):
+        for i in range(dof):
             answer[i] = matrix.node_side[chain, i]
-        _subtract_image(matrix.upper[chain], node_part[0], answer)
-        _subtract_image(matrix.lower[chain - 1], node_part[chain - 1], answer)
+        _subtract_image(dof, matrix.upper[chain], node_part[0], answer)
+        _subtract_image(dof, matrix.lower[chain - 1], node_part[chain - 1], answer)
     for i in range(extra):
         answer[cut + i] = matrix.border_side[i]
         for k in range(chain):
-            for j in range(NODE):
+            for j in range(dof):
                 answer[cut + i] -= matrix.row[k, i, j] * node_part[k, j]
     _solve_factorised(dense, dense_pivots, cut + extra, answer)
     for i in range(extra):
@@ -187,57 +191,57 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
     for i in range(cut):
         node_part[chain, i] = answer[i]
     for k in range(chain):
-        for i in range(NODE):
+        for i in range(dof):
             total = node_part[k, i]
             for j in range(cut + extra):
-                total -= panels[k, i, NODE + j] * answer[j]
+                total -= panels[k, i, dof + j] * answer[j]
             node_part[k, i] = total
 
 
 @kernel(inline=True)
 def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: FloatArray) -> None:
     """Rows of node k: [diagonal block | columns of the border]."""
-    extra = matrix.corner.shape[0]
-    start = 2 * NODE if closed else NODE
-    for i in range(NODE):
-        for j in range(NODE):
+    dof, extra = len(matrix.unknowns), matrix.corner.shape[0]
+    start = 2 * dof if closed else dof
+    for i in range(dof):
+        for j in range(dof):
             rows[i, j] = matrix.diagonal[k, i, j]
         for j in range(extra):
             rows[i, start + j] = matrix.column[k, i, j]
         if closed:
-            for j in range(NODE):
-                rows[i, NODE + j] = 0.0
+            for j in range(dof):
+                rows[i, dof + j] = 0.0
                 if k == 0:
-                    rows[i, NODE + j] += matrix.lower[chain, i, j]
+                    rows[i, dof + j] += matrix.lower[chain, i, j]
                 if k == chain - 1:
-                    rows[i, NODE + j] += matrix.upper[k, i, j]
+                    rows[i, dof + j] += matrix.upper[k, i, j]
 
 
 @kernel(inline=True)
 def _load_border(matrix: RingMatrix, closed: bool, dense: FloatArray) -> None:
     """The border with itself: the last node of a closed ring, then the given border."""
-    extra = matrix.corner.shape[0]
-    cut = NODE if closed else 0
+    dof, extra = len(matrix.unknowns), matrix.corner.shape[0]
+    cut = dof if closed else 0
     for i in range(extra):
         for j in range(extra):
             dense[cut + i, cut + j] = matrix.corner[i, j]
     if closed:
         last = matrix.diagonal.shape[0] - 1
-        for i in range(NODE):
-            for j in range(NODE):
+        for i in range(dof):
+            for j in range(dof):
                 dense[i, j] = matrix.diagonal[last, i, j]
             for j in range(extra):
-                dense[i, NODE + j] = matrix.column[last, i, j]
-                dense[NODE + j, i] = matrix.row[last, j, i]
+                dense[i, dof + j] = matrix.column[last, i, j]
+                dense[dof + j, i] = matrix.row[last, j, i]
 
 
 @kernel(inline=True)
-def _split(rows: FloatArray, upper: FloatArray, coupled: bool, square: FloatArray, panel: FloatArray) -> None:
+def _split(dof: int, rows: FloatArray, upper: FloatArray, coupled: bool, square: FloatArray, panel: FloatArray) -> None:
     """Block of a node, and its panel: [block towards the next node | columns of the border]."""
-    for i in range(NODE):
+    for i in range(dof):
         for j in range(panel.shape[1]):
             panel[i, j] = rows[i, j]
-        for j in range(NODE):
+        for j in range(dof):
             square[i, j] = rows[i, j]
             panel[i, j] = upper[i, j] if coupled else 0.0
 
@@ -300,29 +304,37 @@ def _solve_factorised(square: FloatArray, pivots: IntArray, size: int, vector: F
 
 
 @kernel(inline=True)
-def _subtract_product(left: FloatArray, right: FloatArray, target: FloatArray) -> None:
-    """Target -= left right, for factors of six columns and of six rows."""
-    for i in range(NODE):
-        a, b, c = left[i, 0], left[i, 1], left[i, 2]
-        d, e, f = left[i, 3], left[i, 4], left[i, 5]
-        for j in range(target.shape[1]):
-            first = a * right[0, j] + b * right[1, j] + c * right[2, j]
-            target[i, j] -= first + (d * right[3, j] + e * right[4, j] + f * right[5, j])
+def _subtract_product(dof: int, left: FloatArray, right: FloatArray, target: FloatArray) -> None:
+    """Target -= left right, for left of shape (dof, dof); six columns of left at a time, the rest by pairs."""
+    sixes = dof - dof % 6
+    for i in range(dof):
+        for k in range(0, sixes, 6):
+            a, b, c = left[i, k], left[i, k + 1], left[i, k + 2]
+            d, e, f = left[i, k + 3], left[i, k + 4], left[i, k + 5]
+            for j in range(target.shape[1]):
+                first = a * right[k, j] + b * right[k + 1, j] + c * right[k + 2, j]
+                target[i, j] -= first + (d * right[k + 3, j] + e * right[k + 4, j] + f * right[k + 5, j])
+        for k in range(sixes, dof, 2):
+            a, b = left[i, k], left[i, k + 1]
+            for j in range(target.shape[1]):
+                target[i, j] -= a * right[k, j] + b * right[k + 1, j]
 
 
 @kernel(inline=True)
-def _subtract_image(block: FloatArray, vector: FloatArray, target: FloatArray) -> None:
-    """Take block times vector, six numbers, off the first six of target."""
-    for i in range(NODE):
-        first = block[i, 0] * vector[0] + block[i, 1] * vector[1] + block[i, 2] * vector[2]
-        target[i] -= first + (block[i, 3] * vector[3] + block[i, 4] * vector[4] + block[i, 5] * vector[5])
+def _subtract_image(dof: int, block: FloatArray, vector: FloatArray, target: FloatArray) -> None:
+    """Take block times vector, dof numbers, off the first dof of target."""
+    for i in range(dof):
+        total = 0.0
+        for k in range(dof):
+            total += block[i, k] * vector[k]
+        target[i] -= total
 
 
 @kernel(inline=True)
-def _reduce(coupling: FloatArray, panel: FloatArray, border: int, row: FloatArray) -> None:
+def _reduce(dof: int, coupling: FloatArray, panel: FloatArray, border: int, row: FloatArray) -> None:
     """Put the chain's answers into an equation of the border that couples to a node."""
-    for k in range(NODE):
+    for k in range(dof):
         factor = coupling[k]
         if factor != 0.0:
             for j in range(border):
-                row[j] -= factor * panel[k, NODE + j]
+                row[j] -= factor * panel[k, dof + j]

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Path
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 
 
@@ -26,7 +26,7 @@ class State:
 
     def nodes(self, system: System) -> FloatArray:
         """Nodal coordinates as an array of shape (N, 6)."""
-        return self.position[: NODE * system.nodes].reshape(system.nodes, NODE)
+        return self.position[: system.first_body].reshape(system.nodes, -1)
 
 
 def at_rest(system: System, coordinates: FloatArray) -> State:

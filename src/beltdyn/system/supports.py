@@ -2,7 +2,7 @@
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.arrays import RingMatrix, System
 
 
 @kernel
@@ -24,13 +24,13 @@ def add_nodal_loads(system: System, position: FloatArray, by_position: float, ma
     matrix
         Right-hand side and tangent, changed in place.
     """
-    supports = system.supports
+    supports, dof = system.supports, len(system.scale)
     for node in range(system.nodes):
-        for c in range(NODE):
-            matrix.node_side[node, c] -= supports.force[NODE * node + c]
+        for c in range(dof):
+            matrix.node_side[node, c] -= supports.force[dof * node + c]
         moment = supports.moment[node]
         if moment != 0.0:
-            x, y = position[NODE * node + 4], position[NODE * node + 5]
+            x, y = position[dof * node + 4], position[dof * node + 5]
             square = x * x + y * y
             matrix.node_side[node, 4] += moment * y / square
             matrix.node_side[node, 5] -= moment * x / square
@@ -52,10 +52,11 @@ def hold_fixed(system: System, matrix: RingMatrix) -> None:
     matrix
         Rows and columns of fixed coordinates become those of the identity, their right-hand side zero.
     """
+    dof = len(system.scale)
     for node in range(system.nodes):
         before = (node - 1) % system.nodes
-        for c in range(NODE):
-            if system.supports.fixed[NODE * node + c]:
+        for c in range(dof):
+            if system.supports.fixed[dof * node + c]:
                 matrix.diagonal[node, c, :] = 0.0
                 matrix.diagonal[node, :, c] = 0.0
                 matrix.diagonal[node, c, c] = 1.0

@@ -3,7 +3,6 @@
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.system.arrays import NODE
 from beltdyn.system.discretization import Discretization
 
 
@@ -27,11 +26,12 @@ def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]
     ndarray, shape (6 * nodes,)
         N for the rows of r (of every point of a chain), N m for those of r_x, nothing for r_y.
     """
-    node = np.zeros(NODE)
+    dof = len(mesh.scale)
+    node = np.zeros(dof)
     node[: 2 * mesh.points] = np.tile(gravity, mesh.points)
     by_element = mesh.mass @ np.tile(node, 2)
-    force = np.zeros((nodes, NODE))
+    force = np.zeros((nodes, dof))
     for element, ends in enumerate(by_element):
-        force[element] += ends[:NODE]
-        force[(element + 1) % nodes] += ends[NODE:]
+        force[element] += ends[:dof]
+        force[(element + 1) % nodes] += ends[dof:]
     return force.ravel()

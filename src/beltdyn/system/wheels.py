@@ -3,14 +3,14 @@
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import ContactLaw, Wheel
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.tensioner import tensioner_place
 
 
 @kernel
 def tensioner_coordinate(system: System, tensioner: int) -> int:
     """Place of a tensioner's coordinate in the state."""
-    return NODE * system.nodes + system.bodies.size - system.tensioners.size + tensioner
+    return system.first_body + system.bodies.size - system.tensioners.size + tensioner
 
 
 @kernel
@@ -28,7 +28,7 @@ def wheel_of(system: System, pulley: int, position: FloatArray, velocity: FloatA
     """
     item = system.pulleys[pulley]
     carrier = item.carrier
-    speed = velocity[NODE * system.nodes + pulley]
+    speed = velocity[system.first_body + pulley]
     if carrier < 0:
         return Wheel(item.center[0], item.center[1], item.radius, speed, 0.0, 0.0)
     at = tensioner_coordinate(system, carrier)

@@ -35,7 +35,7 @@ def test_error_grows_with_the_step_until_it_is_long() -> None:
 
 def test_constant_acceleration_is_exact(spinning: System) -> None:
     state = straight(spinning)
-    march, equations = new_march(0.0, STEP, state.position, state.velocity, 1), new_equations(spinning)
+    march, equations = new_march(spinning, 0.0, STEP, state.position, state.velocity), new_equations(spinning)
     restart(spinning, march, equations)
     iterations = try_step(spinning, SETTINGS, method_of(0.8), march, STEP, equations)
     assert iterations == march.counts[ITERATIONS] == 1  # the first guess is right
@@ -49,6 +49,6 @@ def test_constant_acceleration_is_exact(spinning: System) -> None:
 
 def test_no_solution_without_mass(spinning: System) -> None:
     state = straight(spinning)
-    march, equations = new_march(0.0, STEP, state.position, state.velocity, 1), new_equations(spinning)
+    march, equations = new_march(spinning, 0.0, STEP, state.position, state.velocity), new_equations(spinning)
     broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
     assert try_step(broken, SETTINGS, method_of(0.8), march, STEP, equations) == 0

@@ -12,7 +12,7 @@ from beltdyn.model import Drive
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import flutter, simulate
 from beltdyn.solve.flutter import FlutterWatch, growth_within, longest_pieces
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 
 Change = Callable[..., Drive]
@@ -49,10 +49,10 @@ def watch(system: System, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Flut
 
     def watched(pieces: Any, rates: Any, chunk: int = 7, part: float = 1.0) -> FlutterWatch:
         result, count = FlutterWatch(system), len(pieces)
-        size, points = NODE * system.nodes + system.bodies.size, POINTS * system.length.size
+        size, points = system.first_body + system.bodies.size, POINTS * system.length.size
         time, position, velocity = INTERVAL * np.arange(float(count)), np.zeros((count, size)), np.zeros((count, size))
         position[:, 0] = rates
-        velocity[:, : NODE * system.nodes : NODE] = SPEED
+        velocity[:, : system.first_body : len(system.scale)] = SPEED
         pulley = np.full((count, points), -1)
         pulley[:, : points // 2] = 0
         normal = np.where(pulley == 0, 300.0, 0.0)

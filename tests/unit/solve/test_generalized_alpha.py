@@ -19,7 +19,7 @@ ROUNDING = 1e-10
 
 def start(system: System, step: float = 1e-3) -> March:
     state = straight(system)
-    return new_march(0.0, step, state.position, state.velocity, system.profiles.table.size - 1)
+    return new_march(system, 0.0, step, state.position, state.velocity)
 
 
 def run(

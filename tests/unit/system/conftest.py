@@ -9,7 +9,7 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
-from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.arrays import RingMatrix, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
 
@@ -58,7 +58,7 @@ def system(small: Drive) -> System:
 @pytest.fixture(scope="session")
 def scale(system: System) -> FloatArray:
     """Coordinates that make a metre, shape (6 N + D,)."""
-    return np.concatenate([np.tile(1.0 / system.scale, system.nodes), 1.0 / system.bodies.reach])
+    return np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), 1.0 / system.bodies.reach])
 
 
 @pytest.fixture(scope="session")
@@ -74,14 +74,14 @@ def dense() -> Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]:
     """Matrix and right-hand side of a ring matrix, the nodes first."""
 
     def unfold(ring: RingMatrix, closed: bool) -> tuple[FloatArray, FloatArray]:
-        nodes, size = ring.diagonal.shape[0], ring.node_side.size
+        (nodes, dof), size = ring.node_side.shape, ring.node_side.size
         matrix = np.zeros((size + ring.border_side.size,) * 2)
         for k in range(nodes):
-            own = slice(NODE * k, NODE * (k + 1))
+            own = slice(dof * k, dof * (k + 1))
             matrix[own, own] += ring.diagonal[k]
             matrix[own, size:], matrix[size:, own] = ring.column[k], ring.row[k]
             if closed or k < nodes - 1:
-                after = slice(NODE * ((k + 1) % nodes), NODE * ((k + 1) % nodes) + NODE)
+                after = slice(dof * ((k + 1) % nodes), dof * ((k + 1) % nodes) + dof)
                 matrix[own, after] += ring.upper[k]
                 matrix[after, own] += ring.lower[k]
         matrix[size:, size:] = ring.corner

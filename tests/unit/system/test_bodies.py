@@ -8,10 +8,10 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
-from beltdyn.system.arrays import NODE, RingMatrix, System
+from beltdyn.system.arrays import RingMatrix, System
 from beltdyn.system.assembly import assemble, border_size
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
 
@@ -84,7 +84,7 @@ def system(drive: Drive) -> System:
 
 @pytest.fixture(scope="module")
 def scale(system: System) -> FloatArray:
-    return np.concatenate([np.tile(1.0 / system.scale, system.nodes), 1.0 / system.bodies.reach])
+    return np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), 1.0 / system.bodies.reach])
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +98,7 @@ def moving(system: System, scale: FloatArray) -> State:
 
 def residual(system: System, state: State, equations: Equations, factors: tuple[float, float, float]) -> RingMatrix:
     motion = (state.position, state.velocity, state.acceleration)
-    assemble(system, 0.3, *motion, np.zeros(NODE), *factors, equations.work, equations.matrix, equations.loads)
+    assemble(system, 0.3, *motion, no_multipliers(system), *factors, equations.work, equations.matrix, equations.loads)
     return equations.matrix
 
 
@@ -113,7 +113,7 @@ def test_tangent(
     """The bodies' rows and columns to the floor of central differences, apart from the far larger ones of the belt."""
     equations = new_equations(system)
     tangent = dense(residual(system, moving, equations, factors), True)[0].copy()
-    unknowns = [*range(NODE * system.nodes), *(NODE * system.nodes + np.flatnonzero(system.bodies.unknown >= 0))]
+    unknowns = [*range(system.first_body), *(system.first_body + np.flatnonzero(system.bodies.unknown >= 0))]
     step = 1e-8 / max(factors[0], factors[1] / 1e3, factors[2] / 1e6)
 
     def at(unknown: int, side: float) -> FloatArray:
@@ -124,7 +124,7 @@ def test_tangent(
         return dense(residual(system, moved, equations, (0.0, 0.0, 0.0)), True)[1].copy()
 
     found = np.transpose([(at(k, 1.0) - at(k, -1.0)) / (2 * step * scale[k]) for k in unknowns])
-    for part in (slice(None), slice(NODE * system.nodes, None)):
+    for part in (slice(None), slice(system.first_body, None)):
         for block in ((part, slice(None)), (slice(None), part)):
             rounding = 1e-7 * np.max(np.abs(tangent[block]))
             np.testing.assert_allclose(tangent[block], found[block], atol=rounding, rtol=0)
@@ -138,7 +138,7 @@ def test_only_the_prescribed_shaft_is_no_unknown(system: System) -> None:
 def test_couplings_act_on_both_bodies(system: System, moving: State) -> None:
     """Without belt and shaft torques, what a chain does to its bodies adds up to nothing."""
     lifted = State(moving.position.copy(), moving.velocity, moving.acceleration)
-    lifted.position[: NODE * system.nodes] += 10.0
+    lifted.position[: system.first_body] += 10.0
     equations = new_equations(system)
     residual(system, lifted, equations, (0.0, 0.0, 0.0))
     loads = equations.loads
@@ -150,14 +150,14 @@ def test_couplings_act_on_both_bodies(system: System, moving: State) -> None:
 
 def test_power_of_the_bodies_is_what_is_lost_and_stored(system: System, moving: State) -> None:
     """Work of all forces on the bodies but the belt's = torque work - losses - rate of the springs' energy."""
-    equations, bodies = new_equations(system), slice(NODE * system.nodes, None)
+    equations, bodies = new_equations(system), slice(system.first_body, None)
     lifted = State(moving.position.copy(), moving.velocity.copy(), moving.acceleration)
-    lifted.position[: NODE * system.nodes] += 10.0
+    lifted.position[: system.first_body] += 10.0
 
     def energy(time: float) -> float:
         place = (lifted.position + time * lifted.velocity)[None]
         seen = observe(system, np.zeros(1), place, lifted.velocity[None].copy())
-        belt = system.supports.force @ place[0, : NODE * system.nodes]
+        belt = system.supports.force @ place[0, : system.first_body]
         return float(seen.spring_energy[0] + seen.potential_energy[0] + belt)
 
     residual(system, lifted, equations, (0.0, 0.0, 0.0))

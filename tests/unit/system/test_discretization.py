@@ -10,11 +10,11 @@ from beltdyn.contact.bezier import bernstein
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, Path
 from beltdyn.quadrature import gauss_points, lobatto_points
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.build import Closure, belt_section, belt_system, drive_system
 from beltdyn.system.discretization import curve_lengths, discretize, nodal_coordinates, point_coordinates
-from beltdyn.system.motion import new_equations
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid
 
@@ -35,7 +35,7 @@ def test_unknowns(drive: Drive, kind: str) -> None:
     system = belt_system(belt, closure="shared_node")
     links = CHAINS[kind] * 12
     assert belt.links == links
-    assert system.nodes * NODE == 2 * links
+    assert system.nodes * len(system.scale) == 2 * links
     assert system.points * system.nodes == links
 
 
@@ -45,7 +45,7 @@ def test_fields_of_a_chain(drive: Drive, kind: str) -> None:
     mesh, links = discretize(belt, belt_section(belt)), belt.links
     assert mesh.chain
     assert mesh.points == mesh.control.shape[1] == 3
-    np.testing.assert_array_equal(mesh.scale, np.ones(NODE))
+    np.testing.assert_array_equal(mesh.scale, np.ones(6))
     np.testing.assert_allclose(mesh.length, 3 * belt.length / links)
     np.testing.assert_allclose(np.trace(mesh.mass, axis1=1, axis2=2).sum(), 2 * belt.mass_per_length * belt.length)
 
@@ -125,7 +125,7 @@ def test_forces_at_rest_are_the_slope_of_the_energies(make_drive: Make, kind: st
     """Elasticity and penalty contact of a belt that is pushed 0.4 mm into its pulleys and disturbed by 0.1 mm."""
     system = drive_system(make_drive("force_slope", places, discretization=kind))
     sunk = laid(system, Path(system.pulleys.center, system.pulleys.radius - 4e-4)).position
-    metre = np.concatenate([np.tile(1.0 / system.scale, system.nodes), np.ones(2)])
+    metre = np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), np.ones(2)])
     sunk += 1e-4 * np.random.default_rng(3).normal(size=sunk.size) * metre
 
     def energy(position: FloatArray) -> float:
@@ -133,9 +133,9 @@ def test_forces_at_rest_are_the_slope_of_the_energies(make_drive: Make, kind: st
         return float(seen.strain_energy[0] + seen.penalty_energy[0])
 
     step = 1e-8
-    moves = step * np.diag(metre)[: NODE * system.nodes]
+    moves = step * np.diag(metre)[: system.first_body]
     slopes = np.array([energy(sunk + move) - energy(sunk - move) for move in moves]) / (2.0 * step)
-    by_metre = forces(system, sunk) * metre[: NODE * system.nodes]
+    by_metre = forces(system, sunk) * metre[: system.first_body]
     rounding = 1e-6 * np.max(np.abs(by_metre))  # of energies of some joules in steps of 1e-8 m
     np.testing.assert_allclose(by_metre, slopes, atol=rounding)
 
@@ -149,7 +149,7 @@ def forces(system: System, position: FloatArray) -> FloatArray:
         position,
         still,
         still,
-        np.zeros(NODE),
+        no_multipliers(system),
         0.0,
         0.0,
         0.0,

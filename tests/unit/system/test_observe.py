@@ -8,7 +8,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, install
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
@@ -33,7 +33,7 @@ def seen(request: pytest.FixtureRequest, fine: Drive) -> tuple[float, Observatio
     system = drive_system(fine)
     state = find_equilibrium(system, laid(system, fine.path)).state
     velocity = np.zeros_like(state.velocity)
-    velocity[: NODE * system.nodes : NODE] = request.param
+    velocity[: system.first_body : len(system.scale)] = request.param
     return request.param, see(system, state.position, velocity)
 
 
@@ -67,7 +67,7 @@ def test_friction_turns_a_pulley_with_the_arm_of_the_model(fine: Drive, arm: str
     system = drive_system(fine.replace(contact=fine.contact.replace(moment_arm=arm)))
     state = find_equilibrium(system, laid(system, fine.path)).state
     velocity = np.zeros_like(state.velocity)
-    velocity[NODE * system.nodes + 1] = 50.0
+    velocity[system.first_body + 1] = 50.0
     here = see(system, state.position, velocity)
     # power that the pulley gives is what friction takes, since the belt stands
     assert -50.0 * here.pulley_torque[0, 1] == pytest.approx(here.friction_power[0, 1], rel=1e-12)

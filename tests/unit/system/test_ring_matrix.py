@@ -8,20 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.system.arrays import NODE, RingMatrix
+from beltdyn.system.arrays import RingMatrix
 from beltdyn.system.ring_matrix import clear, entries, places, ring_matrix, solve_ring, substitute
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 PARTS = ("diagonal", "upper", "lower", "column", "row", "corner", "node_side", "border_side")
 
 
-def random_ring(nodes: int, border: int, seed: int) -> RingMatrix:
+def random_ring(nodes: int, border: int, seed: int, dof: int = 6) -> RingMatrix:
     """Random blocks with diagonals heavy enough for a condition number below 1e3."""
-    ring, random = ring_matrix(nodes, border), np.random.default_rng(seed)
+    ring, random = ring_matrix(dof, nodes, border), np.random.default_rng(seed)
     for name in PARTS:
         part = getattr(ring, name)
         part[:] = random.normal(size=part.shape)
-    ring.diagonal[:] += 20.0 * np.eye(NODE)
+    ring.diagonal[:] += 20.0 * np.eye(dof)
     ring.corner[:] += 20.0 * np.eye(border)
     return ring
 
@@ -32,9 +32,10 @@ def solution(ring: RingMatrix, closed: bool) -> FloatArray:
     return np.concatenate([node_part.ravel(), border_part])
 
 
+@pytest.mark.parametrize("dof", [2, 4, 6, 8])
 @given(st.integers(3, 12), st.integers(0, 10), st.booleans(), st.integers(0, 2**32 - 1))
-def test_solves_what_lapack_solves(dense: Dense, nodes: int, border: int, closed: bool, seed: int) -> None:
-    ring = random_ring(nodes, border, seed)
+def test_solves_what_lapack_solves(dense: Dense, dof: int, nodes: int, border: int, closed: bool, seed: int) -> None:
+    ring = random_ring(nodes, border, seed, dof)
     expected = np.linalg.solve(*dense(ring, closed))
     np.testing.assert_allclose(solution(ring, closed), expected, atol=1e-12)  # rounding times the condition number
 
@@ -78,13 +79,13 @@ def test_singular_matrix_is_refused(closed: bool, place: str) -> None:
         ring.corner[0], ring.row[:, 0] = 0.0, 0.0
     else:
         ring.diagonal[node, 2] = ring.upper[node, 2] = ring.lower[node - 1, 2] = ring.column[node, 2] = 0.0
-    assert not solve_ring(ring, closed, np.empty((4, NODE)), np.empty(2))
+    assert not solve_ring(ring, closed, np.empty((4, 6)), np.empty(2))
 
 
 def test_nan_is_refused() -> None:
     ring = random_ring(4, 0, 7)
     ring.diagonal[0, 0, 0] = np.nan
-    assert not solve_ring(ring, True, np.empty((4, NODE)), np.empty(0))
+    assert not solve_ring(ring, True, np.empty((4, 6)), np.empty(0))
 
 
 @pytest.mark.parametrize("nodes", [3, 8])

@@ -74,7 +74,7 @@ def fixed_steps() -> Callable[[System, FloatArray, float, int, FloatArray], tupl
         end, anything = float(times[-1]), 1e30
         step = end / steps
         settings = Settings(radius, anything, 1e-13 / (anything * step), step)
-        march = new_march(0.0, step, start, np.zeros_like(start), system.profiles.table.size - 1)
+        march = new_march(system, 0.0, step, start, np.zeros_like(start))
         equations = new_equations(system)
         taken = empty_steps(steps + 1, start.size)
         restart(system, march, equations)

@@ -94,7 +94,7 @@ def test_spectral_radius_at_infinite_frequency(measured: Measured, curve: Measur
     scales = np.array([1.0, 1 / step, 1 / step**2, 1 / step**2])
     amplification = np.empty((4, 4))
     for column in range(4):
-        march = new_march(0.0, step, rest, np.zeros_like(rest), system.profiles.table.size - 1)
+        march = new_march(system, 0.0, step, rest, np.zeros_like(rest))
         arrays = (march.position, march.velocity, march.acceleration, march.auxiliary)
         arrays[column][own] += small * scales[column]
         none = empty_steps(0, rest.size)

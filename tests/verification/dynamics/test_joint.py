@@ -10,11 +10,11 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.engine import accelerate
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
 from beltdyn.system.joint_constraint import joint_constraint
-from beltdyn.system.motion import new_equations
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import laid
 
 Change = Callable[..., Drive]
@@ -40,8 +40,8 @@ def accelerations(system: System, position: FloatArray, velocity: FloatArray) ->
     """Of nodes, shape (N, 6), by the ring solver."""
     result, pulleys = np.empty(position.size + 2), np.zeros(2)
     where, how = np.append(position, pulleys), np.append(velocity, pulleys)
-    assert accelerate(system, TIME, where, how, result, np.empty(NODE), new_equations(system))
-    return result[:-2].reshape(-1, NODE)
+    assert accelerate(system, TIME, where, how, result, no_multipliers(system), new_equations(system))
+    return result[:-2].reshape(-1, 6)
 
 
 def test_accelerations(small: Drive, tied: Drive, nodes: FloatArray, measured: Measured) -> None:
@@ -57,7 +57,7 @@ def test_accelerations(small: Drive, tied: Drive, nodes: FloatArray, measured: M
         position,
         velocity,
         zero,
-        np.zeros(NODE),
+        no_multipliers(joined),
         0.0,
         0.0,
         0.0,
@@ -65,7 +65,7 @@ def test_accelerations(small: Drive, tied: Drive, nodes: FloatArray, measured: M
         equations.matrix,
         equations.loads,
     )
-    by_brackets = joint_constraint(joined).accelerations(-equations.matrix.node_side.ravel()).reshape(-1, NODE)
+    by_brackets = joint_constraint(joined).accelerations(-equations.matrix.node_side.ravel()).reshape(-1, 6)
     size = np.max(np.abs(by_node))
     differences = {
         "equation_25": np.max(np.abs(by_multipliers[:-1] - by_node)) / size,

@@ -10,7 +10,7 @@ import xarray as xr
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve.static import find_equilibrium
-from beltdyn.system.arrays import NODE, System
+from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.joint_constraint import mass_matrix
@@ -87,15 +87,13 @@ def motions() -> Callable[[System, State], Motion]:
     def find(system: System, state: State) -> Motion:
         form, half = FirstOrder(system), state.position.size
         jacobian = form.jacobian(0.0, form.pack(state))[: 2 * half, : 2 * half]
-        free = np.append(
-            np.arange(NODE * system.nodes), NODE * system.nodes + np.flatnonzero(system.bodies.unknown >= 0)
-        )
+        free = np.append(np.arange(system.first_body), system.first_body + np.flatnonzero(system.bodies.unknown >= 0))
         keep = np.append(free, half + free)
         exponents, vectors = np.linalg.eig(jacobian[np.ix_(keep, keep)])
         rising = exponents.imag > 0.0
         velocity = np.zeros((half, int(rising.sum())), dtype=complex)
         velocity[free] = vectors[len(free) :, rising]
-        nodes = NODE * system.nodes
+        nodes = system.first_body
         belt = np.sum(velocity[:nodes].conj() * (mass_matrix(system) @ velocity[:nodes]), axis=0).real
         bodies = system.bodies.inertia[:, None] * np.abs(velocity[nodes:]) ** 2
         return Motion(exponents[rising], bodies / (belt + bodies.sum(axis=0)))
