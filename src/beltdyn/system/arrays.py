@@ -2,8 +2,9 @@
 
 The state of a system with N nodes is the vector of n N nodal coordinates, n to a node (six of the paper's element),
 followed by D coordinates of bodies: the angles of the P rims, those of the bodies behind the rims in hub chains, and
-the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a node with the next one only, and the centreline of an element is
-made of one or several curves; beyond that the system does not ask how a belt is discretised.
+the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a
+node with the next one only, and the centreline of an element is made of one or several curves; beyond that the system
+does not ask how a belt is discretised.
 """
 
 from typing import NamedTuple
