@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help install demo paper test validate compatibility bench docs lock clean
+.PHONY: help install demo paper test validate compatibility mutation bench docs lock clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -43,6 +43,10 @@ compatibility: ## kernels with the oldest Numba, the last one known and the newe
 			tests/unit/ancf tests/unit/chain tests/unit/system || exit 1; \
 	done
 	rm -rf .venv-numba
+
+mutation: install ## small changes of the sources, taken at random, and how many of them the tests notice
+	$(BIN)/python -m tools.mutation contact ancf chain system results/derived --sample 100 \
+		--tests tests/unit/contact tests/unit/ancf tests/unit/chain tests/unit/system tests/unit/results/derived
 
 bench: install ## benchmarks
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done

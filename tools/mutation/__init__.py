@@ -1,0 +1,1 @@
+"""Mutation testing: count the small changes of the sources that a test notices."""
