@@ -13,6 +13,7 @@ from rich.table import Table
 
 from beltdyn.ancf.elastic_force import element_force
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
@@ -23,9 +24,9 @@ from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.build import drive_system
 from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.observe import observe
+from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 from beltdyn.system.state import laid
-from beltdyn.system.wheels import wheel_of
 
 ROUNDS, REPEATS = 15, 300
 
@@ -93,21 +94,12 @@ def repeat_contact(system: System, state: FloatArray, rates: FloatArray, work: E
                 scratch.coordinates[0, dof + c] = state[dof * ((element + 1) % system.nodes) + c]
             fill_control(system, element, 0, scratch.coordinates[0], scratch.control)
             for p in range(system.pulleys.size):
-                wheel = wheel_of(system, p, state, rates)
-                if not out_of_reach(scratch.control, wheel):
-                    contact_force(
-                        scratch.control,
-                        scratch.control_velocity,
-                        system.control[element, 0],
-                        wheel,
-                        system.law,
-                        system.length[element],
-                        points.points,
-                        points.weights,
-                        1.0,
-                        2e3,
-                        scratch.contact,
+                pulley = pulley_state(system, p, state, rates)
+                if not out_of_reach(scratch.control, pulley):
+                    piece = Curve(
+                        scratch.control, scratch.control_velocity, system.control[element, 0], system.length[element]
                     )
+                    contact_force(piece, pulley, system.law, points, 1.0, 2e3, scratch.contact)
 
 
 def smallest(run: Callable[[], object]) -> float:

@@ -1,6 +1,7 @@
 """Quadrature on the unit interval."""
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import Legendre, leggauss
@@ -8,8 +9,15 @@ from numpy.polynomial.legendre import Legendre, leggauss
 from beltdyn.arrays import FloatArray
 
 
+class Quadrature(NamedTuple):
+    """Points and weights on [0, 1]."""
+
+    points: FloatArray
+    weights: FloatArray
+
+
 @cache
-def gauss_points(count: int) -> tuple[FloatArray, FloatArray]:
+def gauss_points(count: int) -> Quadrature:
     """Points and weights of Gauss-Legendre quadrature on [0, 1].
 
     Parameters
@@ -19,15 +27,15 @@ def gauss_points(count: int) -> tuple[FloatArray, FloatArray]:
 
     Returns
     -------
-    points, weights : ndarray, shape (count,)
-        Dimensionless and read-only; the weights add up to 1.
+    Quadrature
+        Arrays of shape (count,), dimensionless and read-only; the weights add up to 1.
     """
     points, weights = leggauss(count)
-    return _read_only(0.5 * (points + 1.0)), _read_only(0.5 * weights)
+    return Quadrature(_read_only(0.5 * (points + 1.0)), _read_only(0.5 * weights))
 
 
 @cache
-def lobatto_points(count: int) -> tuple[FloatArray, FloatArray]:
+def lobatto_points(count: int) -> Quadrature:
     """Points and weights of Gauss-Lobatto quadrature on [0, 1], which has a point at either end.
 
     Parameters
@@ -38,13 +46,13 @@ def lobatto_points(count: int) -> tuple[FloatArray, FloatArray]:
 
     Returns
     -------
-    points, weights : ndarray, shape (count,)
-        Dimensionless and read-only; the weights add up to 1.
+    Quadrature
+        Arrays of shape (count,), dimensionless and read-only; the weights add up to 1.
     """
     polynomial = Legendre.basis(count - 1)
     points = np.concatenate([[-1.0], polynomial.deriv().roots().real, [1.0]])
     weights = 1.0 / (count * (count - 1) * polynomial(points) ** 2)
-    return _read_only(0.5 * (points + 1.0)), _read_only(weights)
+    return Quadrature(_read_only(0.5 * (points + 1.0)), _read_only(weights))
 
 
 def _read_only(values: FloatArray) -> FloatArray:

@@ -24,7 +24,7 @@ class ContactLaw(NamedTuple):
     """Whether friction turns the pulley with the arm R; False is the published rule, R - d."""
 
 
-class Wheel(NamedTuple):
+class PulleyState(NamedTuple):
     """A pulley at one instant, as the belt meets it."""
 
     center_x: float

@@ -3,7 +3,7 @@
 from math import sqrt
 from typing import NamedTuple
 
-from beltdyn.contact.law import Wheel
+from beltdyn.contact.law import PulleyState
 from beltdyn.kernel import kernel
 
 
@@ -24,7 +24,7 @@ class Approach(NamedTuple):
 
 
 @kernel
-def approach(x: float, y: float, velocity_x: float, velocity_y: float, wheel: Wheel) -> Approach:
+def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: PulleyState) -> Approach:
     """Place a centreline point against a pulley (Eqs. 18, 19 and 21).
 
     Parameters
@@ -33,16 +33,16 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, wheel: Wh
         Position r of the point, m.
     velocity_x, velocity_y
         Its velocity, m/s.
-    wheel
+    pulley
         The pulley, whose centre may move.
     """
-    dx, dy = x - wheel.center_x, y - wheel.center_y
-    vx, vy = velocity_x - wheel.velocity_x, velocity_y - wheel.velocity_y
+    dx, dy = x - pulley.center_x, y - pulley.center_y
+    vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
     return Approach(
         distance,
-        wheel.radius - distance,
+        pulley.radius - distance,
         nx,
         ny,
         nx * vx + ny * vy,
@@ -51,6 +51,6 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, wheel: Wh
 
 
 @kernel
-def slip_velocity(point: Approach, wheel: Wheel) -> float:
+def slip_velocity(point: Approach, pulley: PulleyState) -> float:
     """Slip velocity v_t = t . dr/dt - omega R (Eq. 22), m/s; published with R, not with the radius of the point."""
-    return point.circumferential - wheel.speed * wheel.radius
+    return point.circumferential - pulley.speed * pulley.radius

@@ -12,7 +12,7 @@ from which the variations of f_n n + f_t t and of the moment -rho f_t, or -R f_t
 from typing import NamedTuple
 
 from beltdyn.contact.friction import friction_force
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal_force import normal_force
 from beltdyn.contact.penetration import Approach, slip_velocity
 from beltdyn.contact.pulley_moment import moment_arm
@@ -53,21 +53,21 @@ class PointTangent(NamedTuple):
 
 
 @kernel
-def point_force(here: Approach, wheel: Wheel, law: ContactLaw) -> PointForce:
+def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointForce:
     """Contact force at a point.
 
     Parameters
     ----------
     here
         How the point stands and moves against the pulley.
-    wheel
+    pulley
         The pulley.
     law
         Contact constants.
     """
     normal, active = normal_force(here.penetration, -here.radial, law)
-    friction, by_slip, by_normal = friction_force(slip_velocity(here, wheel), normal, law)
-    arm, arm_slope = moment_arm(here, wheel, law)
+    friction, by_slip, by_normal = friction_force(slip_velocity(here, pulley), normal, law)
+    arm, arm_slope = moment_arm(here, pulley, law)
     return PointForce(
         normal,
         friction,

@@ -1,18 +1,18 @@
 """Moment of the contact forces on the pulley (Eq. 23)."""
 
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach
 from beltdyn.kernel import kernel
 
 
 @kernel
-def moment_arm(point: Approach, wheel: Wheel, law: ContactLaw) -> tuple[float, float]:
+def moment_arm(point: Approach, pulley: PulleyState, law: ContactLaw) -> tuple[float, float]:
     """Arm of friction about the pulley's centre, m, and its change with the distance of the point.
 
     The arm is R - d as published (Eq. 23), the distance of the point; or R, with which slip is taken (Eq. 22), so that
     friction can only lose energy: f_t v_t in place of f_t (v_t + omega d).
     """
-    return (wheel.radius, 0.0) if law.arm_to_rim else (point.distance, 1.0)
+    return (pulley.radius, 0.0) if law.arm_to_rim else (point.distance, 1.0)
 
 
 @kernel

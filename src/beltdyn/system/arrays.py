@@ -12,16 +12,9 @@ from typing import NamedTuple
 from beltdyn.ancf.section import Section
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
+from beltdyn.quadrature import Quadrature
 from beltdyn.records import Records, record
 from beltdyn.system.machine_arrays import Profiles, Torques
-
-
-class Quadrature(NamedTuple):
-    """Points and weights on [0, 1]."""
-
-    points: FloatArray
-    weights: FloatArray
-
 
 PULLEY = record(
     center="2f8",  # m; where a tensioner carries the pulley, its place at coordinate zero

@@ -11,34 +11,35 @@ from beltdyn.ancf.elastic_force import ELASTIC_WORKSPACE, element_force
 from beltdyn.ancf.material_damping import DAMPING_WORKSPACE, damping_force
 from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import chain_force
-from beltdyn.contact.contact_force import CONTACT_WORKSPACE, contact_force
+from beltdyn.contact.bezier import Curve
+from beltdyn.contact.contact_force import contact_force, contact_record
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import Loads, RingMatrix, System
-from beltdyn.system.carriage import carriage_of, couple_carriage, keep_drift
+from beltdyn.system.carriage import carriage_of, couple_carriage, drift_record, keep_drift
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
+from beltdyn.system.pulley_state import law_of, pulley_state
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
-from beltdyn.system.wheels import law_of, wheel_of
-
-ASSEMBLY_WORKSPACE = record(
-    elastic=ELASTIC_WORKSPACE,
-    damping=DAMPING_WORKSPACE,
-    contact=CONTACT_WORKSPACE,
-    coordinates="(3,12)f8",  # position, velocity and acceleration of one element
-    control="(4,2)f8",  # control points of a curve of the centreline
-    control_velocity="(4,2)f8",
-    gradient="12f8",  # residual of one element
-    tangent="(12,12)f8",  # its tangent
-    drift="9f8",  # force on the four vectors and moment on the pulley, by a change of its centre's velocity
-)
-"""Scratch arrays of `assemble`, made once by `assembly_workspace`."""
 
 
-def assembly_workspace() -> np.record:
-    """Make the scratch arrays of `assemble`."""
-    return blank(ASSEMBLY_WORKSPACE)
+def assembly_workspace(system: System) -> np.record:
+    """Make the scratch arrays of `assemble` for a system."""
+    count, vectors = system.control.shape[2:]
+    return blank(
+        record(
+            elastic=ELASTIC_WORKSPACE,
+            damping=DAMPING_WORKSPACE,
+            contact=contact_record(count, vectors),
+            coordinates="(3,12)f8",  # position, velocity and acceleration of one element
+            control=f"({count},2)f8",  # control points of a curve of the centreline
+            control_velocity=f"({count},2)f8",
+            gradient="12f8",  # residual of one element
+            tangent="(12,12)f8",  # its tangent
+            drift=drift_record(vectors),  # by a change of the velocity of a pulley's centre
+        )
+    )
 
 
 def border_size(system: System) -> int:
@@ -183,18 +184,15 @@ def fill_control(system: System, element: int, curve: int, coordinates: FloatArr
         Which curve of which element.
     coordinates : ndarray, shape (12,)
         Nodal coordinates (or velocities) of the element.
-    points : ndarray, shape (4, 2)
+    points : ndarray, shape (n, 2)
         Overwritten.
     """
     control, vectors = system.control[element, curve], system.vectors
-    for a in range(4):
+    for a in range(points.shape[0]):
         for axis in range(2):
-            points[a, axis] = (
-                control[a, 0] * coordinates[vectors[0] + axis]
-                + control[a, 1] * coordinates[vectors[1] + axis]
-                + control[a, 2] * coordinates[vectors[2] + axis]
-                + control[a, 3] * coordinates[vectors[3] + axis]
-            )
+            points[a, axis] = 0.0
+            for b in range(len(vectors)):
+                points[a, axis] += control[a, b] * coordinates[vectors[b] + axis]
 
 
 @kernel(inline=True)
@@ -215,22 +213,24 @@ def _contact(
     fill_control(system, element, curve, work.coordinates[0], work.control)
     fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
     bodies, wanted = system.bodies, by_position != 0.0 or by_velocity != 0.0
+    piece = Curve(
+        work.control,
+        work.control_velocity,
+        system.control[element, curve],
+        system.length[element] / system.control.shape[1],
+    )
     for p in range(system.pulleys.size):
-        wheel = wheel_of(system, p, position, velocity)
-        if out_of_reach(work.control, wheel):
+        pulley = pulley_state(system, p, position, velocity)
+        if out_of_reach(work.control, pulley):
             continue
         carriage = carriage_of(system, p, position, velocity)
         rounds = 2 if carriage.unknown >= 0 and by_position != 0.0 and carriage.turning else 1
         for last in range(2 - rounds, 2):
             totals = contact_force(
-                work.control,
-                work.control_velocity,
-                system.control[element, curve],
-                wheel,
+                piece,
+                pulley,
                 law_of(system, p),
-                system.length[element] / system.control.shape[1],
-                system.contact.points,
-                system.contact.weights,
+                system.contact,
                 by_position if last == 1 else 0.0,
                 by_velocity if last == 1 else 1.0,
                 work.contact,
@@ -243,7 +243,7 @@ def _contact(
             matrix.corner[bodies[p].unknown, bodies[p].unknown] -= by_velocity * totals.moment_by_speed
             _couple(system, element, node_j, bodies[p].unknown, by_velocity, work.contact, matrix)
         if carriage.unknown >= 0 and wanted:
-            drift = by_position if rounds == 2 else 0.0
+            drifting = by_position if rounds == 2 else 0.0
             couple_carriage(
                 system,
                 element,
@@ -251,7 +251,7 @@ def _contact(
                 bodies[p].unknown,
                 carriage,
                 by_velocity,
-                drift,
+                drifting,
                 work.contact,
                 work.drift,
                 matrix,
@@ -262,13 +262,13 @@ def _contact(
 def _take_contact(system: System, wanted: bool, work: np.record) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
     contact, tangent = work.contact, work.tangent
-    for a in range(4):
+    for a in range(len(system.vectors)):
         row = system.vectors[a]
-        work.gradient[row] -= contact.force[2 * a]
-        work.gradient[row + 1] -= contact.force[2 * a + 1]
+        work.gradient[row] -= contact.force[a, 0]
+        work.gradient[row + 1] -= contact.force[a, 1]
         if not wanted:
             continue
-        for b in range(4):
+        for b in range(len(system.vectors)):
             column = system.vectors[b]
             tangent[row, column] -= contact.xx[a, b]
             tangent[row, column + 1] -= contact.xy[a, b]
@@ -288,12 +288,12 @@ def _couple(
 ) -> None:
     """Coupling of the element with the speed of a free pulley."""
     dof = len(system.scale)
-    for a in range(4):
+    for a in range(len(system.vectors)):
         first = system.vectors[a]
         node, c = (node_i, first) if first < dof else (node_j, first - dof)
         for axis in range(2):
-            matrix.column[node, c + axis, unknown] -= by_velocity * contact.by_speed[2 * a + axis]
-            matrix.row[node, unknown, c + axis] -= contact.moment[2 * a + axis]
+            matrix.column[node, c + axis, unknown] -= by_velocity * contact.by_speed[a, axis]
+            matrix.row[node, unknown, c + axis] -= contact.moment[a, axis]
 
 
 @kernel(inline=True)

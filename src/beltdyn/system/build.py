@@ -14,9 +14,9 @@ from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.layout import radii as effective_radii
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.tensioner import AnyTensioner
-from beltdyn.quadrature import gauss_points, lobatto_points
+from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import Records, records
-from beltdyn.system.arrays import BODY, PULLEY, Quadrature, Supports, System
+from beltdyn.system.arrays import BODY, PULLEY, Supports, System
 from beltdyn.system.build_machines import (
     body_inertias,
     machine_arrays,
@@ -168,8 +168,8 @@ def belt_section(belt: Belt) -> Section:
 def _elastic_points(belt: Belt) -> Quadrature:
     """Where the elastic forces of an element are evaluated."""
     if belt.integration == "reduced":
-        return Quadrature(*lobatto_points(_REDUCED))
-    return Quadrature(*gauss_points(belt.quadrature_points))
+        return lobatto_points(_REDUCED)
+    return gauss_points(belt.quadrature_points)
 
 
 def contact_points(contact: Contact | None) -> Quadrature:
@@ -186,10 +186,10 @@ def contact_points(contact: Contact | None) -> Quadrature:
         Points and weights on [0, 1].
     """
     if contact is None:
-        return Quadrature(*gauss_points(1))
+        return gauss_points(1)
     if contact.sampling == "nodal":
-        return Quadrature(*lobatto_points(2))
-    return Quadrature(*gauss_points(contact.quadrature_points))
+        return lobatto_points(2)
+    return gauss_points(contact.quadrature_points)
 
 
 def _contact_law(contact: Contact | None) -> ContactLaw:

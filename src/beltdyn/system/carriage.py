@@ -2,7 +2,7 @@
 
 Contact depends on where the belt is and how it moves against the centre.  With the centre c(q), a change of the
 tensioner's coordinate acts like the opposite shift of the whole curve by c' dq, and like a change of its velocity by
--(c' dq/dt + c'' dq/dt dq).  With T the tangent of the forces F on the four vectors, w what a shift does to these
+-(c' dq/dt + c'' dq/dt dq).  With T the tangent of the forces F on the vectors, w what a shift does to these
 vectors, and hub force -sum_a w_a F_a:
 
     dF_a/dq = -sum_b T_ab w_b c' - D_a,    D_a = sum_b dF_a/dv_b w_b c'' dq/dt.
@@ -14,9 +14,10 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.records import record
 from beltdyn.system.arrays import RingMatrix, System
+from beltdyn.system.pulley_state import tensioner_coordinate
 from beltdyn.system.tensioner import tensioner_place
-from beltdyn.system.wheels import tensioner_coordinate
 
 
 class Carriage(NamedTuple):
@@ -34,6 +35,11 @@ class Carriage(NamedTuple):
     """Whether c' changes."""
 
 
+def drift_record(vectors: int) -> np.dtype[np.void]:
+    """Kind of what a drift of the centre's velocity does: forces on the vectors (N) and moment on the pulley (N m)."""
+    return record(force=f"({vectors},2)f8", moment="f8")
+
+
 @kernel
 def carriage_of(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> Carriage:
     """The motion of a pulley's centre at a state of shape (6 N + D,)."""
@@ -48,8 +54,8 @@ def carriage_of(system: System, pulley: int, position: FloatArray, velocity: Flo
 
 
 @kernel
-def keep_drift(system: System, carriage: Carriage, contact: np.record, drift: FloatArray) -> None:
-    """Overwrite drift by D and by its counterpart for the moment.
+def keep_drift(system: System, carriage: Carriage, contact: np.record, drift: np.record) -> None:
+    """Overwrite drift by D and by its counterpart for the moment on the pulley.
 
     Parameters
     ----------
@@ -57,21 +63,21 @@ def keep_drift(system: System, carriage: Carriage, contact: np.record, drift: Fl
         The system, and how the centre moves.
     contact
         With the derivatives of force and moment with respect to the velocity.
-    drift : ndarray, shape (9,)
-        Forces on the four vectors, x and y in turn, then the moment on the pulley.
+    drift
+        A row of the kind `drift_record`.
     """
     x, y = carriage.drift_x, carriage.drift_y
-    drift[8] = 0.0
-    for a in range(4):
-        drift[2 * a], drift[2 * a + 1] = _along(system, contact, a, x, y)
-        drift[8] += system.shift[a] * (contact.moment[2 * a] * x + contact.moment[2 * a + 1] * y)
+    drift.moment = 0.0
+    for a in range(len(system.shift)):
+        drift.force[a, 0], drift.force[a, 1] = _along(system, contact, a, x, y)
+        drift.moment += system.shift[a] * (contact.moment[a, 0] * x + contact.moment[a, 1] * y)
 
 
 @kernel(inline=True)
 def _along(system: System, contact: np.record, a: int, x: float, y: float) -> tuple[float, float]:
     """Sum over b of T_ab w_b (x, y): what a shift of the curve does to the force on a vector."""
     fx = fy = 0.0
-    for b in range(4):
+    for b in range(len(system.shift)):
         weight = system.shift[b]
         fx += weight * (contact.xx[a, b] * x + contact.xy[a, b] * y)
         fy += weight * (contact.yx[a, b] * x + contact.yy[a, b] * y)
@@ -88,7 +94,7 @@ def couple_carriage(
     by_velocity: float,
     drifting: float,
     contact: np.record,
-    drift: FloatArray,
+    drift: np.record,
     matrix: RingMatrix,
 ) -> None:
     """Couple the tensioner's coordinate to the nodes of a curve and to the rim that they touch.
@@ -106,32 +112,32 @@ def couple_carriage(
     by_velocity
         Factor of the derivative with respect to velocity in the tangent.
     drifting
-        Factor of `drift`: that of the derivative with respect to position, zero where the drift is none.
+        Factor of the drift: that of the derivative with respect to position, zero where there is none.
     contact
         Forces with the tangent.
-    drift : ndarray, shape (9,)
+    drift
         From `keep_drift`.
     matrix
         Changed in place.
     """
     dof = len(system.scale)
     own, x, y = carriage.unknown, carriage.x, carriage.y
-    for a in range(4):
+    for a in range(len(system.vectors)):
         first, weight = system.vectors[a], system.shift[a]
         node, c = (node_i, first) if first < dof else (node_j, first - dof)
         fx, fy = _along(system, contact, a, x, y)
         if drifting != 0.0:
-            fx, fy = fx + drifting * drift[2 * a], fy + drifting * drift[2 * a + 1]
+            fx, fy = fx + drifting * drift.force[a, 0], fy + drifting * drift.force[a, 1]
         matrix.column[node, c, own] += fx
         matrix.column[node, c + 1, own] += fy
         matrix.corner[own, own] -= weight * (fx * x + fy * y)
-        for b in range(4):
+        for b in range(len(system.shift)):
             if system.shift[b] != 0.0:
                 matrix.row[node, own, c] += system.shift[b] * (contact.xx[b, a] * x + contact.yx[b, a] * y)
                 matrix.row[node, own, c + 1] += system.shift[b] * (contact.xy[b, a] * x + contact.yy[b, a] * y)
         if rim >= 0:
-            push = x * contact.by_speed[2 * a] + y * contact.by_speed[2 * a + 1]
+            push = x * contact.by_speed[a, 0] + y * contact.by_speed[a, 1]
             matrix.corner[own, rim] += by_velocity * weight * push
-            matrix.corner[rim, own] += weight * (x * contact.moment[2 * a] + y * contact.moment[2 * a + 1])
+            matrix.corner[rim, own] += weight * (x * contact.moment[a, 0] + y * contact.moment[a, 1])
     if rim >= 0 and drifting != 0.0:
-        matrix.corner[rim, own] += drifting * drift[8]
+        matrix.corner[rim, own] += drifting * drift.moment

@@ -4,6 +4,7 @@ import numpy as np
 
 from beltdyn.ancf.material_damping import damping_force
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
@@ -11,7 +12,7 @@ from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import fill_control
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.missed_action import Motion
-from beltdyn.system.wheels import law_of, wheel_of
+from beltdyn.system.pulley_state import law_of, pulley_state
 
 
 @kernel
@@ -147,21 +148,15 @@ def _add_contacts(
     loads: Loads,
 ) -> None:
     """Add the contact of a curve with all pulleys."""
+    piece = Curve(
+        work.control,
+        work.control_velocity,
+        system.control[element, curve],
+        system.length[element] / system.control.shape[1],
+    )
     for p in range(system.pulleys.size):
-        wheel = wheel_of(system, p, motion.position, motion.velocity)
-        if out_of_reach(work.control, wheel):
+        pulley = pulley_state(system, p, motion.position, motion.velocity)
+        if out_of_reach(work.control, pulley):
             continue
-        totals = contact_force(
-            work.control,
-            work.control_velocity,
-            system.control[element, curve],
-            wheel,
-            law_of(system, p),
-            system.length[element] / system.control.shape[1],
-            system.contact.points,
-            system.contact.weights,
-            0.0,
-            0.0,
-            work.contact,
-        )
+        totals = contact_force(piece, pulley, law_of(system, p), system.contact, 0.0, 0.0, work.contact)
         add_contact(loads, p, totals)

@@ -7,9 +7,9 @@ from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import POWERS, Loads, System
 from beltdyn.system.coupling import coupling_torque
+from beltdyn.system.pulley_state import tensioner_coordinate
 from beltdyn.system.shaft_torque import shaft_torque
 from beltdyn.system.tensioner import tensioner_force, tensioner_place
-from beltdyn.system.wheels import tensioner_coordinate
 
 
 def new_loads(system: System) -> Loads:

@@ -32,7 +32,7 @@ def new_equations(system: System) -> Equations:
         np.zeros((system.nodes, dof)),
         np.zeros(border),
         new_loads(system),
-        assembly_workspace(),
+        assembly_workspace(system),
     )
 
 

@@ -6,7 +6,6 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.contact_force import contact_workspace
-from beltdyn.contact.contact_zone import MAX_INTERVALS, zone_scratch
 from beltdyn.system.arrays import Loads, System
 from beltdyn.system.loads import new_loads
 
@@ -70,8 +69,6 @@ class Samples(NamedTuple):
     """Coordinates and velocities of one element, shape (2, 12)."""
     control: FloatArray
     control_velocity: FloatArray
-    intervals: FloatArray
-    pieces: FloatArray
     acceleration: FloatArray
     corner: FloatArray
     """No tangent, shape (0, 0)."""
@@ -111,6 +108,7 @@ def new_observations(system: System, count: int) -> Observations:
 def new_samples(system: System) -> Samples:
     """Make scratch arrays for a system."""
     points = system.length.size * system.control.shape[1] * system.contact.points.size
+    count, vectors = system.control.shape[2:]
     return Samples(
         tension=np.zeros(points),
         speed=np.zeros(points),
@@ -118,12 +116,10 @@ def new_samples(system: System) -> Samples:
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
         element=np.zeros((2, 2 * len(system.scale))),
-        control=np.zeros((4, 2)),
-        control_velocity=np.zeros((4, 2)),
-        intervals=np.zeros((MAX_INTERVALS, 2)),
-        pieces=zone_scratch(),
-        acceleration=np.zeros(system.first_body + system.bodies.size),
+        control=np.zeros((count, 2)),
+        control_velocity=np.zeros((count, 2)),
+        acceleration=np.zeros(len(system.scale) * system.nodes + system.bodies.size),
         corner=np.zeros((0, 0)),
-        contact=contact_workspace(),
+        contact=contact_workspace(count, vectors),
         loads=new_loads(system),
     )

@@ -9,10 +9,10 @@ from beltdyn.ancf.material_damping import damping_tension
 from beltdyn.ancf.strain_energy import axial_force
 from beltdyn.arrays import FloatArray
 from beltdyn.chain.chain_force import chain_energy
-from beltdyn.contact.bezier import bernstein, bernstein_rates, combine
+from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.kernel import kernel
@@ -21,8 +21,8 @@ from beltdyn.system.assembly import fill_control
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
+from beltdyn.system.pulley_state import law_of, pulley_state, tensioner_coordinate
 from beltdyn.system.tensioner import tensioner_place
-from beltdyn.system.wheels import law_of, tensioner_coordinate, wheel_of
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
@@ -142,9 +142,10 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
 @kernel(inline=True)
 def _stretch(system: System, samples: Samples, xi: float, length: float) -> tuple[float, float, float]:
     """Derivative of the centreline with respect to the belt coordinate, and the tension."""
-    weights = bernstein_rates(xi)
-    x, y = combine(samples.control, weights)
-    vx, vy = combine(samples.control_velocity, weights)
+    rates = samples.contact.rates
+    fill_bernstein_rates(xi, rates)
+    x, y = combine(samples.control, rates)
+    vx, vy = combine(samples.control_velocity, rates)
     square = length * length
     metric = (x * x + y * y) / square
     tension = axial_force(metric, system.section)
@@ -168,11 +169,11 @@ def _observe_tension(system: System, length: float, curve: int, samples: Samples
 @kernel(inline=True)
 def _observe_points(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
     """Places, tension and speed of the sampling points of a curve, as if they were free."""
-    count = system.contact.points.size
+    count, weights = system.contact.points.size, samples.contact.weights
     for point in range(count):
         row = curve * count + point
         xi = system.contact.points[point]
-        weights = bernstein(xi)
+        fill_bernstein(xi, weights)
         x, y = combine(samples.control, weights)
         vx, vy = combine(samples.control_velocity, weights)
         qx, qy, samples.tension[row] = _stretch(system, samples, xi, length)
@@ -196,56 +197,45 @@ def _observe_contact(
     k: int,
 ) -> None:
     """Contact of a curve as it moves the system and at its sampling points, and the angle over which it touches."""
-    intervals, number = samples.intervals, element * system.control.shape[1] + curve
+    zone, number = samples.contact.zone, element * system.control.shape[1] + curve
+    piece = Curve(samples.control, samples.control_velocity, system.control[element, curve], length)
     for p in range(system.pulleys.size):
-        wheel, law = wheel_of(system, p, position, velocity), law_of(system, p)
-        if out_of_reach(samples.control, wheel):
+        pulley, law = pulley_state(system, p, position, velocity), law_of(system, p)
+        if out_of_reach(samples.control, pulley):
             continue
-        totals = contact_force(
-            samples.control,
-            samples.control_velocity,
-            system.control[element, curve],
-            wheel,
-            law,
-            length,
-            system.contact.points,
-            system.contact.weights,
-            0.0,
-            0.0,
-            samples.contact,
-        )
-        add_contact(samples.loads, p, totals)
-        for interval in range(touching_intervals(samples.control, wheel, samples.pieces, intervals)):
-            start, end = intervals[interval]
-            result.wrap_angle[k, p] += _angle(samples.control, wheel, start, end)
+        add_contact(samples.loads, p, contact_force(piece, pulley, law, system.contact, 0.0, 0.0, samples.contact))
+        for interval in range(touching_intervals(samples.control, pulley, zone)):
+            start, end = zone.intervals[interval]
+            result.wrap_angle[k, p] += _angle(samples, pulley, start, end)
             samples.nearest[p] = number * system.contact.points.size + _nearest_point(system, 0.5 * (start + end))
-        _touch_points(system, number, p, wheel, law, samples, result, k)
+        _touch_points(system, number, p, pulley, law, samples, result, k)
 
 
 @kernel(inline=True)
 def _touch_points(
     system: System,
     curve: int,
-    pulley: int,
-    wheel: Wheel,
+    number: int,
+    pulley: PulleyState,
     law: ContactLaw,
     samples: Samples,
     result: Observations,
     k: int,
 ) -> None:
     """Contact at the sampling points of a curve that touch a pulley."""
-    count = system.contact.points.size
+    count, weights = system.contact.points.size, samples.contact.weights
     for point in range(count):
         row = curve * count + point
-        vx, vy = combine(samples.control_velocity, bernstein(system.contact.points[point]))
+        fill_bernstein(system.contact.points[point], weights)
+        vx, vy = combine(samples.control_velocity, weights)
         x, y = result.contact_position[k, row, 0], result.contact_position[k, row, 1]
-        here = approach(x, y, vx, vy, wheel)
+        here = approach(x, y, vx, vy, pulley)
         if here.penetration >= 0.0:
-            force = point_force(here, wheel, law)
-            result.contact_pulley[k, row] = pulley
+            force = point_force(here, pulley, law)
+            result.contact_pulley[k, row] = number
             result.normal_force[k, row] = force.normal
             result.friction_force[k, row] = force.friction
-            result.slip_velocity[k, row] = slip_velocity(here, wheel)
+            result.slip_velocity[k, row] = slip_velocity(here, pulley)
 
 
 @kernel(inline=True)
@@ -259,11 +249,14 @@ def _nearest_point(system: System, xi: float) -> int:
 
 
 @kernel(inline=True)
-def _angle(control: FloatArray, wheel: Wheel, start: float, end: float) -> float:
+def _angle(samples: Samples, pulley: PulleyState, start: float, end: float) -> float:
     """Angle at the pulley's centre between two points of the centreline, rad."""
-    ax, ay = combine(control, bernstein(start))
-    bx, by = combine(control, bernstein(end))
-    ax, ay, bx, by = ax - wheel.center_x, ay - wheel.center_y, bx - wheel.center_x, by - wheel.center_y
+    control, weights = samples.control, samples.contact.weights
+    fill_bernstein(start, weights)
+    ax, ay = combine(control, weights)
+    fill_bernstein(end, weights)
+    bx, by = combine(control, weights)
+    ax, ay, bx, by = ax - pulley.center_x, ay - pulley.center_y, bx - pulley.center_x, by - pulley.center_y
     return abs(atan2(ax * by - ay * bx, ax * bx + ay * by))
 
 

@@ -1,4 +1,4 @@
-"""A pulley, both friction laws, and the control points of random belt-like curves."""
+"""A pulley, both friction laws, and the control points of random belt-like curves of several degrees."""
 
 from collections.abc import Callable
 
@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import LAWS
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 
 
 @pytest.fixture(scope="session")
-def wheel() -> Wheel:
-    return Wheel(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0)
+def pulley() -> PulleyState:
+    return PulleyState(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0)
 
 
 @pytest.fixture(scope="session", params=range(len(LAWS)), ids=[law.name for law in LAWS])
@@ -23,14 +23,29 @@ def law(request: pytest.FixtureRequest) -> ContactLaw:
 
 
 @pytest.fixture(scope="session")
-def place() -> Callable[[Wheel, float, float], tuple[float, float]]:
+def place() -> Callable[[PulleyState, float, float], tuple[float, float]]:
     """Point at a penetration and an angle."""
 
-    def at(wheel: Wheel, penetration: float, angle: float) -> tuple[float, float]:
-        distance = wheel.radius - penetration
-        return wheel.center_x + distance * np.cos(angle), wheel.center_y + distance * np.sin(angle)
+    def at(pulley: PulleyState, penetration: float, angle: float) -> tuple[float, float]:
+        distance = pulley.radius - penetration
+        return pulley.center_x + distance * np.cos(angle), pulley.center_y + distance * np.sin(angle)
 
     return at
+
+
+@pytest.fixture(scope="session")
+def elevate() -> Callable[[FloatArray, int], FloatArray]:
+    """Write a curve of degree p (control points, or what makes them, in rows) as one of a higher degree."""
+
+    def raised(control: FloatArray, degree: int) -> FloatArray:
+        while len(control) <= degree:
+            count = len(control)
+            share = (np.arange(count + 1) / count)[:, None]
+            padded = np.vstack([control[:1], control, control[-1:]])
+            control = share * padded[:-1] + (1.0 - share) * padded[1:]
+        return control
+
+    return raised
 
 
 @pytest.fixture(scope="session")

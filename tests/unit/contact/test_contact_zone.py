@@ -9,24 +9,32 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import bernstein
-from beltdyn.contact.contact_zone import MAX_INTERVALS, out_of_reach, touching_intervals, zone_scratch
-from beltdyn.contact.law import Wheel
+from beltdyn.contact.bezier import fill_bernstein
+from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
+from beltdyn.contact.law import PulleyState
 
-UNIT = Wheel(0.0, 0.0, 1.0, 0.0)
+UNIT = PulleyState(0.0, 0.0, 1.0, 0.0)
 XI = np.linspace(0.0, 1.0, 2001)
-WEIGHTS = np.array([bernstein(xi) for xi in XI])
 GRAZING = 1e-6
 """Between two samples a curve of these lengths sags by less."""
 
 
+def points(control: FloatArray, places: FloatArray) -> FloatArray:
+    """Points of the curve, shape (k, 2)."""
+    weights = np.empty((places.size, len(control)))
+    for xi, row in zip(places, weights, strict=True):
+        fill_bernstein(xi, row)
+    return np.asarray(weights @ control)
+
+
 def overlap(control: FloatArray) -> FloatArray:
-    return np.asarray(1.0 - np.linalg.norm(WEIGHTS @ control, axis=1))
+    return np.asarray(1.0 - np.linalg.norm(points(control, XI), axis=1))
 
 
-def intervals(control: FloatArray, wheel: Wheel = UNIT) -> FloatArray:
-    found = np.zeros((MAX_INTERVALS, 2))
-    return found[: touching_intervals(control, wheel, zone_scratch(), found)]
+def intervals(control: FloatArray, pulley: PulleyState = UNIT) -> FloatArray:
+    zone = zone_scratch(len(control))
+    count = touching_intervals(control, pulley, zone)
+    return np.array(zone.intervals[:count])
 
 
 def assert_exact(control: FloatArray) -> None:
@@ -44,6 +52,23 @@ def test_intervals_hold_exactly_the_points_inside(belt_like: st.SearchStrategy[F
     assert_exact(data.draw(belt_like))
 
 
+@pytest.mark.parametrize("degree", [1, 2, 4, 5, 7])
+@given(seed=st.integers(0, 2**32 - 1), size=st.floats(0.1, 1.0))
+def test_intervals_of_curves_of_any_degree(degree: int, seed: int, size: float) -> None:
+    """Random curves that wind near the rim; the higher the degree, the more often they cross it."""
+    random = np.random.default_rng(seed)
+    begin, end = np.array([1.0, 0.0]) + size * random.normal(size=(2, 2))
+    chord = np.linspace(begin, end, degree + 1)
+    assert_exact(chord + size * random.normal(size=chord.shape))
+
+
+@given(st.data())
+def test_a_curve_of_a_higher_degree_touches_at_the_same_places(
+    belt_like: st.SearchStrategy[FloatArray], elevate: Callable[[FloatArray, int], FloatArray], data: Any
+) -> None:
+    assert_exact(elevate(data.draw(belt_like), 5))
+
+
 def test_an_element_that_begins_along_the_rim_and_dips_out_of_it(make_curve: Callable[..., FloatArray]) -> None:
     control = make_curve(0.125, 1.0, 0.0, 0.75, 0.125, 0.625)  # overlap and its slope begin at zero, up to rounding
     assert 1e-5 < -overlap(control).min() < 1e-4
@@ -55,8 +80,8 @@ def test_inner_ends_lie_on_the_pulley(belt_like: st.SearchStrategy[FloatArray], 
     control = data.draw(belt_like)
     ends = intervals(control).ravel()
     assert np.all(np.diff(ends) >= 0.0)
-    points = np.array([bernstein(xi) for xi in ends if 0.0 < xi < 1.0]).reshape(-1, 4) @ control
-    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 1.0, atol=1e-12)  # resolution of the roots
+    on_rim = points(control, ends[(ends > 0.0) & (ends < 1.0)])
+    np.testing.assert_allclose(np.linalg.norm(on_rim, axis=1), 1.0, atol=1e-12)  # resolution of the roots
 
 
 @given(st.lists(st.floats(-1.5, 1.5), min_size=8, max_size=8), st.floats(0.0, 3.0))
@@ -91,7 +116,7 @@ def test_whole_element(shift: float, expected: Any) -> None:
 
 def test_position_and_size_of_the_pulley_do_not_matter() -> None:
     control = np.stack([np.linspace(-1.5, 1.5, 4), np.full(4, 0.6)], axis=1)
-    moved = intervals(0.01 * control + [3.0, -4.0], Wheel(3.0, -4.0, 0.01, 50.0))
+    moved = intervals(0.01 * control + [3.0, -4.0], PulleyState(3.0, -4.0, 0.01, 50.0))
     np.testing.assert_allclose(
         moved, intervals(control), atol=1e-10
     )  # cancellation in coordinates 400 times the radius

@@ -7,42 +7,42 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.law import Wheel
+from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 
-Place = Callable[[Wheel, float, float], tuple[float, float]]
+Place = Callable[[PulleyState, float, float], tuple[float, float]]
 
 
 @given(st.floats(-0.05, 0.05), st.floats(-7.0, 7.0), st.floats(-9.0, 9.0), st.floats(-9.0, 9.0))
 def test_frame_of_a_point(
-    wheel: Wheel, place: Place, penetration: float, angle: float, radial: float, around: float
+    pulley: PulleyState, place: Place, penetration: float, angle: float, radial: float, around: float
 ) -> None:
     normal, tangent = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-    x, y = place(wheel, penetration, angle)
+    x, y = place(pulley, penetration, angle)
     velocity_x, velocity_y = radial * normal + around * tangent
-    here = approach(x, y, velocity_x, velocity_y, wheel)
+    here = approach(x, y, velocity_x, velocity_y, pulley)
     rounding = 1e-13
     assert here.penetration == pytest.approx(penetration, abs=rounding)
-    assert here.distance == pytest.approx(wheel.radius - penetration, abs=rounding)
+    assert here.distance == pytest.approx(pulley.radius - penetration, abs=rounding)
     np.testing.assert_allclose([here.normal_x, here.normal_y], normal, atol=rounding)
     np.testing.assert_allclose([here.radial, here.circumferential], [radial, around], atol=20 * rounding)
 
 
-def test_penetration_grows_against_the_radial_velocity(wheel: Wheel, place: Place) -> None:
-    x, y = place(wheel, 1e-3, 0.4)
+def test_penetration_grows_against_the_radial_velocity(pulley: PulleyState, place: Place) -> None:
+    x, y = place(pulley, 1e-3, 0.4)
     velocity, step = (0.3, -0.8), 1e-6
     before, after = (
-        approach(x + s * velocity[0], y + s * velocity[1], *velocity, wheel).penetration for s in (-step, step)
+        approach(x + s * velocity[0], y + s * velocity[1], *velocity, pulley).penetration for s in (-step, step)
     )
-    assert (after - before) / (2 * step) == pytest.approx(-approach(x, y, *velocity, wheel).radial, rel=1e-8)
+    assert (after - before) / (2 * step) == pytest.approx(-approach(x, y, *velocity, pulley).radial, rel=1e-8)
 
 
-def test_a_rim_point_that_turns_with_the_pulley_does_not_slip(wheel: Wheel, place: Place) -> None:
-    x, y = place(wheel, 0.0, 2.0)
-    velocity = -wheel.speed * (y - wheel.center_y), wheel.speed * (x - wheel.center_x)
-    assert slip_velocity(approach(x, y, *velocity, wheel), wheel) == pytest.approx(0.0, abs=1e-14)
+def test_a_rim_point_that_turns_with_the_pulley_does_not_slip(pulley: PulleyState, place: Place) -> None:
+    x, y = place(pulley, 0.0, 2.0)
+    velocity = -pulley.speed * (y - pulley.center_y), pulley.speed * (x - pulley.center_x)
+    assert slip_velocity(approach(x, y, *velocity, pulley), pulley) == pytest.approx(0.0, abs=1e-14)
 
 
-def test_slip_is_measured_against_the_rim_at_any_depth(wheel: Wheel, place: Place) -> None:
-    here = approach(*place(wheel, 0.02, 2.0), 0.0, 0.0, wheel)
-    assert slip_velocity(here, wheel) == -wheel.speed * wheel.radius
+def test_slip_is_measured_against_the_rim_at_any_depth(pulley: PulleyState, place: Place) -> None:
+    here = approach(*place(pulley, 0.02, 2.0), 0.0, 0.0, pulley)
+    assert slip_velocity(here, pulley) == -pulley.speed * pulley.radius

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach, approach
 from beltdyn.contact.point_force import point_force, point_tangent
 from beltdyn.contact.pulley_moment import pulley_moment
 
-Place = Callable[[Wheel, float, float], tuple[float, float]]
+Place = Callable[[PulleyState, float, float], tuple[float, float]]
 CASES = {
     "creeping": (1e-3, 0.5, (0.1, 0.02)),
     "sliding": (1e-3, 2.0, (3.0, -2.0)),
@@ -22,10 +22,10 @@ CASES = {
 
 
 @pytest.fixture(params=list(CASES.values()), ids=list(CASES))
-def state(request: pytest.FixtureRequest, wheel: Wheel, place: Place) -> FloatArray:
+def state(request: pytest.FixtureRequest, pulley: PulleyState, place: Place) -> FloatArray:
     """Position and velocity of a point, shape (4,)."""
     penetration, angle, velocity = request.param
-    return np.array([*place(wheel, penetration, angle), *velocity])
+    return np.array([*place(pulley, penetration, angle), *velocity])
 
 
 @pytest.fixture(params=[(False, False), (True, False), (False, True)], ids=["no_pull", "published", "rim"])
@@ -35,25 +35,25 @@ def every_law(request: pytest.FixtureRequest, law: ContactLaw) -> ContactLaw:
     return law._replace(may_pull=may_pull, arm_to_rim=arm_to_rim)
 
 
-def point(state: FloatArray, wheel: Wheel) -> Approach:
+def point(state: FloatArray, pulley: PulleyState) -> Approach:
     x, y, velocity_x, velocity_y = state
-    return approach(x, y, velocity_x, velocity_y, wheel)
+    return approach(x, y, velocity_x, velocity_y, pulley)
 
 
-def act(state: FloatArray, wheel: Wheel, law: ContactLaw) -> FloatArray:
+def act(state: FloatArray, pulley: PulleyState, law: ContactLaw) -> FloatArray:
     """Force and moment."""
-    here = point(state, wheel)
-    force = point_force(here, wheel, law)
+    here = point(state, pulley)
+    force = point_force(here, pulley, law)
     return np.array([force.x, force.y, pulley_moment(force.arm, force.friction)])
 
 
-def difference(state: FloatArray, change: FloatArray, wheel: Wheel, law: ContactLaw) -> FloatArray:
-    return np.asarray((act(state + change, wheel, law) - act(state - change, wheel, law)) / 2)
+def difference(state: FloatArray, change: FloatArray, pulley: PulleyState, law: ContactLaw) -> FloatArray:
+    return np.asarray((act(state + change, pulley, law) - act(state - change, pulley, law)) / 2)
 
 
-def test_force_is_made_of_normal_and_friction(state: FloatArray, wheel: Wheel, every_law: ContactLaw) -> None:
-    here = point(state, wheel)
-    force = point_force(here, wheel, every_law)
+def test_force_is_made_of_normal_and_friction(state: FloatArray, pulley: PulleyState, every_law: ContactLaw) -> None:
+    here = point(state, pulley)
+    force = point_force(here, pulley, every_law)
     normal, tangent = (here.normal_x, here.normal_y), (-here.normal_y, here.normal_x)
     assert force.x * normal[0] + force.y * normal[1] == pytest.approx(force.normal, abs=1e-10)
     assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(force.friction, abs=1e-10)
@@ -62,27 +62,27 @@ def test_force_is_made_of_normal_and_friction(state: FloatArray, wheel: Wheel, e
 
 @pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (0.0, 1.0), (1.0, 250.0)])
 def test_tangent(
-    state: FloatArray, wheel: Wheel, every_law: ContactLaw, by_position: float, by_velocity: float
+    state: FloatArray, pulley: PulleyState, every_law: ContactLaw, by_position: float, by_velocity: float
 ) -> None:
-    here = point(state, wheel)
-    tangent = point_tangent(here, point_force(here, wheel, every_law), every_law, by_position, by_velocity)
+    here = point(state, pulley)
+    tangent = point_tangent(here, point_force(here, pulley, every_law), every_law, by_position, by_velocity)
     columns, step = [], 1e-9 if by_position else 1e-6
     for axis in range(2):
         change = np.zeros(4)
         change[axis], change[2 + axis] = step * by_position, step * by_velocity
-        columns.append(difference(state, change, wheel, every_law) / step)
+        columns.append(difference(state, change, pulley, every_law) / step)
     given = [[tangent.xx, tangent.xy], [tangent.yx, tangent.yy], [tangent.moment_x, tangent.moment_y]]
     scale = every_law.stiffness * by_position + every_law.damping * by_velocity
     np.testing.assert_allclose(given, np.array(columns).T, atol=1e-6 * scale)  # rounding of 1e3 N/m over the step
 
 
 def test_tangent_with_respect_to_the_speed_of_the_pulley(
-    state: FloatArray, wheel: Wheel, every_law: ContactLaw
+    state: FloatArray, pulley: PulleyState, every_law: ContactLaw
 ) -> None:
-    here = point(state, wheel)
-    force = point_force(here, wheel, every_law)
-    by_speed = -force.by_slip * wheel.radius
-    faster, slower = (act(state, wheel._replace(speed=wheel.speed + s), every_law) for s in (1e-5, -1e-5))
+    here = point(state, pulley)
+    force = point_force(here, pulley, every_law)
+    by_speed = -force.by_slip * pulley.radius
+    faster, slower = (act(state, pulley._replace(speed=pulley.speed + s), every_law) for s in (1e-5, -1e-5))
     expected = np.array([-here.normal_y, here.normal_x, -force.arm]) * by_speed
     np.testing.assert_allclose(
         (faster - slower) / 2e-5, expected, atol=1e-6 * every_law.creep

@@ -1,7 +1,7 @@
 """Pulleys as contact meets them at a state: turning, and moving where a tensioner carries them."""
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import System
 from beltdyn.system.tensioner import tensioner_place
@@ -14,7 +14,7 @@ def tensioner_coordinate(system: System, tensioner: int) -> int:
 
 
 @kernel
-def wheel_of(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> Wheel:
+def pulley_state(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> PulleyState:
     """A pulley at a state.
 
     Parameters
@@ -30,10 +30,10 @@ def wheel_of(system: System, pulley: int, position: FloatArray, velocity: FloatA
     carrier = item.carrier
     speed = velocity[system.first_body + pulley]
     if carrier < 0:
-        return Wheel(item.center[0], item.center[1], item.radius, speed, 0.0, 0.0)
+        return PulleyState(item.center[0], item.center[1], item.radius, speed, 0.0, 0.0)
     at = tensioner_coordinate(system, carrier)
     x, y, dx, dy, _, _ = tensioner_place(system.tensioners, carrier, position[at])
-    return Wheel(x, y, item.radius, speed, velocity[at] * dx, velocity[at] * dy)
+    return PulleyState(x, y, item.radius, speed, velocity[at] * dx, velocity[at] * dy)
 
 
 @kernel
