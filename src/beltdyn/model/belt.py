@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import pi, sin
 from typing import Any, Literal, Self
 
-from pydantic import ConfigDict, Field, ValidationInfo, model_validator
+from pydantic import ConfigDict, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
@@ -24,7 +24,7 @@ class Belt(Part):
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
     or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is None until the belt is part
-    of a drive, which computes it.
+    of a drive, which computes it; copies of that belt (`replace`) ask for the tension again.
 
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
@@ -83,6 +83,7 @@ class Belt(Part):
     quadrature_points: Count = Field(
         4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
     )
+    _given: Self | None = PrivateAttr(None)
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
@@ -123,6 +124,46 @@ class Belt(Part):
                 f"elements is a multiple of {_GROUP}, at least {fewest}. Choose {choice}"
             )
         return self
+
+    @property
+    def given(self) -> Self:
+        """The belt as it was given, where a drive computed its length, or itself."""
+        return self if self._given is None else self._given
+
+    def replace(self, **changes: Any) -> Self:
+        """Make a copy with some values changed, and validate it; a tension that was asked for is asked for again.
+
+        Parameters
+        ----------
+        **changes
+            The constructor's arguments that differ. A `length` takes the place of an `installed_tension`.
+
+        Returns
+        -------
+        Belt
+
+        Raises
+        ------
+        ModelError
+            If the changed belt is not valid.
+        """
+        if self._given is None or ("length" in changes and self._given.length is None):
+            return super().replace(**changes)
+        return self._given.replace(**changes)
+
+    def definite(self, length: float, *, found: bool = False) -> Self:
+        """Make a copy of a certain length, which has its tension from that.
+
+        Parameters
+        ----------
+        length : float
+            m.
+        found : bool
+            Whether it is the length that gives the tension asked for, and not an estimate: copies then keep it.
+        """
+        belt = self.model_copy(update={"length": length, "installed_tension": None})
+        belt._given = None if found or self.installed_tension is None else self
+        return belt
 
     def offset(self, side: Side) -> float:
         """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""

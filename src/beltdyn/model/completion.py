@@ -89,7 +89,7 @@ def complete(
     _check_rest(given, rest)
     length = rest.length if belt.length is None else belt.length
     definite = given._replace(
-        belt=belt.model_copy(update={"length": length, "installed_tension": None}),
+        belt=belt.definite(length),
         contact=contact.model_copy(update={"stiffness": rest.stiffness, "allowed_penetration": None}),
     )
     return definite._asdict()

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
@@ -86,6 +86,33 @@ class Drive(Part):
 
         return drive_html(self)
 
+    def replace(self, **changes: Any) -> Self:
+        """Make a copy with some values changed, and validate it.
+
+        A tension that was asked for is asked for again, with the length or the take-up computed anew; the drive of a
+        run keeps the length that was found for it.
+
+        Parameters
+        ----------
+        **changes
+            The constructor's arguments that differ.
+
+        Returns
+        -------
+        Drive
+
+        Raises
+        ------
+        ModelError
+            If the changed drive is not valid.
+
+        Examples
+        --------
+        >>> drive.replace(simulation=drive.simulation.replace(duration=0.5)).simulation.duration
+        0.5
+        """
+        return super().replace(**{"belt": self.belt.given} | changes)
+
     def carried(self, tensioner: AnyTensioner) -> int:
         """Tell the number of the pulley that a tensioner carries."""
         return [pulley.name for pulley in self.pulleys].index(tensioner.pulley)
@@ -119,12 +146,12 @@ class Drive(Part):
         ModelError
             If no such belt can run around the pulleys.
         """
-        belt, pulleys = self.belt, self.pulleys
+        pulleys, length = self.pulleys, self.belt.length
         if self._length_given:
             pulleys = take_up(pulleys, self.tensioners, self.path, distance)
         else:
-            belt = belt.model_copy(update={"length": belt.length - distance})
-        drive = self.replace(belt=belt, pulley=pulleys)
+            length -= distance
+        drive = self.replace(belt=self.belt.definite(length, found=True), pulley=pulleys)
         drive._installed_tension, drive._length_given = self._installed_tension, self._length_given
         drive._tightened = True
         return drive

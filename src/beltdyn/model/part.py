@@ -69,8 +69,13 @@ class Part(BaseModel):
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """The constructor's arguments that make this part."""
-        return {field.alias or name: getattr(self, name) for name, field in type(self).model_fields.items()}
+        """The constructor's arguments that make this part, without those that are left open."""
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        return {
+            field.alias or name: values[name]
+            for name, field in type(self).model_fields.items()
+            if not (values[name] is None and field.default is None)
+        }
 
     def replace(self, **changes: Any) -> Self:
         """Make a copy with some values changed, and validate it.

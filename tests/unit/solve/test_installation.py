@@ -133,6 +133,27 @@ def test_a_run_and_its_file_have_the_length_that_was_found(tmp_path: Any) -> Non
     assert again.drive.belt.length == run.drive.belt.length
 
 
+def test_a_changed_drive_asks_for_the_tension_again() -> None:
+    """Bending makes 26 N of 226 N with the length of the closed form, which copies of the drive had."""
+    drive = BENDING["EI 0.03"](24)
+    finer = drive.replace(belt=drive.belt.replace(elements=48))
+    for changed in (finer, drive.replace(simulation=drive.simulation.replace(duration=2e-3)), drive.replace()):
+        assert changed.installed_tension == 200.0
+        assert bring_to_rest(changed).tension == pytest.approx(200.0, rel=ASKED)
+    tighter = drive.replace(belt=drive.belt.replace(installed_tension=400.0))
+    assert bring_to_rest(tighter).tension == pytest.approx(400.0, rel=ASKED)
+
+
+def test_a_length_takes_the_place_of_the_tension() -> None:
+    """Also where it is that of a run's drive, which keeps what was found for it."""
+    drive = BENDING["EI 0.03"](24)
+    assert drive.replace(belt=drive.belt.replace(length=0.71)).installed_tension is None
+    found = bring_to_rest(drive).drive
+    same = found.replace(belt=found.belt.replace(quadrature_points=4))
+    assert same.installed_tension is None
+    assert same.belt.length == found.belt.length
+
+
 def test_a_drive_travels_with_the_tension_that_is_asked_for() -> None:
     """To other processes, as in sweeps, and back: with the estimate of its length alone the tension would be missed."""
     drive = BENDING["EI 0.03"](24)

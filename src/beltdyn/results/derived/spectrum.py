@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.schema import PASS_BAND
@@ -33,7 +33,7 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     Parameters
     ----------
     values : DataArray
-        A variable whose first dimension is time; instants between which it is interpolated if they are uneven.
+        A variable whose first dimension is time; it is interpolated if its instants are uneven.
     window : str
         Name of a window of `scipy.signal.get_window`.
 
@@ -46,11 +46,17 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     Raises
     ------
     ModelError
-        If there are too few outputs.
+        If there are too few outputs, or the variable is unknown for a time.
     """
     from scipy.signal import periodogram
 
     time, even = _even(instants_of(values), values.values)
+    unknown = time[~np.isfinite(even.reshape(len(even), -1)).all(axis=1)]
+    if unknown.size:
+        raise ModelError(
+            f"{values.attrs['long_name']} is unknown from t = {unknown[0]:.4g} s to {unknown[-1]:.4g} s, as where a "
+            "belt has left a pulley: there is no spectrum over that. Select a time before or after."
+        )
     rate = (len(time) - 1) / (time[-1] - time[0])
     frequency, power = periodogram(even, rate, window, detrend="constant", scaling="spectrum", axis=0)
     kept = frequency <= _highest(values, rate)
@@ -77,7 +83,8 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
     -------
     DataArray
         Amplitudes in the unit of the variable over ``speed`` (rad/s, its magnitude at the middle of each spectrum) and
-        ``frequency`` (Hz).
+        ``frequency`` (Hz). NaN where the variable is unknown at some time of the spectrum, as where a belt has left a
+        pulley.
 
     Raises
     ------
@@ -115,7 +122,8 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     -------
     DataArray
         Amplitudes in the unit of the variable over ``speed`` (rad/s, magnitude, mean of the revolution
-        in the middle of each spectrum) and ``order``.
+        in the middle of each spectrum) and ``order``. NaN where the variable is unknown, as in a waterfall, and where
+        its filter takes amplitudes away.
 
     Raises
     ------
@@ -138,8 +146,10 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
         )
     each = int(np.ceil(max(2.0 * np.pi / np.diff(turned).min(), 2.0 * largest)))
     steps = np.arange(turned[0], turned[-1], 2.0 * np.pi / each)
+    known, filled = _filled(signal)
+    laid = np.where(np.interp(steps, turned, known) < 1.0, np.nan, CubicSpline(turned, filled)(steps))
     transform = _transform(revolutions * each, float(each))
-    middle, amplitude = _short_time(transform, CubicSpline(turned, signal)(steps))
+    middle, amplitude = _short_time(transform, laid)
     center = turned[0] + 2.0 * np.pi * middle
     passed = [np.interp(center + side, turned, time) for side in (-np.pi, np.pi)]
     speed = 2.0 * np.pi / (passed[1] - passed[0])
@@ -187,18 +197,29 @@ def _turned(angle: xr.DataArray) -> FloatArray:
 
 
 def _even(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Lay a variable out in even steps of time; instants at which it is unknown are filled."""
-    known = np.isfinite(values.reshape(len(values), -1)).all(axis=1) if len(values) else np.zeros(0, dtype=bool)
-    if np.count_nonzero(known) < _FEWEST:
+    """Lay a variable out in even steps of time, from the first to the last instant at which it is known.
+
+    NaN in between spreads to the steps next to it.
+    """
+    flat = values.reshape(len(values), -1)
+    (known,) = np.nonzero(np.isfinite(flat).all(axis=1))
+    if known.size < _FEWEST:
         raise ModelError(
-            f"{np.count_nonzero(known)} outputs are too few for a spectrum: {_FEWEST} or more are needed. "
+            f"{known.size} outputs are too few for a spectrum: {_FEWEST} or more are needed. "
             "Simulate longer, or reduce simulation.output_interval."
         )
-    time, values = time[known], values[known]
+    inside = slice(known[0], known[-1] + 1)
+    time, flat = time[inside], flat[inside]
     even = np.linspace(time[0], time[-1], len(time))
-    flat = values.reshape(len(values), -1)
     laid = np.column_stack([np.interp(even, time, column) for column in flat.T])
-    return even, laid.reshape(values.shape)
+    return even, laid.reshape(-1, *values.shape[1:])
+
+
+def _filled(signal: FloatArray) -> tuple[BoolArray, FloatArray]:
+    """Where a signal is known, and the signal with straight lines where it is not, which are for computing alone."""
+    known = np.isfinite(signal)
+    (places,) = np.nonzero(known)
+    return known, np.interp(np.arange(len(signal)), places, signal[known])
 
 
 def _transform(length: int, rate: float) -> "ShortTimeFFT":
@@ -211,11 +232,21 @@ def _transform(length: int, rate: float) -> "ShortTimeFFT":
 
 
 def _short_time(transform: "ShortTimeFFT", values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Middles of the pieces that lie inside, and amplitudes, shape (pieces, frequencies)."""
+    """Middles of the pieces that lie inside, and amplitudes, shape (pieces, frequencies).
+
+    NaN of pieces in which some value is.
+    """
     first, last = transform.lower_border_end[1], transform.upper_border_begin(len(values))[1]
-    spectra = transform.stft_detrend(values, "linear", p0=first, p1=max(last, first + 1))
-    middle: FloatArray = transform.delta_t * np.arange(first, max(last, first + 1), dtype=float)
-    return middle, np.asarray(np.abs(spectra).T, dtype=float)
+    last = max(last, first + 1)
+    known, filled = _filled(values)
+    spectra = transform.stft_detrend(filled, "linear", p0=first, p1=last)
+    middle: FloatArray = transform.delta_t * np.arange(first, last, dtype=float)
+    unknown = np.append(0, np.cumsum(~known))
+    begins = np.maximum(0, transform.hop * np.arange(first, last) - transform.m_num_mid)
+    ends = np.minimum(begins + transform.m_num, len(values))
+    amplitude = np.abs(spectra).T
+    amplitude[unknown[ends] > unknown[begins]] = np.nan
+    return middle, np.asarray(amplitude, dtype=float)
 
 
 def _over_speed(

@@ -37,12 +37,22 @@ def test_between_two_frequencies_a_window_loses_what_is_known(window: str) -> No
     assert 3.0 * (1.0 - WINDOW_LOSS[window]) < float(spectrum.max()) < 3.01
 
 
-def test_uneven_and_missing_outputs_are_filled() -> None:
+def test_uneven_outputs_are_laid_out_evenly() -> None:
+    """Also where the ends are unknown, as those of filtered variables may be."""
     time = np.delete(np.arange(2000) / 1000.0, [500, 901])
     values = 3.0 * np.cos(2.0 * np.pi * 20.0 * time)
-    values[100] = np.nan
+    values[[0, -1]] = np.nan
     spectrum = amplitude_spectrum(series(time, values))
     assert float(spectrum.max()) == pytest.approx(3.0, rel=0.01)
+
+
+def test_no_spectrum_over_a_time_in_which_the_belt_was_lost() -> None:
+    time = np.arange(2000) / 1000.0
+    values = 3.0 * np.cos(2.0 * np.pi * 20.0 * time)
+    values[1000:1100] = np.nan
+    with pytest.raises(ModelError, match=r"Span tension is unknown from t = 1 s to 1.099 s, .* Select a time before"):
+        amplitude_spectrum(series(time, values))
+    assert float(amplitude_spectrum(series(time, values)[:1000]).max()) == pytest.approx(3.0)
 
 
 def test_too_few_outputs_have_no_spectrum() -> None:
@@ -75,6 +85,27 @@ def test_waterfall_shows_the_line_of_an_order_and_that_of_a_hum(
     ridge = low["frequency"][low.argmax("frequency").values]
     slow = (found["speed"].values > 80.0) & (found["speed"].values < 180.0)
     np.testing.assert_allclose(ridge.values[slow], 2.5 * found["speed"].values[slow] / (2.0 * np.pi), atol=width)
+
+
+LOST = slice(8000, 8200)
+"""Outputs of the run-up without a value, 0.1 s from 4 s on."""
+
+
+def test_waterfall_and_orders_have_a_gap_where_the_belt_was_lost(
+    run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray],
+) -> None:
+    """Every spectrum that knows all of its time is as before, and every other has no value at all."""
+    values, speed, angle = run_up
+    lost = values.copy()
+    lost[LOST] = np.nan
+    for kind, along, longest in ((waterfall, speed, 0.55), (orders, angle, 8.0 * 2.0 * np.pi / 120.0)):
+        whole, found = kind(values, along), kind(lost, along)
+        np.testing.assert_array_equal(found["speed"], whole["speed"])
+        unknown = np.isnan(found.values).all(axis=1)
+        np.testing.assert_allclose(found[~unknown], whole[~unknown], atol=1e-9)
+        gap = (found["speed"].values[unknown] - 20.0) / 25.0  # middles of the spectra, s
+        assert 4.0 - 0.5 * longest < gap.min() < 4.0
+        assert 4.1 < gap.max() < 4.1 + 0.5 * longest
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
