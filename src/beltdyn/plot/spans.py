@@ -60,9 +60,10 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     Raises
     ------
     ModelError
-        If the run holds too few outputs.
+        If the run holds too few outputs, or nothing for spectra.
     """
     run.require_output()
+    run.require("filtered_span_tension")
     time = run.dataset["time"].values
     start = 0.5 * (time[0] + time[-1]) if start is None else start
     tension = run.dataset["filtered_span_tension"].sel(filtered_time=slice(start, end))

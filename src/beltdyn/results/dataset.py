@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, OPTIONAL, TIMES, VARIABLES
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,7 +67,7 @@ def open_dataset(path: Path) -> "xr.Dataset":
     Raises
     ------
     ModelError
-        If the file cannot be read or is not a result of beltdyn.
+        If the file cannot be read, is not a result of beltdyn, or has a format that is not known yet.
     """
     import xarray as xr
 
@@ -80,6 +80,7 @@ def open_dataset(path: Path) -> "xr.Dataset":
     except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
         raise ModelError(unreadable(path, error)) from error
     try:
+        _check_format(path, dataset)
         _check_names(path, dataset)
         return _complete(dataset)
     except ModelError:
@@ -112,28 +113,45 @@ def unreadable(path: Path, error: Exception) -> str:
     )
 
 
-def _check_names(path: Path, dataset: "xr.Dataset") -> None:
-    """Make sure that a file holds what results hold, along the same dimensions and of the same kinds."""
-    known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
-    needed = [name for name in known if OPTIONAL.isdisjoint(known[name].dims) or not OPTIONAL.isdisjoint(dataset.dims)]
-    missing = [name for name in needed if name not in dataset.variables]
-    missing += [name for name in _OURS if name not in dataset.attrs]
-    if missing and all(name in dataset.attrs for name in _OURS):
+def _check_format(path: Path, dataset: "xr.Dataset") -> None:
+    """Make sure that a file has a format that this version reads. The first files said none."""
+    ours, given = ".".join(map(str, FORMAT)), str(dataset.attrs.get("format", "1.0"))
+    if int(given.split(".")[0]) > FORMAT[0]:
         raise ModelError(
-            f"{path} was written by another version of beltdyn: it holds no `{missing[0]}`. Run the drive again; "
-            "its file is the attribute `drive`."
+            f"{path} has format {given}, written by beltdyn {dataset.attrs.get('beltdyn_version')}: this version reads "
+            f"formats up to {ours}. Install a newer beltdyn."
         )
+
+
+def _check_names(path: Path, dataset: "xr.Dataset") -> None:
+    """Make sure that a file holds the core of a result; and what it holds, along the same dimensions and of one kind.
+
+    Variables that are not known are left as they are.
+    """
+    known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
+    missing = [name for name in _OURS if name not in dataset.attrs]
     if missing:
         raise ModelError(
             f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
         )
-    for name in needed:
+    missing = [name for name in known if _is_needed(known[name], dataset) and name not in dataset.variables]
+    if missing:
+        raise ModelError(
+            f"{path} is not a whole result: it holds no `{missing[0]}`. Run the drive again; its file is the "
+            "attribute `drive`."
+        )
+    for name in known.keys() & dataset.variables.keys():
         variable, dtype = dataset[name], known[name].dtype
         if variable.dims != known[name].dims or (dtype != "str" and variable.dtype.kind != np.dtype(dtype).kind):
             raise ValueError(f"`{name}` is not what it should be")
     for name in _OURS:
         if not isinstance(dataset.attrs[name], str):
             raise ValueError(f"`{name}` is no text")
+
+
+def _is_needed(variable: Variable, dataset: "xr.Dataset") -> bool:
+    """Whether a variable is part of the core, and of what a drive with or without tensioners has."""
+    return variable.core and (OPTIONAL.isdisjoint(variable.dims) or not OPTIONAL.isdisjoint(dataset.dims))
 
 
 def _complete(dataset: "xr.Dataset") -> "xr.Dataset":

@@ -4,6 +4,8 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import version
 
+from beltdyn.results.schema import FORMAT
+
 _PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
 
 
@@ -20,13 +22,14 @@ def provenance(drive_text: str, title: str) -> dict[str, str]:
     Returns
     -------
     dict
-        ``title``, ``drive``, ``beltdyn_version``, ``numba_version``, ``numpy_version``,
-        ``scipy_version``, ``python_version`` and ``created`` (ISO 8601, UTC).
+        ``title``, ``drive``, ``format`` (version of the result file), ``beltdyn_version``, ``numba_version``,
+        ``numpy_version``, ``scipy_version``, ``python_version`` and ``created`` (ISO 8601, UTC).
     """
     versions = {f"{package}_version": version(package) for package in _PACKAGES}
     return {
         "title": title,
         "drive": drive_text,
+        "format": ".".join(map(str, FORMAT)),
         **versions,
         "python_version": platform.python_version(),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -140,6 +140,24 @@ class Run:
         with self.recorded() as recorded:
             return estimate_resolution(recorded, self.drive)
 
+    def require(self, name: str) -> None:
+        """Make sure that a variable was recorded that is not in every result file.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Raises
+        ------
+        ModelError
+            If it was not.
+        """
+        if name not in self.dataset:
+            raise ModelError(
+                f"this result holds no `{name}`: it was written by another version of beltdyn. Run the drive again."
+            )
+
     def require_output(self) -> None:
         """Make sure that there is something to look at.
 

@@ -3,6 +3,10 @@
 from dataclasses import dataclass
 from types import MappingProxyType
 
+FORMAT = (1, 0)
+"""Version of the result file. The first number grows when earlier readers would misread a file, the second when a file
+holds more than before."""
+
 COORDINATE_NAMES = ("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy")
 """Order of the nodal coordinates; the nodes of a chain of links have the first two only."""
 
@@ -28,12 +32,15 @@ class Variable:
         The meaning in words, fit for the label of a figure's axis.
     dtype : str
         NumPy data type; "str" for names.
+    core : bool
+        Whether a file without it is no result: summary, warnings and the essential figures need it.
     """
 
     dims: tuple[str, ...]
     units: str
     long_name: str
     dtype: str = "float64"
+    core: bool = True
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -63,7 +70,7 @@ COORDINATES = MappingProxyType(
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
         "node_coordinate": Variable(("node",), "m", "Belt coordinate of the node, unstretched"),
         "element_coordinate": Variable(("element",), "m", "Belt coordinate of the element's middle, unstretched"),
-        "arc_share": Variable(("arc_part",), "1", "Share of the arc from the inlet"),
+        "arc_share": Variable(("arc_part",), "1", "Share of the arc from the inlet", core=False),
         "belt_coordinate": Variable(("contact_point",), "m", "Belt coordinate of the contact point, unstretched"),
     }
 )
@@ -84,23 +91,29 @@ _OUTPUTS = {
     "friction_power": Variable(_PULLEY, "W", "Power lost in friction"),
     "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
     "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position"),
-    "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed"),
+    "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed", core=False),
     "node_position": Variable(("field_time", "node", "axis"), "m", "Node position"),
     "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
-    "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT),
+    "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT, core=False),
     "belt_tension": Variable(_ELEMENT, "N", "Belt tension"),
-    "tension_variation": Variable(_ELEMENT, "N", "Variation of the tension within an element", SHORT),
+    "tension_variation": Variable(_ELEMENT, "N", "Variation of the tension within an element", SHORT, core=False),
     "span_tension": Variable(_SPAN, "N", "Span tension"),
     "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
-    "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT),
+    "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT, core=False),
     "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT),
     "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
     "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
     "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point", SHORT),
     "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8"),
-    "friction_work_on_arc": Variable(_ARC, "J", "Work of friction since the output before, on the arc", SHORT),
+    "friction_work_on_arc": Variable(
+        _ARC, "J", "Work of friction since the output before, on the arc", SHORT, core=False
+    ),
     "friction_work_on_belt": Variable(
-        ("field_time", "pulley", "element"), "J", "Work of friction since the output before, on the belt", SHORT
+        ("field_time", "pulley", "element"),
+        "J",
+        "Work of friction since the output before, on the belt",
+        SHORT,
+        core=False,
     ),
     "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
     "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
@@ -116,7 +129,7 @@ _OUTPUTS = {
     "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
     "numerical_loss": Variable(_OVER_TIME, "J", "Loss in time integration"),
     "energy_closure": Variable(_OVER_TIME, "1", "Closure error of the energy account"),
-    "step_size": Variable(_OVER_TIME, "s", "Time step"),
+    "step_size": Variable(_OVER_TIME, "s", "Time step", core=False),
 }
 
 FILTERED = (
@@ -139,7 +152,11 @@ VARIABLES = MappingProxyType(
     _OUTPUTS
     | {
         f"filtered_{name}": Variable(
-            ("filtered_time", *_OUTPUTS[name].dims[1:]), _OUTPUTS[name].units, _OUTPUTS[name].long_name, SHORT
+            ("filtered_time", *_OUTPUTS[name].dims[1:]),
+            _OUTPUTS[name].units,
+            _OUTPUTS[name].long_name,
+            SHORT,
+            core=False,
         )
         for name in FILTERED
     }

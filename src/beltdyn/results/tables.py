@@ -176,8 +176,8 @@ def _with_derived(run: Run) -> "xr.Dataset":
 
 
 def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:
-    """Take variables apart into columns along their first dimension."""
-    for name in names:
+    """Take variables apart into columns along their first dimension, those that are there."""
+    for name in (name for name in names if name in dataset.variables):
         variable = dataset[name]
         labels = [dataset[dim].values for dim in variable.dims[1:]]
         for index in np.ndindex(*variable.shape[1:]):

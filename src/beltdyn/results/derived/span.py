@@ -51,5 +51,11 @@ def mid_span_displacements(run: Run, start: float | None = None, end: float | No
     DataArray
         m, time and span, positive to the left of the direction of ascending belt coordinate: inwards on a drive
         without crossings; NaN where the belt has left a pulley.
+
+    Raises
+    ------
+    ModelError
+        If it was not recorded.
     """
+    run.require("mid_span_displacement")
     return window(run, start, end)["mid_span_displacement"]

@@ -35,7 +35,7 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
     Raises
     ------
     ModelError
-        If there are no two outputs of fields between them.
+        If there are no two outputs of fields between them, or the work was not recorded.
     """
     dataset, work = _work(run, "friction_work_on_arc", start, end)
     _, wrap = arc_ends(run.drive, dataset["pulley_center"].values.mean(axis=0))
@@ -74,7 +74,7 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     Raises
     ------
     ModelError
-        If there are no two outputs of fields between them.
+        If there are no two outputs of fields between them, or the work was not recorded.
     """
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}
@@ -85,6 +85,7 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
 
 def _work(run: Run, name: str, start: float | None, end: float | None) -> tuple[xr.Dataset, FloatArray]:
     """What was recorded, and the sum of works from the first to the last output of fields, J."""
+    run.require(name)
     dataset = window(run, start, end)
     if dataset.sizes["field_time"] < 2:
         raise ModelError(
