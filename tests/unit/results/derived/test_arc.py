@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -28,6 +29,9 @@ def test_pressure_over_the_angle(run: Run, pulley: str, sign: int) -> None:
     np.testing.assert_allclose(arc["shear"] * 0.01, arc["friction_force"])
     assert np.all(np.sign(arc["friction_force"]) == -sign)
     assert not arc["sliding"].any()
+    on = run.dataset["contact_pulley"].values[-1] == ["driver", "driven"].index(pulley)
+    for name in ("friction_force", "slip_velocity"):  # counter-clockwise, as recorded
+        np.testing.assert_array_equal(np.sort(arc[name]), np.sort(run.dataset[name].values[-1, on]))
     assert (arc["pressure"].attrs["units"], arc["angle"].attrs["units"]) == ("Pa", "rad")
 
 
@@ -37,6 +41,11 @@ def test_a_drive_that_runs_backwards_has_its_inlet_at_the_other_end(make_run: Ma
     np.testing.assert_allclose(back["angle"], np.pi - forth["angle"][::-1])
     np.testing.assert_allclose(back["friction_force"], -forth["friction_force"][::-1])
     np.testing.assert_allclose(back["pressure"], forth["pressure"][::-1])
+
+
+def test_a_pulley_that_stands_has_its_inlet_where_the_belt_coordinate_begins(make_run: MakeRun, run: Run) -> None:
+    still, turning = (contact_arc(other, "driven") for other in (make_run(pulley_speed=np.zeros((101, 2))), run))
+    xr.testing.assert_equal(still, turning)
 
 
 def test_arcs_follow_pulleys_that_move(run: Run) -> None:

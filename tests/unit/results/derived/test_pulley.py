@@ -16,6 +16,8 @@ def test_hub_loads_as_vectors(make_run: MakeRun) -> None:
     np.testing.assert_allclose(loads["hub_load"], np.tile([5.0, 2.0], (101, 1)))
     np.testing.assert_allclose(loads["hub_direction"][0], [np.arctan2(4.0, 3.0), -0.5 * np.pi])
     assert loads["hub_load"].dims == ("time", "pulley")
+    assert "axis" not in loads["hub_load"].coords
+    assert "axis" not in loads["hub_direction"].coords
 
 
 def test_margins_over_time_end_where_the_summary_does(run: Run) -> None:
@@ -34,6 +36,17 @@ def test_tension_ratio_of_slack_spans_is_unknown(make_run: MakeRun) -> None:
     ratios = tension_ratios(make_run(span_tension=tension))
     np.testing.assert_allclose(ratios[:50], 3.0)
     assert np.isnan(ratios[50:]).all()
+
+
+def test_tension_ratio_does_not_depend_on_the_unit_of_tension(make_run: MakeRun) -> None:
+    for unit in (1.0, 1e-3):
+        ratios = tension_ratios(make_run(span_tension=np.tile([20.0 * unit, 60.0 * unit], (101, 1))))
+        np.testing.assert_allclose(ratios, 3.0)
+
+
+@pytest.mark.parametrize(("pulley", "number"), [("driver", 0), ("driven", 1), (0, 0), (1, 1)])
+def test_pulleys_are_known_by_name_and_by_number(run: Run, pulley: str | int, number: int) -> None:
+    assert pulley_number(run, pulley) == number
 
 
 @pytest.mark.parametrize("pulley", ["idler", 2, -1])

@@ -66,6 +66,28 @@ def test_slip_of_a_drive_at_rest_is_unknown(run: Run) -> None:
     assert np.isnan(slips(run, end=0.04, turns=False)["slip"]).all()
 
 
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_slip_does_not_depend_on_the_unit_of_speed(make_run: MakeRun, run: Run, unit: float) -> None:
+    """The drive counts as standing, too, where it does at any other speed: below a hundredth of its largest.
+
+    The belt is so slack that it runs further than it is stretched.
+    """
+    speed, slack = run.dataset["pulley_speed"].values, 1e-3 * run.dataset["span_tension"].values
+    made, scaled = (
+        slips(make_run(pulley_speed=factor * speed, span_tension=slack), turns=False)["slip"] for factor in (1.0, unit)
+    )
+    np.testing.assert_allclose(scaled[60:, 1], 0.5, atol=1e-9)
+    np.testing.assert_allclose(scaled, made, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("ratio", "slip"), [(0.005, 99.5), (500.0, -49900.0)])
+def test_the_first_pulley_alone_decides_what_stands(make_run: MakeRun, run: Run, ratio: float, slip: float) -> None:
+    """A driven pulley at half a percent of the driver's speed slips by the rest; a racing one hides no slip."""
+    speed = run.dataset["pulley_speed"].values.copy()
+    speed[:, 1] = ratio * speed[:, 0]
+    np.testing.assert_allclose(slips(make_run(pulley_speed=speed), turns=False)["slip"][60:, 1], slip, rtol=1e-9)
+
+
 def test_elastic_creep_is_the_difference_of_stretch(run: Run) -> None:
     """The tight span of 60 N reaches the driver, the slack one of 30 N the driven pulley: 30 N / EA."""
     elastic = slips(run, start=0.7)["elastic_creep"]

@@ -5,8 +5,11 @@ import pytest
 import xarray as xr
 
 from beltdyn.errors import ModelError
-from beltdyn.results.derived import amplitude_spectrum, orders, waterfall
+from beltdyn.results import Run
+from beltdyn.results.derived import amplitude_spectrum, element_order, orders, waterfall
+from beltdyn.results.schema import PASS_BAND
 
+Signals = tuple[xr.DataArray, xr.DataArray, xr.DataArray]
 TENSION = {"units": "N", "long_name": "Span tension"}
 WINDOW_LOSS = {"hann": 0.16, "flattop": 0.002}
 """Largest part of an amplitude that is lost half-way between two frequencies (Heinzel, Rüdiger and Schilling 2002)."""
@@ -61,7 +64,7 @@ def test_too_few_outputs_have_no_spectrum() -> None:
 
 
 @pytest.fixture
-def run_up() -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
+def run_up() -> Signals:
     """Order 2.5 with an amplitude that grows with the speed, and a hum of 90 Hz, from 20 to 220 rad/s in 8 s."""
     time = np.arange(0.0, 8.0, 5e-4)
     speed, angle = 20.0 + 25.0 * time, 20.0 * time + 12.5 * time**2
@@ -71,7 +74,7 @@ def run_up() -> tuple[xr.DataArray, xr.DataArray, xr.DataArray]:
 
 
 def test_waterfall_shows_the_line_of_an_order_and_that_of_a_hum(
-    run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray],
+    run_up: Signals,
 ) -> None:
     """Lines of an order that sweeps spread over the change of frequency within a piece; the hum does not."""
     values, speed, _ = run_up
@@ -109,9 +112,7 @@ def test_waterfall_and_orders_have_a_gap_where_the_belt_was_lost(
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_orders_follow_the_rotation_either_way(
-    run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray], way: float
-) -> None:
+def test_orders_follow_the_rotation_either_way(run_up: Signals, way: float) -> None:
     """The amplitude within 3 %: it changes by that within eight revolutions at the lowest speed that is shown."""
     values, _, angle = run_up
     found = orders(values, way * angle)
@@ -124,7 +125,7 @@ def test_orders_follow_the_rotation_either_way(
     assert float(quiet.max()) < 0.1
 
 
-def test_a_run_down_has_the_same_orders(run_up: tuple[xr.DataArray, xr.DataArray, xr.DataArray]) -> None:
+def test_a_run_down_has_the_same_orders(run_up: Signals) -> None:
     values, _, angle = run_up
     back = orders(
         values.copy(data=values.values[::-1]), angle.copy(data=float(angle[-1]) - angle.values[::-1]), largest=10.0
@@ -146,3 +147,106 @@ def test_a_constant_speed_is_no_run_up() -> None:
     )
     with pytest.raises(ModelError, match="the speed stays at 300 rad/s"):
         waterfall(series(time, np.sin(time)), speed)
+
+
+def after(values: xr.DataArray, delay: float) -> xr.DataArray:
+    """The same, recorded later."""
+    return values.assign_coords(time=values["time"] + delay)
+
+
+def test_it_does_not_matter_when_a_record_begins(run_up: Signals) -> None:
+    values, speed, angle = run_up
+    for now, later in (
+        (amplitude_spectrum(values), amplitude_spectrum(after(values, 64.0))),
+        (waterfall(values, speed), waterfall(after(values, 64.0), after(speed, 64.0))),
+        (orders(values, angle), orders(after(values, 64.0), after(angle, 64.0) + 500.0)),
+    ):
+        xr.testing.assert_allclose(now, later, rtol=1e-6, atol=1e-6)  # 64 s + 0.5 ms is rounded to 1e-14 s
+
+
+def test_frequencies_end_at_half_of_the_sampling_rate(run_up: Signals) -> None:
+    """Of 2000 Hz (Nyquist); the spectra of a piece of 1064 outputs are 2000 / 1064 Hz apart."""
+    values, speed, _ = run_up
+    frequency = waterfall(values, speed)["frequency"].values
+    assert frequency[-1] == pytest.approx(1000.0, rel=1e-12)
+    np.testing.assert_allclose(np.diff(frequency), 2000.0 / 1064, rtol=1e-9)
+    assert amplitude_spectrum(values)["frequency"].values[-1] == pytest.approx(1000.0, rel=1e-12)
+
+
+def test_coordinates_of_what_is_no_time_are_kept() -> None:
+    time = np.arange(100) / 100.0
+    values = series(time, np.outer(np.sin(time), [1.0, 2.0])).assign_coords(span=["tight", "slack"])
+    assert amplitude_spectrum(values)["span"].values.tolist() == ["tight", "slack"]
+
+
+def test_speeds_are_those_of_the_revolution_in_the_middle_of_a_spectrum(run_up: Signals) -> None:
+    """At constant acceleration the speed is sqrt(w_0^2 + 2 a phi); spectra of 8 revolutions begin every two of them, at
+    22 rad/s, a tenth of the largest speed.
+    """
+    values, _, angle = run_up
+    found = orders(values, angle)["speed"].values
+    middle = 2.0 * np.pi * (4.0 + 2.0 * np.arange(len(found)))
+    before, behind = (np.sqrt(22.0**2 + 2.0 * 25.0 * (middle + side)) for side in (-np.pi, np.pi))
+    np.testing.assert_allclose(found, 0.5 * (before + behind), rtol=3e-4)  # it begins within an output, 0.011 rad
+
+
+def test_slow_turning_before_a_run_up_does_not_count(run_up: Signals) -> None:
+    """Ten turns at 15 rad/s, below a tenth of the largest speed, for four seconds."""
+    values, _, angle = run_up
+    idle = np.arange(-4.0, 0.0, 5e-4)
+    whole = series(np.append(idle, values["time"]), np.append(100.0 + np.cos(2.0 * np.pi * 90.0 * idle), values.values))
+    turned = series(np.append(idle, values["time"]), np.append(15.0 * idle, angle.values))
+    xr.testing.assert_allclose(orders(whole, turned), orders(values, angle), rtol=1e-6, atol=1e-6)
+    short = turned["time"] < 0.2
+    with pytest.raises(ModelError, match=r"makes 7\.\d* turns above a tenth"):  # of 250 rad/s
+        orders(whole[short], turned[short].where(turned[short] < 0.0, 10.0 * turned[short]))
+
+
+def test_sixteen_turns_are_enough_for_spectra_of_eight() -> None:
+    time = np.arange(0.0, 2.0, 1e-3)
+    angle = 2.0 * np.pi * (4.0 * time + 2.2 * time**2)  # 16.8 turns
+    found = orders(series(time, np.cos(3.0 * angle)), series(time, angle))
+    assert float(found.sel(order=3.0).min()) == pytest.approx(1.0, rel=0.01)
+
+
+def test_a_high_order_is_not_folded_onto_a_low_one() -> None:
+    """Order 45, far above the largest that is asked for, at 1000 Hz and less."""
+    time = np.arange(0.0, 8.0, 2e-4)
+    angle = 20.0 * time + 7.5 * time**2  # to 140 rad/s
+    wave = series(time, 5.0 * np.cos(45.0 * angle))
+    assert float(orders(wave, series(time, angle)).max()) < 0.01
+
+
+def test_the_largest_order_is_reached_however_coarse_the_record_is() -> None:
+    time = np.arange(0.0, 8.0, 2e-2)
+    angle = 20.0 * time + 1.25 * time**2  # to 40 rad/s: 8 outputs in a revolution
+    found = orders(series(time, np.cos(angle)), series(time, angle))
+    assert float(found["order"].max()) == 20.0
+    assert float(found.sel(order=1.0).min()) == pytest.approx(1.0, rel=0.02)
+
+
+def test_nothing_is_said_beyond_the_pass_band_of_what_was_filtered(run_up: Signals) -> None:
+    """Frequencies end there, and orders are unknown where they are higher; what was not filtered is known up to its
+    ends.
+    """
+    values, speed, angle = run_up
+    filtered = values.rename(time="filtered_time")
+    highest = PASS_BAND * 2000.0
+    for spectrum in (amplitude_spectrum(filtered), waterfall(filtered, speed)):
+        frequency = spectrum["frequency"].values
+        assert highest - (frequency[1] - frequency[0]) < frequency[-1] <= highest
+    largest = 60.0
+    free, bounded = (orders(wanted, angle, largest) for wanted in (values, filtered))
+    assert np.isfinite(free).all()
+    beyond = np.outer(bounded["speed"], bounded["order"]) / (2.0 * np.pi) > highest
+    assert beyond.any()
+    np.testing.assert_array_equal(np.isnan(bounded), beyond)
+    np.testing.assert_array_equal(bounded.values[~beyond], free.values[~beyond])
+
+
+def test_elements_pass_a_pulley_as_often_as_its_turn_is_longer(run: Run) -> None:
+    """The arcs of both pulleys, half a turn each, make one turn: it takes the belt but for its two spans."""
+    path = run.drive.path
+    share = 1.0 - path.span_lengths.sum() / path.length
+    for pulley in (0, 1):
+        assert element_order(run.drive, pulley) == pytest.approx(run.drive.belt.elements * share)
