@@ -23,7 +23,7 @@ from itertools import accumulate
 from pathlib import Path
 
 import pytest
-from hypothesis import settings
+from hypothesis import Phase, settings
 from tools.mutation.mutants import Mutant, mutants_of
 from tools.mutation.trial import (
     ROOT,
@@ -51,7 +51,8 @@ def main() -> None:
     asked = _parser().parse_args()
     os.chdir(ROOT)
     os.environ.update(NUMBA_DISABLE_JIT="1", MPLBACKEND="Agg", OPENBLAS_NUM_THREADS="1")
-    settings.register_profile("mutation", derandomize=True, database=None)  # the profile of the tests builds on it
+    quick = (Phase.explicit, Phase.generate)  # without looking for smaller examples
+    settings.register_profile("mutation", derandomize=True, database=None, max_examples=25, phases=quick)
     settings.load_profile("mutation")
     for library in LIBRARIES:
         import_module(library)

@@ -114,3 +114,84 @@ def test_forces_on_the_vectors_add_up_to_that_on_the_pulley(pulley: PulleyState,
     np.testing.assert_allclose(work.force.sum(axis=0), [-totals.hub_x, -totals.hub_y], rtol=1e-12)
     assert totals.penalty_energy > 0.0
     assert totals.friction_power > 0.0
+
+
+@pytest.mark.parametrize("arm_to_rim", [False, True], ids=["point", "rim"])
+@pytest.mark.parametrize("speed", [90.0, -90.0])
+def test_sums_along_a_chord_are_the_integrals_of_its_laws(
+    pulley: PulleyState, law: ContactLaw, speed: float, arm_to_rim: bool
+) -> None:
+    """A straight belt, 3 mm deep, that is pressed in at 0.5 m/s while the rim slides on it at 9 m/s: friction mu f_n.
+
+    Lengths count in the unstretched belt, here of 80 % of what lies there.
+    """
+    pulley, law = pulley._replace(speed=speed), law._replace(arm_to_rim=arm_to_rim)
+    height, ends, velocity = 0.097, np.array([-0.05, 0.06]), np.array([0.1, -0.5])
+    work = contact_workspace(2, 2)
+    control = np.stack([pulley.center_x + ends, np.full(2, pulley.center_y + height)], axis=1)
+    curve = Curve(control, np.tile(velocity, (2, 1)), np.eye(2), 0.8 * float(np.ptp(ends)))
+    totals = contact_force(curve, pulley, law, gauss_points(12), 0.0, 0.0, work)
+
+    half = np.sqrt(pulley.radius**2 - height**2)
+    places, weights = np.polynomial.legendre.leggauss(40)
+    s, share = half * places, 0.8 * half * weights
+    distance = np.hypot(s, height)
+    normal = np.stack([s, np.full(40, height)], axis=1) / distance[:, None]
+    tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
+    depth, sinking = pulley.radius - distance, -normal @ velocity
+    pressure = law.stiffness * depth + law.damping * sinking
+    friction = np.sign(speed) * law.friction * pressure
+    force = pressure[:, None] * normal + friction[:, None] * tangent
+    arm = np.full(40, pulley.radius) if arm_to_rim else distance
+    toward_end = (s - ends[0]) / np.ptp(ends)
+    expected = ContactTotals(
+        moment=-share @ (arm * friction),
+        moment_by_speed=0.0,
+        hub_x=-share @ force[:, 0],
+        hub_y=-share @ force[:, 1],
+        penalty_energy=share @ (0.5 * law.stiffness * depth**2),
+        damping_power=share @ (law.damping * sinking**2),
+        friction_power=share @ (friction * (arm * speed - tangent @ velocity)),
+    )
+    np.testing.assert_allclose(totals, expected, rtol=1e-9)
+    np.testing.assert_allclose(
+        work.force, [(share * (1.0 - toward_end)) @ force, (share * toward_end) @ force], rtol=1e-9
+    )
+    assert totals.friction_power > 0.0
+
+
+@pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
+def test_belt_and_pulley_that_move_on_together(pulley: PulleyState, law: ContactLaw, follow_zone: bool) -> None:
+    """What one feels of the other depends on their relative motion and place alone."""
+    vectors, rates = sunk(pulley, 3)
+    law, shift, drift = law._replace(follow_zone=follow_zone), np.array([0.25, -0.5]), np.array([4.0, -7.0])
+    moved = pulley._replace(
+        center_x=pulley.center_x + 0.25, center_y=pulley.center_y - 0.5, velocity_x=4.0, velocity_y=-7.0
+    )
+    here, totals = act(vectors, rates, np.eye(4), pulley, law, 1.0, 300.0)
+    there, same = act(vectors + shift, rates + drift, np.eye(4), moved, law, 1.0, 300.0)
+    for name in ("force", "by_speed", "moment", *BLOCKS):
+        np.testing.assert_allclose(there[name], here[name], atol=1e-10 * np.abs(here[name]).max(), err_msg=name)
+    np.testing.assert_allclose(same, totals, rtol=1e-10)
+
+
+def test_without_a_tangent_the_forces_are_the_same(pulley: PulleyState, law: ContactLaw) -> None:
+    vectors, rates = sunk(pulley, 3)
+    with_it, totals = act(vectors, rates, np.eye(4), pulley, law, 1.0, 300.0)
+    without, same = act(vectors, rates, np.eye(4), pulley, law)
+    np.testing.assert_array_equal(without.force, with_it.force)
+    assert same == totals
+    assert not any(np.any(without[name]) for name in ("by_speed", "moment", *BLOCKS))
+
+
+def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw) -> None:
+    """What an element leaves in the arrays does not count for the next one."""
+    vectors, rates = sunk(pulley, 3)
+    work, basis = contact_workspace(4, 4), np.eye(4)
+    curve = Curve(vectors, rates, basis, LENGTH)
+    first = contact_force(curve, pulley, law, RULE, 1.0, 300.0, work)
+    kept = work.copy()
+    again = contact_force(curve, pulley, law, RULE, 1.0, 300.0, work)
+    assert again == first
+    for name in ("force", "by_speed", "moment", *BLOCKS):
+        np.testing.assert_array_equal(work[name], kept[name])

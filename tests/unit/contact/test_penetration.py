@@ -46,3 +46,10 @@ def test_a_rim_point_that_turns_with_the_pulley_does_not_slip(pulley: PulleyStat
 def test_slip_is_measured_against_the_rim_at_any_depth(pulley: PulleyState, place: Place) -> None:
     here = approach(*place(pulley, 0.02, 2.0), 0.0, 0.0, pulley)
     assert slip_velocity(here, pulley) == -pulley.speed * pulley.radius
+
+
+def test_only_the_motion_against_the_centre_counts(pulley: PulleyState, place: Place) -> None:
+    x, y = place(pulley, 1e-3, 0.4)
+    still = approach(x, y, 0.3, -0.8, pulley)
+    moving = approach(x, y, 0.3 + 2.0, -0.8 - 5.0, pulley._replace(velocity_x=2.0, velocity_y=-5.0))
+    np.testing.assert_allclose(moving, still, rtol=1e-12)
