@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results import Layout, MemoryRecorder, Run, provenance
-from beltdyn.results.contact_scalars import contact_scalars
-from beltdyn.results.friction_work import FrictionWork
+from beltdyn.results.friction_work import FrictionWork, Touch
 from beltdyn.results.mechanics import cells
+from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
+from beltdyn.results.sliding import sliding_of_pulleys
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -218,8 +219,10 @@ def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
     names = ("contact_pulley", "normal_force", "slip_velocity", "contact_position", "pulley_center")
     touched, normal, slip, places, centers = (outputs[name] for name in names)
     work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt.length), layout.elements)
-    done = work.take(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
-    scalars = contact_scalars(drive, layout.belt_coordinate, touched, normal, slip, places, centers)
+    touch = Touch(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
+    done = work.take(touch, np.ones(len(touched), dtype=bool))
+    scalars = sliding_of_pulleys(drive, layout.belt_coordinate, touched, normal, slip)
+    scalars["mid_span_displacement"] = mid_span_displacements(drive, centers, places, touched)
     seen = outputs | scalars
     return {
         **scalars,

@@ -49,8 +49,10 @@ class Instants:
 
     def until(self, time: float) -> int:
         """How many lie before a time (s) or on it."""
-        if time < -SAME:
-            return 0
-        if time >= self.end - SAME:
-            return self.count
-        return min(self.count - 1, int(np.floor((time + SAME) / self.interval)) + 1)
+        return int(self.counts_until(np.array([time]))[0])
+
+    def counts_until(self, times: FloatArray) -> IntArray:
+        """How many lie before each of several times (s) or on it."""
+        multiples = np.floor((times + SAME) / self.interval) + 1.0
+        before_end = np.clip(multiples, 0.0, self.count - 1.0).astype(np.int64)
+        return np.where(times >= self.end - SAME, self.count, before_end)

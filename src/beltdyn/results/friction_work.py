@@ -1,10 +1,14 @@
 """Work of friction by place on the arcs and by place on the belt, integrated over the steps of a run."""
 
+from math import atan2, pi
+from typing import NamedTuple
+
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.kernel import kernel
 from beltdyn.model import Drive
-from beltdyn.results.arc import angle_from_inlet, arc_ends
+from beltdyn.results.arc import arc_ends
 
 ARC_PARTS = 60
 """Equal parts of an arc in which work is summed up."""
@@ -16,6 +20,21 @@ BEYOND = 0.25
 def arc_shares() -> FloatArray:
     """Middles of the parts of an arc as shares of it: 0 where the belt's path reaches the pulley, 1 where it leaves."""
     return (1.0 + 2.0 * BEYOND) * (np.arange(ARC_PARTS) + 0.5) / ARC_PARTS - BEYOND
+
+
+class Touch(NamedTuple):
+    """Where a belt touches pulleys in k states, and what friction does there."""
+
+    time: FloatArray
+    """s, shape (k,)."""
+    center: FloatArray
+    """Of the pulleys, m, shape (k, P, 2)."""
+    place: FloatArray
+    """Of the contact points, m, shape (k, points, 2)."""
+    pulley: IntArray
+    """Number of the pulley that each point touches, -1 where it is free, shape (k, points)."""
+    power: FloatArray
+    """|f_t v_t|, W/m, shape (k, points)."""
 
 
 class FrictionWork:
@@ -32,58 +51,99 @@ class FrictionWork:
     """
 
     def __init__(self, drive: Drive, cell: FloatArray, elements: int) -> None:
-        self._drive, self._cell, self._elements = drive, cell, elements
         pulleys = len(drive.pulleys)
-        self._time = -np.inf
-        self._power = np.zeros((pulleys, ARC_PARTS + elements))
+        self._drive, self._cell, self._elements = drive, np.ascontiguousarray(cell, dtype=float), elements
+        self._turning = np.array([float(pulley.turning) for pulley in drive.pulleys])
+        self._time = np.inf
+        self._power = np.zeros((2, pulleys, ARC_PARTS + elements))
         self._work = np.zeros((pulleys, ARC_PARTS + elements))
 
-    def take(
-        self, time: FloatArray, centers: FloatArray, places: FloatArray, touched: IntArray, intensity: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def take(self, touch: Touch, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Go on to further states.
 
         Parameters
         ----------
-        time : ndarray, shape (k,)
-            s.
-        centers : ndarray, shape (k, pulleys, 2)
-            Where the pulleys are, m.
-        places : ndarray, shape (k, points, 2)
-            Where the contact points are, m.
-        touched : ndarray of int, shape (k, points)
-            Number of the pulley that each touches, -1 where it is free.
-        intensity : ndarray, shape (k, points)
-            |f_t v_t|, W/m.
+        touch
+            Contact in k states.
+        shown : ndarray of bool, shape (k,)
+            For which m of them the work is wanted.
 
         Returns
         -------
-        by_arc : ndarray, shape (k, pulleys, ARC_PARTS)
+        by_arc : ndarray, shape (m, pulleys, ARC_PARTS)
             Work since the first state, J.
-        by_belt : ndarray, shape (k, pulleys, elements)
+        by_belt : ndarray, shape (m, pulleys, elements)
             The same by place on the belt.
         """
-        power = self._powers(centers, places, touched, intensity * self._cell)
-        passed = np.diff(time, prepend=time[0] if np.isinf(self._time) else self._time)
-        before = np.concatenate([self._power[None], power[:-1]])
-        work = self._work + np.cumsum(0.5 * passed[:, None, None] * (before + power), axis=0)
-        self._time, self._power, self._work = float(time[-1]), power[-1], work[-1]
+        inlet, wrap = arc_ends(self._drive, touch.center)
+        arcs = np.stack([inlet, wrap, np.broadcast_to(self._turning, wrap.shape)], axis=-1)
+        work = np.empty((np.count_nonzero(shown), *self._work.shape))
+        passed = np.diff(touch.time, prepend=min(self._time, touch.time[0]))
+        add_friction_work(touch, arcs, passed, self._cell, shown, self._power, self._work, work)
+        self._time = float(touch.time[-1])
         return work[..., :ARC_PARTS], work[..., ARC_PARTS:]
 
-    def _powers(self, centers: FloatArray, places: FloatArray, touched: IntArray, power: FloatArray) -> FloatArray:
-        """Power by part of the arc and by element, W, shape (k, pulleys, parts + elements)."""
-        row, point = np.nonzero(touched >= 0)
-        pulley, some = touched[row, point], power[row, point]
-        inlet, wrap = arc_ends(self._drive, centers)
-        turning = np.array([one.turning for one in self._drive.pulleys])[pulley]
-        away = places[row, point] - centers[row, pulley]
-        angle = angle_from_inlet(away, inlet[row, pulley], wrap[row, pulley], turning)
-        share = np.divide(angle, wrap[row, pulley], out=np.zeros_like(angle), where=wrap[row, pulley] > 0.0)
-        part = np.clip(((share + BEYOND) / (1.0 + 2.0 * BEYOND) * ARC_PARTS).astype(int), 0, ARC_PARTS - 1)
-        element = point // (power.shape[1] // self._elements)
-        shape = (len(power), *self._power.shape)
-        at_arc, at_belt = (
-            np.bincount(np.ravel_multi_index((row, pulley, where), shape), some, int(np.prod(shape)))
-            for where in (part, ARC_PARTS + element)
-        )
-        return np.asarray(at_arc + at_belt, dtype=float).reshape(shape)
+
+@kernel
+def add_friction_work(
+    touch: Touch,
+    arcs: FloatArray,
+    passed: FloatArray,
+    cell: FloatArray,
+    shown: BoolArray,
+    power: FloatArray,
+    total: FloatArray,
+    work: FloatArray,
+) -> None:
+    """Integrate the work of friction over the steps to k states.
+
+    Parameters
+    ----------
+    touch
+        Contact in these states.
+    arcs : ndarray, shape (k, P, 3)
+        Of each pulley: angle of the inlet and wrap angle, rad; 1, or -1 for a pulley at the belt's back.
+    passed : ndarray, shape (k,)
+        Lengths of the steps, s.
+    cell : ndarray, shape (points,)
+        Length of belt that each contact point stands for, m.
+    shown : ndarray of bool, shape (k,)
+        After which steps the work is kept.
+    power : ndarray, shape (2, P, ARC_PARTS + elements)
+        Powers by part of an arc and by element before and after a step, W; those of the last state are kept here.
+    total : ndarray, shape (P, ARC_PARTS + elements)
+        Work so far, J.
+    work : ndarray, shape (m, P, ARC_PARTS + elements)
+        Overwritten by the work in the states that are shown.
+    """
+    pulleys, parts = total.shape
+    points = cell.size // (parts - ARC_PARTS)
+    show = 0
+    for k in range(passed.size):
+        for p in range(pulleys):
+            for part in range(parts):
+                power[0, p, part], power[1, p, part] = power[1, p, part], 0.0
+        for point in range(cell.size):
+            p = touch.pulley[k, point]
+            if p >= 0:
+                x = touch.place[k, point, 0] - touch.center[k, p, 0]
+                y = touch.place[k, point, 1] - touch.center[k, p, 1]
+                part = part_of_arc(atan2(y, x), arcs[k, p, 0], arcs[k, p, 1], arcs[k, p, 2])
+                lost = touch.power[k, point] * cell[point]
+                power[1, p, part] += lost
+                power[1, p, ARC_PARTS + point // points] += lost
+        for p in range(pulleys):
+            for part in range(parts):
+                total[p, part] += 0.5 * passed[k] * (power[0, p, part] + power[1, p, part])
+                if shown[k]:
+                    work[show, p, part] = total[p, part]
+        show += shown[k]
+
+
+@kernel(inline=True)
+def part_of_arc(angle: float, inlet: float, wrap: float, turning: float) -> int:
+    """Part of an arc in which a point at an angle about the pulley (rad) lies; see `arc.angle_from_inlet`."""
+    free = 0.5 * (2.0 * pi - wrap)
+    along = (turning * (angle - inlet) + free) % (2.0 * pi) - free
+    share = along / wrap if wrap > 0.0 else 0.0
+    return min(max(int((share + BEYOND) / (1.0 + 2.0 * BEYOND) * ARC_PARTS), 0), ARC_PARTS - 1)

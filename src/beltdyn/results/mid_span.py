@@ -1,8 +1,11 @@
 """How far spans move sideways, from where the belt is."""
 
+from math import sqrt
+
 import numpy as np
 
-from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.kernel import kernel
 from beltdyn.model import Drive
 from beltdyn.model.path import span_points
 
@@ -26,46 +29,51 @@ def mid_span_displacements(drive: Drive, centers: FloatArray, places: FloatArray
     ndarray, shape (k, spans)
         m, to the left of the direction of ascending belt coordinate; NaN where the belt has left a pulley.
     """
-    lines = span_points(centers, drive.path.radii)
-    before, after = _neighbours(touched)
-    spans = lines.shape[1]
-    of_span = [(before == span) & (after == (span + 1) % spans) & (touched < 0) for span in range(spans)]
-    return np.stack([_middle(places, free, lines[:, span]) for span, free in enumerate(of_span)], axis=1)
+    result = np.full(centers.shape[:2], np.nan)
+    fill_mid_spans(span_points(centers, drive.path.radii), np.ascontiguousarray(places), touched, result)
+    return result
 
 
-def _neighbours(touched: IntArray) -> tuple[IntArray, IntArray]:
-    """Pulleys that the closed belt touches last before and first after each point, shape (time, points)."""
-    twice = np.concatenate([touched, touched], axis=1)
-    points = touched.shape[1]
-    return _last_touched(twice)[:, points:], _last_touched(twice[:, ::-1])[:, points:][:, ::-1]
-
-
-def _last_touched(touched: IntArray) -> IntArray:
-    """Pulley that is touched at or before each point, -1 if there is none."""
-    index = np.maximum.accumulate(np.where(touched >= 0, np.arange(touched.shape[1]), 0), axis=1)
-    return np.take_along_axis(touched, index, axis=1)
-
-
-def _middle(places: FloatArray, free: BoolArray, points: FloatArray) -> FloatArray:
-    """Distance of the belt from the middle of lines, shape (time,).
+@kernel
+def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, result: FloatArray) -> None:
+    """Find where the free belt crosses the middles of spans.
 
     Parameters
     ----------
-    places : ndarray, shape (time, points, 2)
-        Points of the belt, m.
-    free : ndarray of bool, shape (time, points)
-        Which of them are those of the span.
-    points : ndarray, shape (time, 2, 2)
-        Ends of the lines, m.
+    lines : ndarray, shape (k, spans, 2, 2)
+        Ends of the straight spans, m.
+    places, touched
+        As for `mid_span_displacements`.
+    result : ndarray, shape (k, spans)
+        Overwritten where the belt does cross, m.
     """
-    line = points[:, 1] - points[:, 0]
-    length = np.hypot(line[:, 0], line[:, 1])[:, None]
-    x, y = line[:, :1] / length, line[:, 1:] / length
-    dx, dy = (places[..., axis] - points[:, 0, axis, None] for axis in (0, 1))
-    along, aside = dx * x + dy * y - 0.5 * length, dy * x - dx * y
-    next_along = np.roll(along, -1, axis=1)
-    crossing = free & np.roll(free, -1, axis=1) & (along <= 0.0) & (next_along > 0.0)
-    row, one = np.arange(len(places)), np.argmax(crossing, axis=1)
-    other = (one + 1) % places.shape[1]
-    part = along[row, one] / np.where(np.any(crossing, axis=1), along[row, one] - along[row, other], np.nan)
-    return np.asarray(aside[row, one] + part * (aside[row, other] - aside[row, one]))
+    spans, count = lines.shape[1], touched.shape[1]
+    for k in range(touched.shape[0]):
+        first = 0
+        while first < count and touched[k, first] < 0:
+            first += 1
+        if first == count:
+            continue
+        before, start = touched[k, first], first
+        for walk in range(first + 1, first + 1 + count):
+            after = touched[k, walk % count]
+            if after < 0:
+                continue
+            if after == (before + 1) % spans:
+                for one in range(start + 1, walk - 1):
+                    x, y = _from_middle(lines[k, before], places[k, one % count])
+                    next_x, next_y = _from_middle(lines[k, before], places[k, (one + 1) % count])
+                    if x <= 0.0 and next_x > 0.0:
+                        result[k, before] = y + x / (x - next_x) * (next_y - y)
+                        break
+            before, start = after, walk
+
+
+@kernel(inline=True)
+def _from_middle(line: FloatArray, place: FloatArray) -> tuple[float, float]:
+    """Place of a point along a line from its middle, and to the left of it, m."""
+    along_x, along_y = line[1, 0] - line[0, 0], line[1, 1] - line[0, 1]
+    length = sqrt(along_x * along_x + along_y * along_y)
+    along_x, along_y = along_x / length, along_y / length
+    dx, dy = place[0] - line[0, 0], place[1] - line[0, 1]
+    return dx * along_x + dy * along_y - 0.5 * length, dy * along_x - dx * along_y

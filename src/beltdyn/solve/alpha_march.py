@@ -20,6 +20,7 @@ from beltdyn.solve.march import (
     new_march,
 )
 from beltdyn.solve.trajectory import Chunk, Task
+from beltdyn.system.arrays import Loads
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
 
@@ -66,11 +67,11 @@ class GeneralizedAlpha:
         march = new_march(system, 0.0, first_step, start.position, start.velocity)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
-        yield Chunk.start(start)
+        yield Chunk.start(system, start)
         for stop in task.stops:
             restart(system, march, equations)
             while march.clock[0] < stop:
-                steps = empty_steps(min(_ROOM, budget), march.position.size)
+                steps = empty_steps(system, min(_ROOM, budget))
                 status, filled = advance(system, settings, march, equations, stop, budget, steps)
                 _count(task, march)
                 yield _chunk(steps, filled, march)
@@ -80,7 +81,9 @@ class GeneralizedAlpha:
 
 def _chunk(steps: Steps, filled: int, march: March) -> Chunk:
     """The filled part of the room for steps."""
-    return Chunk(**{name: array[:filled] for name, array in steps._asdict().items()}, reached=float(march.clock[0]))
+    loads = Loads(*(array[:filled] for array in steps.loads))
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
+    return Chunk(**rows, loads=loads, reached=float(march.clock[0]))
 
 
 def _count(task: Task, march: March) -> None:

@@ -32,6 +32,8 @@ _DAMPED_FROM: Final = 4
 _STAGNATION: Final = 0.8
 _QUICK: Final = 0.3
 """A tangent serves for several iterations of a step as long as each change is below this part of the one before."""
+_SAME: Final = 1e-11
+"""Instants nearer to each other than this are one, s."""
 _NEAR: Final = 3.0
 """The loads are those before the last change, which must be below this many times what Newton's method may leave."""
 
@@ -39,8 +41,10 @@ _NEAR: Final = 3.0
 class Step(NamedTuple):
     """A step that is tried."""
 
-    time: float
-    """Its end, s."""
+    end: float
+    """s."""
+    length: float
+    """s."""
     by_velocity: float
     """Change of the velocity over that of the position, 1/s."""
     by_acceleration: float
@@ -48,9 +52,30 @@ class Step(NamedTuple):
 
 
 @kernel
-def try_step(
-    system: System, settings: Settings, method: Method, march: March, length: float, equations: Equations
-) -> int:
+def new_step(method: Method, start: float, length: float, stop: float) -> Step:
+    """A step to be tried.
+
+    Parameters
+    ----------
+    method
+        Coefficients.
+    start
+        Where it begins, s.
+    length
+        Its length, s.
+    stop
+        Instant on which it ends if rounding alone lies between, s.
+    """
+    return Step(
+        stop if abs(stop - start - length) < _SAME else start + length,
+        length,
+        method.gamma / (method.beta * length),
+        (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
+    )
+
+
+@kernel
+def try_step(system: System, settings: Settings, method: Method, march: March, step: Step, equations: Equations) -> int:
     """Solve the equations of motion at the end of a step, from a constant A as first guess.
 
     The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
@@ -68,8 +93,8 @@ def try_step(
         Coefficients.
     march
         Its trial state is overwritten.
-    length
-        Length of the step, s.
+    step
+        From `new_step`.
     equations
         Arrays to work in; afterwards its loads are those of the last iterate but one.
 
@@ -78,8 +103,8 @@ def try_step(
     int
         Iterations, or 0 if they did not converge.
     """
-    step = _predict(system, method, march, length)
-    allowed = settings.newton_fraction * allowed_error(settings, length)
+    _predict(system, method, march, step)
+    allowed = settings.newton_fraction * allowed_error(settings, step.length)
     before, slope, factor, renewed = inf, 0.0, 1.0, True
     quick, slowest = march.clock[SLOWEST] <= _QUICK, 0.0
     march.clock[SLOWEST] = 1.0
@@ -108,23 +133,17 @@ def try_step(
     return 0
 
 
-@kernel
 @kernel(inline=True)
-def _predict(system: System, method: Method, march: March, length: float) -> Step:
+def _predict(system: System, method: Method, march: March, step: Step) -> None:
     """Overwrite the trial state by that of a constant A."""
+    length = step.length
     for i in range(march.position.size):
         a = march.auxiliary[i]
         march.trial[0, i] = march.position[i] + length * march.velocity[i] + 0.5 * length * length * a
         march.trial[1, i] = march.velocity[i] + length * a
         march.trial[2, i] = (a - method.af * march.acceleration[i]) / (1.0 - method.af)
     add_missed_impulses(system, method, march, length)
-    step = Step(
-        march.clock[0] + length,
-        method.gamma / (method.beta * length),
-        (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
-    )
-    prescribe(system, step.time, march.trial[0], march.trial[1], march.trial[2])
-    return step
+    prescribe(system, step.end, march.trial[0], march.trial[1], march.trial[2])
 
 
 @kernel(inline=True)
@@ -133,7 +152,7 @@ def _assemble(system: System, march: March, step: Step, equations: Equations, re
     share = 1.0 if renewed else 0.0
     assemble(
         system,
-        step.time,
+        step.end,
         march.trial[0],
         march.trial[1],
         march.trial[2],

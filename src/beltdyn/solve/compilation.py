@@ -14,6 +14,8 @@ import numpy as np
 
 from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
 from beltdyn.model import Belt
+from beltdyn.results.friction_work import ARC_PARTS, Touch, add_friction_work
+from beltdyn.results.mid_span import fill_mid_spans
 from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
@@ -38,8 +40,17 @@ def compile_kernels(system: System, state: State) -> None:
         A state of it.
     """
     with _second_process():
-        observe(system, np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
+        _compile_observing(system)
     _compile_solving(system, state)
+
+
+def _compile_observing(system: System) -> None:
+    time, states, places = np.empty(0), np.empty((0, 0)), np.empty((0, 0, 2))
+    shown, touched = np.empty(0, dtype=np.bool_), np.empty((0, 0), dtype=np.int8)
+    observe(system, time, states, states)
+    touch, work = Touch(time, places, places, touched, states), np.empty((0, 0, ARC_PARTS + 1))
+    add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, np.empty((2, 0, 0)), states, work)
+    fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, states)
 
 
 def compile_solving() -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 
 
 class EnergyAccount:
@@ -21,21 +21,23 @@ class EnergyAccount:
         self._initial: tuple[float, FloatArray] | None = None
         self._largest = np.zeros(4)
 
-    def closure(self, stored: FloatArray, potential: FloatArray, work: FloatArray) -> FloatArray:
-        """Closure error at successive outputs.
+    def closure(self, stored: FloatArray, potential: FloatArray, work: FloatArray, shown: BoolArray) -> FloatArray:
+        """Closure error in some of several successive states.
 
         Parameters
         ----------
-        stored : ndarray, shape (k,)
-            E, J.
+        stored : ndarray, shape (m,)
+            E in those that are shown, J; the first state of all is one of them.
         potential : ndarray, shape (k, 2)
             V of springs and of weight, J.
         work : ndarray, shape (k, 8)
             In the order of `ENERGY_WORKS`: driver work, torque work, then losses, J.
+        shown : ndarray of bool, shape (k,)
+            Which m of them are.
 
         Returns
         -------
-        ndarray, shape (k,)
+        ndarray, shape (m,)
             Zero as long as no energy was put in at all.
         """
         if self._initial is None:
@@ -44,6 +46,6 @@ class EnergyAccount:
         done = np.hstack([work[:, :2], level - potential])
         largest = np.maximum.accumulate(np.vstack([self._largest, np.abs(done)]))
         self._largest = largest[-1]
-        put_in = initial + largest[1:].sum(axis=1)
-        error = stored - initial - done.sum(axis=1) + work[:, 2:].sum(axis=1)
+        put_in = initial + largest[1:][shown].sum(axis=1)
+        error = stored - initial - done[shown].sum(axis=1) + work[shown, 2:].sum(axis=1)
         return np.asarray(np.divide(error, put_in, out=np.zeros_like(error), where=put_in > 0.0))

@@ -203,7 +203,7 @@ def _serve(
     size = motion[0].size
     march = new_march(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
     march.trial[:3] = motion
-    solved = serve(system, request, _NO_SETTINGS, march, equations, empty_steps(0, size))[0] == 1
+    solved = serve(system, request, _NO_SETTINGS, march, equations, empty_steps(system, 0))[0] == 1
     for changed, vector in zip(motion, march.trial, strict=False):
         changed[:] = vector
     return solved

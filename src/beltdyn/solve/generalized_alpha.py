@@ -12,13 +12,15 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import follow_profiles
 from beltdyn.solve.alpha_method import Method, method_of
-from beltdyn.solve.alpha_step import try_step
+from beltdyn.solve.alpha_step import Step, new_step, try_step
 from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
 from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import ENERGY_WORKS, System
-from beltdyn.system.end_of_step import find_loads, numerical_loss
-from beltdyn.system.missed_action import Motion, missed_work
+from beltdyn.system.arrays import ENERGY_WORKS, Loads, Motion, System
+from beltdyn.system.loads import keep_loads
+from beltdyn.system.missed_action import missed_work
 from beltdyn.system.motion import Equations
+from beltdyn.system.numerical_loss import numerical_loss
+from beltdyn.system.state_loads import find_loads
 
 REACHED: Final = 0
 """Status: the stop was reached, the room for steps is full, or the budget is spent."""
@@ -80,13 +82,14 @@ def advance(
     for _ in range(budget):
         if clock[0] >= stop or (filled == steps.time.size and filled > 0):
             break
-        step = resolved_length(system, settings, motion_of(march), _next_step(clock, settings, stop))
+        length = resolved_length(system, settings, motion_of(march), _next_step(clock, settings, stop))
+        step = new_step(method, clock[0], length, stop)
         iterations = try_step(system, settings, method, march, step, equations)
         if iterations == 0:
             march.counts[FAILED] += 1
-            clock[1] = 0.5 / STRETCH * step
+            clock[1] = 0.5 / STRETCH * length
         else:
-            error = _local_error(system, settings, method, march, step)
+            error = _local_error(system, settings, method, march, length)
             growth = _GROWTH if iterations <= _EASY else 1.0
             factor = min(growth, max(_SHRINK, (_AIM / max(error, 1e-12)) ** (1.0 / 3.0)))
             if error > _LIMIT:
@@ -94,9 +97,9 @@ def advance(
                 factor /= STRETCH
             else:
                 march.counts[STEPS] += 1
-                _accept(system, method, march, equations, step, stop)
-                filled = _keep(march, step, steps, filled)
-            clock[1] = min(settings.max_step, factor * step)
+                _accept(system, method, march, equations, step)
+                filled = _keep(march, step, equations.loads, steps, filled)
+            clock[1] = min(settings.max_step, factor * length)
         if clock[1] < _SMALLEST_STEP:
             return STEP_TOO_SMALL, filled
     return REACHED, filled
@@ -131,33 +134,32 @@ def _local_error(system: System, settings: Settings, method: Method, march: Marc
 
 
 @kernel(inline=True)
-def _accept(system: System, method: Method, march: March, equations: Equations, step: float, stop: float) -> None:
+def _accept(system: System, method: Method, march: March, equations: Equations, step: Step) -> None:
     """Move to the end of the step, and do the energy account."""
     work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
-    end = Motion(march.clock[0] + step, march.trial[0], march.trial[1], march.trial[2])
+    end = Motion(step.end, march.trial[0], march.trial[1], march.trial[2])
     find_loads(system, end, work, corner, equations.loads)
     march.work[_NUMERICAL] += numerical_loss(system, motion_of(march), end, march.impulse, work)
     missed_work(system, motion_of(march), end, march.impulse, march.missed)
-    follow_profiles(system, method, march, step)
+    follow_profiles(system, method, march, step.length)
     for k in range(power.size):
-        march.work[k] += 0.5 * step * (march.power[k] + power[k]) + march.missed[k]
+        march.work[k] += 0.5 * step.length * (march.power[k] + power[k]) + march.missed[k]
         march.power[k] = power[k]
     for i in range(march.position.size):
         march.position[i], march.velocity[i] = march.trial[0, i], march.trial[1, i]
         march.acceleration[i], march.auxiliary[i] = march.trial[2, i], march.trial[3, i]
-    march.clock[0] += step
-    if abs(stop - march.clock[0]) < _SMALLEST_STEP:
-        march.clock[0] = stop
+    march.clock[0] = step.end
 
 
 @kernel(inline=True)
-def _keep(march: March, step: float, steps: Steps, filled: int) -> int:
-    """Keep the state that was reached, where there is room; returns the number of steps filled."""
+def _keep(march: March, step: Step, loads: Loads, steps: Steps, filled: int) -> int:
+    """Keep the state that was reached and its loads, where there is room; returns the number of steps filled."""
     if filled == steps.time.size:
         return filled
-    steps.time[filled], steps.step[filled] = march.clock[0], step
+    steps.time[filled], steps.step[filled] = step.end, step.length
     for i in range(march.position.size):
         steps.position[filled, i], steps.velocity[filled, i] = march.position[i], march.velocity[i]
     for k in range(march.work.size):
         steps.work[filled, k] = march.work[k]
+    keep_loads(loads, steps.loads, filled)
     return filled + 1

@@ -6,8 +6,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import ENERGY_WORKS, POWERS, System
-from beltdyn.system.missed_action import Motion
+from beltdyn.system.arrays import ENERGY_WORKS, POWERS, Loads, Motion, System
+from beltdyn.system.loads import load_history
 from beltdyn.system.motion import no_multipliers
 
 STEPS: Final = 0
@@ -76,6 +76,8 @@ class Steps(NamedTuple):
     """Alike."""
     work: FloatArray
     """In the order of `ENERGY_WORKS`, J, shape (k, 8)."""
+    loads: Loads
+    """A history of k states."""
 
 
 @kernel
@@ -90,22 +92,24 @@ def motion_of(march: March) -> Motion:
     return Motion(march.clock[0], march.position, march.velocity, march.acceleration)
 
 
-def empty_steps(count: int, size: int) -> Steps:
+def empty_steps(system: System, count: int) -> Steps:
     """Make room for steps.
 
     Parameters
     ----------
+    system
+        The system.
     count
         How many; without room for any, `advance` keeps none.
-    size
-        Size of a state, 6 N + D.
     """
+    size = system.first_body + system.bodies.size
     return Steps(
         time=np.empty(count),
         step=np.empty(count),
         position=np.empty((count, size)),
         velocity=np.empty((count, size)),
         work=np.empty((count, len(ENERGY_WORKS))),
+        loads=load_history(system, count),
     )
 
 

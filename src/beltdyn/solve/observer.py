@@ -1,29 +1,43 @@
 """What is seen at successive states of a simulation: there, at ends of steps, the equations of motion hold."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
-from beltdyn.results.contact_scalars import contact_scalars
-from beltdyn.results.friction_work import FrictionWork
+from beltdyn.results.friction_work import FrictionWork, Touch
+from beltdyn.results.mid_span import mid_span_displacements
+from beltdyn.results.schema import FILTERED
+from beltdyn.results.sliding import sliding_of_pulleys
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.discretization import curve_lengths
-from beltdyn.system.observe import observe
+from beltdyn.system.observe import observe_motion
 
 Arrays = dict[str, NDArray[Any]]
+
+
+class Seen(NamedTuple):
+    """What is seen at successive states."""
+
+    at_outputs: Arrays
+    """Recorded variables at those states that are shown."""
+    for_spectra: Arrays
+    """Those that are filtered over all states, at every state."""
+
 
 WORKS = ("friction_work_on_arc", "friction_work_on_belt")
 """Variables that are seen as integrals from the start on, and recorded as what they grow by."""
 
 
-_VALUES_OF_SPANS = ("span_tension", "belt_speed")
+_VALUES_OF_SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
+_OF_SHOWN = ("kinetic_energy", "strain_energy", "belt_tension", "tension_variation")
+"""Observations that are there for states that are shown alone."""
 
 
 class Observer:
@@ -44,43 +58,54 @@ class Observer:
         self._energy = EnergyAccount()
         self._flutter = FlutterWatch(system)
 
-    def see(self, states: Chunk) -> Arrays:
+    def see(self, states: Chunk, shown: BoolArray) -> Seen:
         """Every recorded variable at further states but those that are coordinates and their rates.
 
         Parameters
         ----------
         states
             At least one state.
+        shown : ndarray of bool, shape (k,)
+            For which states all of them are wanted; for the very first one.
 
         Returns
         -------
-        dict
-            Name -> array with one row for each state.
+        Seen
+            Name -> array with one row for each state that is shown; and what spectra show, of every state.
         """
-        seen: Arrays = observe(self._system, states.time, states.position, states.velocity)._asdict()
-        _require_numbers(states.time, seen)
-        self._flutter.take(states.time, states.position, states.velocity, seen)
-        touched, places, centers = (seen[name] for name in ("contact_pulley", "contact_position", "pulley_center"))
-        normal, slip = seen["normal_force"], seen["slip_velocity"]
-        intensity = np.abs(seen["friction_force"] * slip)
-        works = self._friction_work.take(states.time, centers, places, touched, intensity)
-        scalars = contact_scalars(self._drive, self._belt_coordinate, touched, normal, slip, places, centers)
-        stored = seen["kinetic_energy"] + seen["strain_energy"] + seen["penalty_energy"]
-        potential = np.stack([seen["spring_energy"], seen["potential_energy"]], axis=1)
-        return {
-            **seen,
-            **scalars,
+        seen = observe_motion(self._system, states.position, states.velocity, states.loads, shown)
+        touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
+        aside = mid_span_displacements(self._drive, centers, places, touched)
+        lost = np.abs(seen.friction_force * seen.slip_velocity)
+        works = self._friction_work.take(Touch(states.time, centers, places, touched, lost), shown)
+        potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
+        stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy[shown]
+        closure = self._energy.closure(stored, potential, states.work, shown)
+        every = seen._asdict() | {"mid_span_displacement": aside}
+        _require_numbers(states.time, shown, every)
+        self._flutter.take(states.time, states.position, states.velocity, every)
+        rows = {name: values if name in _OF_SHOWN else values[shown] for name, values in every.items()}
+        at_outputs = {
+            **rows,
+            **sliding_of_pulleys(
+                self._drive,
+                self._belt_coordinate,
+                rows["contact_pulley"],
+                rows["normal_force"],
+                rows["slip_velocity"],
+            ),
             **dict(zip(WORKS, works, strict=True)),
-            **dict(zip(ENERGY_WORKS, states.work.T, strict=True)),
-            "energy_closure": self._energy.closure(stored, potential, states.work),
+            **dict(zip(ENERGY_WORKS, states.work[shown].T, strict=True)),
+            "energy_closure": closure,
         }
+        return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})
 
     def find_flutter(self) -> Flutter | None:
         """The largest growth of vibrations while the belt slid; None where none grows."""
         return self._flutter.find()
 
 
-def _require_numbers(time: FloatArray, seen: Arrays) -> None:
+def _require_numbers(time: FloatArray, shown: BoolArray, seen: Arrays) -> None:
     """Make sure that all that is seen has a value, but spans whose pulleys the belt has left.
 
     Raises
@@ -90,8 +115,9 @@ def _require_numbers(time: FloatArray, seen: Arrays) -> None:
     """
     for name, values in seen.items():
         if name not in _VALUES_OF_SPANS and not np.isfinite(values.sum()):
-            first = int(np.argmin(np.isfinite(values.reshape(len(time), -1)).all(axis=1)))
+            times = time[shown] if name in _OF_SHOWN else time
+            first = int(np.argmin(np.isfinite(values.reshape(len(times), -1)).all(axis=1)))
             raise ConvergenceError(
-                f"the simulation cannot go on at t = {time[first]:.6g} s: {name} has no finite value. "
+                f"the simulation cannot go on at t = {times[first]:.6g} s: {name} has no finite value. "
                 "Check loads and stiffnesses for numbers beyond all measure, or reduce simulation.max_step."
             )

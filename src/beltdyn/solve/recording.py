@@ -188,12 +188,16 @@ class Recording:
         """Record the outputs that lie in the steps to the states that wait."""
         states = Chunk.join(self._waiting)
         self._waiting.clear()
-        seen = self._observer.see(states)
-        self._take_for_spectra(states, seen)
+        before = self._before[0].time[0] if self._before else -self._instants.interval
+        shown = states.around(self._instants, before)
+        shown[-1] = True  # the next step may hold an output
+        seen, for_spectra = self._observer.see(states, shown)
+        self._take_for_spectra(states, for_spectra)
+        states = states.only(shown)
         if self._before is not None:
             states = Chunk.join([self._before[0], states])
             seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
-        self._before = states.last(), {name: values[-1:] for name, values in seen.items()}
+        self._before = states.only(slice(-1, None)), {name: values[-1:] for name, values in seen.items()}
         end = self._instants.until(float(states.time[-1]))
         for first in range(self._written, end, _BLOCK):
             numbers = np.arange(first, min(first + _BLOCK, end))

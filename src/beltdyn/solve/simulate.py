@@ -101,7 +101,7 @@ def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
         recording.prepare()
         rest = bring_to_rest(drive, progress)
         recording.start(rest.drive, standing(rest.system), rest.unstable)
-        recording.take(Chunk.start(rest.state), "equilibrium")
+        recording.take(Chunk.start(standing(rest.system), rest.state), "equilibrium")
     return recording.run()
 
 

@@ -16,9 +16,8 @@ from beltdyn.model.instants import SAME
 from beltdyn.solve.march import Settings
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import ENERGY_WORKS, POWERS, System
+from beltdyn.system.arrays import ENERGY_WORKS, POWERS, Motion, System
 from beltdyn.system.first_order import FirstOrder
-from beltdyn.system.missed_action import Motion
 
 Name = Literal["cvode", "ida", "bdf", "radau"]
 
@@ -62,7 +61,7 @@ class StandardIntegrator:
         tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, _POSITION_TIME)
         bound = _StepBound(task.system, _PART * self.rtol * task.velocity_scale)
         y, time = equations.pack(task.start), 0.0
-        yield Chunk.start(task.start)
+        yield Chunk.start(task.system, task.start)
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy
@@ -257,8 +256,8 @@ def _import_sundials() -> Any:
 def _chunk(equations: FirstOrder, solver: _Solver, time: FloatArray, before: float) -> Chunk:
     """States at some instants of the solver's last step, which began at a time, s."""
     y = np.array([solver.at(float(instant)) for instant in time]).reshape(len(time), equations.size)
-    position, velocity, work = equations.unpack(y)
-    equations.prescribe(time, position, velocity)
+    position, velocity, work = (np.ascontiguousarray(part) for part in equations.unpack(y))
+    loads = equations.loads_at(time, position, velocity)
     step = np.full(len(time), solver.time - before)
     work = np.pad(work, ((0, 0), (0, len(ENERGY_WORKS) - len(POWERS))))  # their own damping is not known
-    return Chunk(time, step, position, velocity, work, reached=solver.time)
+    return Chunk(time, step, position, velocity, work, loads, reached=solver.time)

@@ -6,8 +6,8 @@ import numpy as np
 
 from beltdyn.kernel import kernel
 from beltdyn.solve.march import Settings, allowed_error
-from beltdyn.system.arrays import System
-from beltdyn.system.missed_action import Motion, missed_action
+from beltdyn.system.arrays import Motion, System
+from beltdyn.system.missed_action import missed_action
 
 _SHORTEST: Final = 1e-7
 """What happens within this time (s) is an impulse to any belt."""

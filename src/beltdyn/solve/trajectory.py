@@ -1,16 +1,17 @@
 """What every time integrator takes and gives, whatever its method."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Protocol, Self
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive, Motor, Pulley, install
 from beltdyn.model.instants import SAME, Instants
-from beltdyn.system.arrays import ENERGY_WORKS, System
+from beltdyn.system.arrays import ENERGY_WORKS, Loads, System
 from beltdyn.system.state import State
+from beltdyn.system.state_loads import loads_at
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,6 +28,8 @@ class Chunk:
         Nodal coordinates and coordinates of bodies, and their rates.
     work : ndarray, shape (k, 8)
         In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
+    loads : Loads
+        Of each state; `system.state_loads.loads_at` finds them where a method does not know them.
     reached : float
         Time that the solver has reached, s.
     """
@@ -36,25 +39,47 @@ class Chunk:
     position: FloatArray
     velocity: FloatArray
     work: FloatArray
+    loads: Loads
     reached: float
 
     @classmethod
-    def start(cls, state: State) -> Self:
+    def start(cls, system: System, state: State) -> Self:
         """The state at time zero, before the first step."""
-        zero = np.zeros(1)
-        return cls(zero, zero, state.position[None], state.velocity[None], np.zeros((1, len(ENERGY_WORKS))), 0.0)
+        zero, position, velocity = np.zeros(1), state.position[None].copy(), state.velocity[None].copy()
+        loads = loads_at(system, zero, position, velocity)
+        return cls(zero, zero, position, velocity, np.zeros((1, len(ENERGY_WORKS))), loads, 0.0)
 
     @classmethod
     def join(cls, chunks: Sequence[Self]) -> Self:
         """One chunk of several successive ones."""
-        names = [item.name for item in fields(cls)][:-1]
-        arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in names}
-        return cls(**arrays, reached=chunks[-1].reached)
+        arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in _ROWS}
+        loads = Loads(*(np.concatenate(rows) for rows in zip(*(chunk.loads for chunk in chunks), strict=True)))
+        return cls(**arrays, loads=loads, reached=chunks[-1].reached)
 
-    def last(self) -> Self:
-        """The last state alone."""
-        arrays = {item.name: getattr(self, item.name)[-1:] for item in fields(self)[:-1]}
-        return replace(self, **arrays)
+    def only(self, states: BoolArray | slice) -> Self:
+        """Some of the states."""
+        arrays = {name: getattr(self, name)[states] for name in _ROWS}
+        return replace(self, **arrays, loads=Loads(*(rows[states] for rows in self.loads)))
+
+    def around(self, instants: Instants, before: float) -> BoolArray:
+        """Which states are the ends of steps that hold output instants.
+
+        Parameters
+        ----------
+        instants
+            All of them.
+        before
+            Time of the state before the first of these, s.
+
+        Returns
+        -------
+        ndarray of bool, shape (k,)
+            Where a step ends on its only instant, its beginning is left out.
+        """
+        counts = instants.counts_until(np.append(before, self.time))
+        holds = np.diff(counts) > 0
+        inside = (np.diff(counts) > 1) | (holds & (instants[counts[1:] - 1] < self.time - SAME))
+        return np.asarray(holds | np.append(inside[1:], False))
 
     def locate(self, instants: FloatArray) -> tuple[IntArray, FloatArray]:
         """Find the states at which steps end that hold some instants.
@@ -100,6 +125,10 @@ class Chunk:
         velocity = 6.0 * x * rest * rise + rest * (1.0 - 3.0 * x) * start + x * (3.0 * x - 2.0) * stop
         inside = x < 1.0
         return np.where(inside, position, after), np.where(inside, velocity, stop)
+
+
+_ROWS = ("time", "step", "position", "velocity", "work")
+"""Attributes of a `Chunk` with one row for each state."""
 
 
 @dataclass

@@ -88,6 +88,31 @@ class System(NamedTuple):
     supports: Supports
 
 
+class Motion(NamedTuple):
+    """A state of a system at an instant, and its rates; each vector has shape (6 N + D,)."""
+
+    time: float
+    """s."""
+    position: FloatArray
+    """Nodal coordinates (m and 1), then coordinates of bodies (rad and m)."""
+    velocity: FloatArray
+    acceleration: FloatArray
+
+
+class TangentFactors(NamedTuple):
+    """A tangent is the sum of these times the derivatives with respect to position, velocity and acceleration.
+
+    That is what an integrator needs whose unknown moves all three; with all of them zero no tangent is wanted.
+    """
+
+    by_position: float
+    """1."""
+    by_velocity: float
+    """1/s."""
+    by_acceleration: float
+    """1/s^2."""
+
+
 class RingFactors(NamedTuple):
     """Factors of a `RingMatrix`; b is the border with the node that a closed ring moves there."""
 
@@ -137,7 +162,10 @@ class RingMatrix(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """What the bodies feel and what the energy account needs, at one state."""
+    """What the bodies feel and what the energy account needs, at one state.
+
+    A history of k states has one row for each in every array: see `loads.load_history`.
+    """
 
     moment: FloatArray
     """Moment of the belt on each pulley, N m, shape (P,)."""

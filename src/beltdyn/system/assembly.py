@@ -91,7 +91,9 @@ def assemble(
     damped = system.section.axial_damping > 0.0 or system.section.bending_damping > 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
-        _gather(system, element, node_j, position, velocity, acceleration, work)
+        gather(system, element, position, work.coordinates[0])
+        gather(system, element, velocity, work.coordinates[1])
+        gather(system, element, acceleration, work.coordinates[2])
         _elastic_and_inertia(system, element, by_position, by_acceleration, wanted, work)
         if damped:
             loads.power[4] += damping_force(
@@ -120,24 +122,24 @@ def assemble(
 
 
 @kernel(inline=True)
-def _gather(
-    system: System,
-    i: int,
-    j: int,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    work: np.record,
-) -> None:
-    """Coordinates of the element between nodes i and j."""
-    dof = len(system.scale)
+def gather(system: System, element: int, vector: FloatArray, coordinates: FloatArray) -> None:
+    """Coordinates of an element from those of its nodes.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element
+        Which one.
+    vector : ndarray, shape (n N + D,)
+        Positions, velocities or accelerations.
+    coordinates : ndarray, shape (2 n,)
+        Overwritten.
+    """
+    dof, node_j = len(system.scale), (element + 1) % system.nodes
     for c in range(dof):
-        work.coordinates[0, c] = position[dof * i + c]
-        work.coordinates[0, dof + c] = position[dof * j + c]
-        work.coordinates[1, c] = velocity[dof * i + c]
-        work.coordinates[1, dof + c] = velocity[dof * j + c]
-        work.coordinates[2, c] = acceleration[dof * i + c]
-        work.coordinates[2, dof + c] = acceleration[dof * j + c]
+        coordinates[c] = vector[dof * element + c]
+        coordinates[dof + c] = vector[dof * node_j + c]
 
 
 @kernel(inline=True)

@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.system.arrays import DRIVER_WORK, POWERS, RingMatrix, System
+from beltdyn.system.arrays import DRIVER_WORK, POWERS, Loads, RingMatrix, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
@@ -13,6 +13,7 @@ from beltdyn.system.missed_action import jump_work
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
+from beltdyn.system.state_loads import loads_at
 
 
 class FirstOrder:
@@ -47,11 +48,12 @@ class FirstOrder:
         """Positions, velocities and works from unknowns of shape (..., size)."""
         return y[..., : self._half], y[..., self._half : 2 * self._half], y[..., 2 * self._half :]
 
-    def prescribe(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> None:
-        """Write the prescribed motion into states of shape (k, 6 N + D): a solver's integral of it has its errors."""
-        acceleration = np.zeros(self._half)
-        for k, instant in enumerate(time):
-            prescribe(self._system, float(instant), position[k], velocity[k], acceleration)
+    def loads_at(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Loads:
+        """Loads at states; see `state_loads.loads_at`.
+
+        The prescribed motion is written into the states: a solver's integral of it has its errors.
+        """
+        return loads_at(self._system, time, position, velocity)
 
     def jump(self, time: float, y: FloatArray) -> None:
         """Bring prescribed bodies to their motion at a time (s) in unknowns, and count the work that it takes."""

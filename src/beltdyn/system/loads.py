@@ -27,6 +27,26 @@ def new_loads(system: System) -> Loads:
     )
 
 
+def load_history(system: System, count: int) -> Loads:
+    """Make room for the loads of a number of states, one row for each."""
+    return Loads(*(np.zeros((count, *array.shape)) for array in new_loads(system)))
+
+
+@kernel
+def keep_loads(loads: Loads, history: Loads, k: int) -> None:
+    """Write the loads of a state into row k of a history."""
+    for p in range(loads.moment.size):
+        history.moment[k, p], history.shaft[k, p] = loads.moment[p], loads.shaft[p]
+        history.hub[k, p, 0], history.hub[k, p, 1] = loads.hub[p, 0], loads.hub[p, 1]
+        history.friction[k, p], history.damping[k, p] = loads.friction[p], loads.damping[p]
+    for body in range(loads.force.size):
+        history.force[k, body] = loads.force[body]
+    for number in range(loads.power.size):
+        history.power[k, number] = loads.power[number]
+    for number in range(loads.stored.size):
+        history.stored[k, number] = loads.stored[number]
+
+
 @kernel
 def clear_loads(loads: Loads) -> None:
     """Set everything to zero but the torques on the shafts, which are overwritten later."""

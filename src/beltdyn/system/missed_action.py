@@ -6,13 +6,13 @@ step is known beforehand.  With d(t) the difference between an action and the st
 ends of the step, the step misses the integral of d: an angle of a prescribed speed, an angular impulse of a torque.
 """
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Motion, System
 from beltdyn.system.coupling import coupling_torque
 from beltdyn.system.excitation import after_jump, prescribed_motion, profile_bend, profile_value
 from beltdyn.system.machine_arrays import NO_SCHEDULE, TABLE
@@ -24,16 +24,6 @@ _PHASE: Final = 0.4
 """and the wave in parts of this phase, rad: the trapezoidal rule then errs by 1.3 % of it."""
 _FINEST: Final = 1e-6
 """Shortest part of a step that is looked at, over the step."""
-
-
-class Motion(NamedTuple):
-    """The motion at the beginning of a step, from which its inside is extrapolated."""
-
-    time: float
-    position: FloatArray
-    """Coordinates, shape (6 N + D,), and their rates."""
-    velocity: FloatArray
-    acceleration: FloatArray
 
 
 @kernel

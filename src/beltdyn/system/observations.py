@@ -7,11 +7,13 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.contact_force import contact_workspace
 from beltdyn.system.arrays import Loads, System
-from beltdyn.system.loads import new_loads
 
 
 class Observations(NamedTuple):
-    """Derived quantities at k instants; P pulleys (and spans), n curves of the belt with c contact points each."""
+    """Derived quantities at k states; P pulleys (and spans), n curves of the belt with c contact points each.
+
+    What belongs to the inside of the belt is there for m of the states, those that are shown.
+    """
 
     pulley_torque: FloatArray
     """Moment of the belt on each pulley, N m, shape (k, P)."""
@@ -28,9 +30,9 @@ class Observations(NamedTuple):
     wrap_angle: FloatArray
     """rad, shape (k, P)."""
     belt_tension: FloatArray
-    """Mean axial force of each curve, N, shape (k, n)."""
+    """Mean axial force of each curve, N, shape (m, n)."""
     tension_variation: FloatArray
-    """Root mean square deviation of the axial force within each curve from that mean, N, shape (k, n)."""
+    """Root mean square deviation of the axial force within each curve from that mean, N, shape (m, n)."""
     span_tension: FloatArray
     """Mean axial force of the free belt after each pulley, N, shape (k, P); nan where the belt does not leave it."""
     belt_speed: FloatArray
@@ -45,9 +47,11 @@ class Observations(NamedTuple):
     contact_pulley: IntArray
     """Number of the pulley that a point touches, -1 where it is free, shape (k, n c)."""
     kinetic_energy: FloatArray
-    """J, shape (k,)."""
+    """J, shape (m,)."""
     strain_energy: FloatArray
+    """J, shape (m,)."""
     penalty_energy: FloatArray
+    """J, shape (k,)."""
     spring_energy: FloatArray
     """Of hub chains and tensioners."""
     potential_energy: FloatArray
@@ -59,6 +63,8 @@ class Samples(NamedTuple):
 
     tension: FloatArray
     speed: FloatArray
+    velocity: FloatArray
+    """Of the sampling points, m/s, shape (n c, 2)."""
     weight: FloatArray
     """Length of the free belt in each span."""
     touched: IntArray
@@ -69,27 +75,34 @@ class Samples(NamedTuple):
     """Coordinates and velocities of one element, shape (2, 12)."""
     control: FloatArray
     control_velocity: FloatArray
-    acceleration: FloatArray
-    corner: FloatArray
-    """No tangent, shape (0, 0)."""
     contact: np.record
-    loads: Loads
 
 
-def new_observations(system: System, count: int) -> Observations:
-    """Make empty observations for a number of instants."""
-    pulleys, curves = system.pulleys.size, system.length.size * system.control.shape[1]
+def new_observations(system: System, loads: Loads, shown: int) -> Observations:
+    """Make observations of states whose loads are known.
+
+    Parameters
+    ----------
+    system
+        The system.
+    loads
+        One row for each state.
+    shown
+        Number of states that are shown.
+    """
+    count, pulleys = loads.moment.shape
+    curves = system.length.size * system.control.shape[1]
     points = curves * system.contact.points.size
     return Observations(
-        pulley_torque=np.zeros((count, pulleys)),
-        shaft_torque=np.zeros((count, pulleys)),
-        hub_force=np.zeros((count, pulleys, 2)),
+        pulley_torque=loads.moment,
+        shaft_torque=loads.shaft,
+        hub_force=loads.hub,
         pulley_center=np.zeros((count, pulleys, 2)),
-        friction_power=np.zeros((count, pulleys)),
-        contact_damping_power=np.zeros((count, pulleys)),
+        friction_power=loads.friction,
+        contact_damping_power=loads.damping,
         wrap_angle=np.zeros((count, pulleys)),
-        belt_tension=np.zeros((count, curves)),
-        tension_variation=np.zeros((count, curves)),
+        belt_tension=np.zeros((shown, curves)),
+        tension_variation=np.zeros((shown, curves)),
         span_tension=np.zeros((count, pulleys)),
         belt_speed=np.zeros((count, pulleys)),
         normal_force=np.zeros((count, points)),
@@ -97,10 +110,10 @@ def new_observations(system: System, count: int) -> Observations:
         slip_velocity=np.zeros((count, points)),
         contact_position=np.zeros((count, points, 2)),
         contact_pulley=np.full((count, points), -1, dtype=np.int8),
-        kinetic_energy=np.zeros(count),
-        strain_energy=np.zeros(count),
-        penalty_energy=np.zeros(count),
-        spring_energy=np.zeros(count),
+        kinetic_energy=np.zeros(shown),
+        strain_energy=np.zeros(shown),
+        penalty_energy=loads.stored[:, 0].copy(),
+        spring_energy=loads.stored[:, 1].copy(),
         potential_energy=np.zeros(count),
     )
 
@@ -112,14 +125,12 @@ def new_samples(system: System) -> Samples:
     return Samples(
         tension=np.zeros(points),
         speed=np.zeros(points),
+        velocity=np.zeros((points, 2)),
         weight=np.zeros(system.pulleys.size),
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
         element=np.zeros((2, 2 * len(system.scale))),
         control=np.zeros((count, 2)),
         control_velocity=np.zeros((count, 2)),
-        acceleration=np.zeros(len(system.scale) * system.nodes + system.bodies.size),
-        corner=np.zeros((0, 0)),
         contact=contact_workspace(count, vectors),
-        loads=new_loads(system),
     )

@@ -7,21 +7,19 @@ import numpy as np
 from beltdyn.ancf.elastic_force import element_energy
 from beltdyn.ancf.material_damping import damping_tension
 from beltdyn.ancf.strain_energy import axial_force
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.chain.chain_force import chain_energy
-from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstein_rates
-from beltdyn.contact.contact_force import contact_force
+from beltdyn.contact.bezier import combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
-from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Loads, System
-from beltdyn.system.assembly import fill_control
-from beltdyn.system.excitation import prescribe
-from beltdyn.system.loads import add_contact, add_machines, clear_loads
+from beltdyn.system.assembly import fill_control, gather
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import law_of, pulley_state, tensioner_coordinate
+from beltdyn.system.state_loads import loads_at
 from beltdyn.system.tensioner import tensioner_place
 
 
@@ -35,91 +33,73 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
     time : ndarray, shape (k,)
         s.
     position, velocity : ndarray, shape (k, 6 N + D)
-        The states.
+        The states; the motion of prescribed bodies is written into them if they are contiguous.
 
     Returns
     -------
     Observations
-        Derived quantities at every instant.
+        Derived quantities at every instant, all of them shown.
     """
-    result = new_observations(system, time.size)
-    fill_observations(
-        system,
-        np.ascontiguousarray(time),
-        np.ascontiguousarray(position),
-        np.ascontiguousarray(velocity),
-        new_samples(system),
-        result,
-    )
+    time, position, velocity = (np.ascontiguousarray(array) for array in (time, position, velocity))
+    loads = loads_at(system, time, position, velocity)
+    return observe_motion(system, position, velocity, loads, np.ones(time.size, dtype=np.bool_))
+
+
+def observe_motion(
+    system: System, position: FloatArray, velocity: FloatArray, loads: Loads, shown: BoolArray
+) -> Observations:
+    """Observe a number of states whose loads are known.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, supports.
+    position, velocity : ndarray, shape (k, 6 N + D)
+        The states, with the motion of prescribed bodies in them; contiguous.
+    loads
+        One row for each state.
+    shown : ndarray of bool, shape (k,)
+        For which of them energies and tensions of the belt are wanted too.
+
+    Returns
+    -------
+    Observations
+        Derived quantities.
+    """
+    result = new_observations(system, loads, int(np.count_nonzero(shown)))
+    fill_observations(system, position, velocity, shown, new_samples(system), result)
     return result
 
 
 @kernel
 def fill_observations(
-    system: System,
-    time: FloatArray,
-    position: FloatArray,
-    velocity: FloatArray,
-    samples: Samples,
-    result: Observations,
+    system: System, position: FloatArray, velocity: FloatArray, shown: BoolArray, samples: Samples, result: Observations
 ) -> None:
-    """Fill the observations."""
-    for k in range(time.size):
-        clear_loads(samples.loads)
-        result.kinetic_energy[k] = result.strain_energy[k] = result.potential_energy[k] = 0.0
-        result.wrap_angle[k] = 0.0
+    """Fill the observations but for the loads; see `observe_motion`."""
+    show = -1
+    for k in range(position.shape[0]):
+        show += shown[k]
         samples.nearest[:] = -1
-        prescribe(system, time[k], position[k], velocity[k], samples.acceleration)
         for element in range(system.length.size):
-            _gather(system, element, position[k], velocity[k], samples)
-            _observe_energy(system, element, samples, result, k)
+            gather(system, element, position[k], samples.element[0])
+            gather(system, element, velocity[k], samples.element[1])
+            if shown[k]:
+                _observe_energy(system, element, samples, result, show)
             for curve in range(system.control.shape[1]):
                 fill_control(system, element, curve, samples.element[0], samples.control)
                 fill_control(system, element, curve, samples.element[1], samples.control_velocity)
                 number = element * system.control.shape[1] + curve
                 length = system.length[element] / system.control.shape[1]
-                _observe_tension(system, length, number, samples, result, k)
+                if shown[k]:
+                    _observe_tension(system, length, number, samples, result, show)
                 _observe_points(system, length, number, samples, result, k)
-                _observe_contact(system, element, curve, length, position[k], velocity[k], samples, result, k)
-        add_machines(
-            system,
-            time[k],
-            position[k],
-            velocity[k],
-            samples.acceleration,
-            0.0,
-            0.0,
-            samples.corner,
-            samples.loads,
-        )
-        _keep_loads(samples.loads, result, k)
+                _observe_contact(system, number, position[k], velocity[k], samples, result, k)
         _observe_spans(system, samples, result, k)
-        _observe_bodies(system, position[k], velocity[k], result, k)
-
-
-@kernel(inline=True)
-def _keep_loads(loads: Loads, result: Observations, k: int) -> None:
-    """Torques, hub forces, losses and energies of springs."""
-    result.penalty_energy[k] = loads.stored[0]
-    result.spring_energy[k] = loads.stored[1]
-    for p in range(loads.moment.size):
-        result.pulley_torque[k, p] = loads.moment[p]
-        result.shaft_torque[k, p] = loads.shaft[p]
-        result.hub_force[k, p, 0] = loads.hub[p, 0]
-        result.hub_force[k, p, 1] = loads.hub[p, 1]
-        result.friction_power[k, p] = loads.friction[p]
-        result.contact_damping_power[k, p] = loads.damping[p]
-
-
-@kernel(inline=True)
-def _gather(system: System, element: int, position: FloatArray, velocity: FloatArray, samples: Samples) -> None:
-    """Coordinates and velocities of an element."""
-    dof, node_j = len(system.scale), (element + 1) % system.nodes
-    for c in range(dof):
-        samples.element[0, c] = position[dof * element + c]
-        samples.element[0, dof + c] = position[dof * node_j + c]
-        samples.element[1, c] = velocity[dof * element + c]
-        samples.element[1, dof + c] = velocity[dof * node_j + c]
+        _observe_bodies(system, position[k], result, k)
+        if shown[k]:
+            for body in range(system.bodies.size):
+                speed = velocity[k, system.first_body + body]
+                result.kinetic_energy[show] += 0.5 * system.bodies[body].inertia * speed**2
 
 
 @kernel(inline=True)
@@ -178,6 +158,7 @@ def _observe_points(system: System, length: float, curve: int, samples: Samples,
         vx, vy = combine(samples.control_velocity, weights)
         qx, qy, samples.tension[row] = _stretch(system, samples, xi, length)
         samples.speed[row] = (qx * vx + qy * vy) / sqrt(qx * qx + qy * qy)
+        samples.velocity[row, 0], samples.velocity[row, 1] = vx, vy
         result.contact_position[k, row, 0] = x
         result.contact_position[k, row, 1] = y
         result.contact_pulley[k, row] = -1
@@ -187,28 +168,24 @@ def _observe_points(system: System, length: float, curve: int, samples: Samples,
 @kernel(inline=True)
 def _observe_contact(
     system: System,
-    element: int,
-    curve: int,
-    length: float,
+    number: int,
     position: FloatArray,
     velocity: FloatArray,
     samples: Samples,
     result: Observations,
     k: int,
 ) -> None:
-    """Contact of a curve as it moves the system and at its sampling points, and the angle over which it touches."""
-    zone, number = samples.contact.zone, element * system.control.shape[1] + curve
-    piece = Curve(samples.control, samples.control_velocity, system.control[element, curve], length)
+    """Contact of a curve at its sampling points, and the angle over which it touches."""
+    zone = samples.contact.zone
     for p in range(system.pulleys.size):
-        pulley, law = pulley_state(system, p, position, velocity), law_of(system, p)
+        pulley = pulley_state(system, p, position, velocity)
         if out_of_reach(samples.control, pulley):
             continue
-        add_contact(samples.loads, p, contact_force(piece, pulley, law, system.contact, 0.0, 0.0, samples.contact))
         for interval in range(touching_intervals(samples.control, pulley, zone)):
             start, end = zone.intervals[interval]
             result.wrap_angle[k, p] += _angle(samples, pulley, start, end)
             samples.nearest[p] = number * system.contact.points.size + _nearest_point(system, 0.5 * (start + end))
-        _touch_points(system, number, p, pulley, law, samples, result, k)
+        _touch_points(system, number, p, pulley, samples, result, k)
 
 
 @kernel(inline=True)
@@ -217,17 +194,15 @@ def _touch_points(
     curve: int,
     number: int,
     pulley: PulleyState,
-    law: ContactLaw,
     samples: Samples,
     result: Observations,
     k: int,
 ) -> None:
     """Contact at the sampling points of a curve that touch a pulley."""
-    count, weights = system.contact.points.size, samples.contact.weights
+    count, law = system.contact.points.size, law_of(system, number)
     for point in range(count):
         row = curve * count + point
-        fill_bernstein(system.contact.points[point], weights)
-        vx, vy = combine(samples.control_velocity, weights)
+        vx, vy = samples.velocity[row, 0], samples.velocity[row, 1]
         x, y = result.contact_position[k, row, 0], result.contact_position[k, row, 1]
         here = approach(x, y, vx, vy, pulley)
         if here.penetration >= 0.0:
@@ -309,12 +284,9 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
 
 
 @kernel(inline=True)
-def _observe_bodies(system: System, position: FloatArray, velocity: FloatArray, result: Observations, k: int) -> None:
-    """Centres of the pulleys, kinetic energy of the bodies and potential energy of weight."""
-    first = system.first_body
-    for body in range(system.bodies.size):
-        result.kinetic_energy[k] += 0.5 * system.bodies[body].inertia * velocity[first + body] ** 2
-    for c in range(first):
+def _observe_bodies(system: System, position: FloatArray, result: Observations, k: int) -> None:
+    """Centres of the pulleys and potential energy of weight."""
+    for c in range(system.first_body):
         result.potential_energy[k] -= system.supports.force[c] * position[c]
     for p in range(system.pulleys.size):
         x, y = system.pulleys[p].center

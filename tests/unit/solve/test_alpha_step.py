@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.solve.alpha_method import method_of
-from beltdyn.solve.alpha_step import try_step
+from beltdyn.solve.alpha_step import new_step, try_step
 from beltdyn.solve.engine import restart
 from beltdyn.solve.march import ITERATIONS, Settings, allowed_error, new_march
 from beltdyn.system.arrays import System
@@ -16,6 +16,7 @@ from beltdyn.system.state import straight
 SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0, long_step=0.02)
 ACCELERATION = 5.0
 STEP = 0.1
+METHOD = method_of(0.8)
 
 
 @given(st.floats(0.0, 1.0))
@@ -33,11 +34,17 @@ def test_error_grows_with_the_step_until_it_is_long() -> None:
     assert allowed_error(SETTINGS, 0.02) == allowed_error(SETTINGS, 5.0) == pytest.approx(2e-5)
 
 
+def test_a_step_ends_on_the_stop_that_rounding_would_miss() -> None:
+    beside = float(np.nextafter(0.1, 1.0))
+    assert new_step(METHOD, 0.0, beside, 0.1).end == 0.1
+    assert new_step(METHOD, 0.0, 0.1, 0.2).end == 0.1
+
+
 def test_constant_acceleration_is_exact(spinning: System) -> None:
     state = straight(spinning)
     march, equations = new_march(spinning, 0.0, STEP, state.position, state.velocity), new_equations(spinning)
     restart(spinning, march, equations)
-    iterations = try_step(spinning, SETTINGS, method_of(0.8), march, STEP, equations)
+    iterations = try_step(spinning, SETTINGS, METHOD, march, new_step(METHOD, 0.0, STEP, 1.0), equations)
     assert iterations == march.counts[ITERATIONS] == 1  # the first guess is right
     position, velocity, acceleration, auxiliary = march.trial[:, -1]
     assert position == pytest.approx(0.5 * ACCELERATION * STEP**2)
@@ -51,4 +58,4 @@ def test_no_solution_without_mass(spinning: System) -> None:
     state = straight(spinning)
     march, equations = new_march(spinning, 0.0, STEP, state.position, state.velocity), new_equations(spinning)
     broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
-    assert try_step(broken, SETTINGS, method_of(0.8), march, STEP, equations) == 0
+    assert try_step(broken, SETTINGS, METHOD, march, new_step(METHOD, 0.0, STEP, 1.0), equations) == 0

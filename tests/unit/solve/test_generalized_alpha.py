@@ -8,7 +8,7 @@ from beltdyn.solve.engine import advance, restart
 from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
 from beltdyn.solve.march import FAILED, STEPS, March, Settings, empty_steps, new_march
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import ENERGY_WORKS, System
+from beltdyn.system.arrays import ENERGY_WORKS, Loads, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
@@ -25,16 +25,17 @@ def start(system: System, step: float = 1e-3) -> March:
 def run(
     system: System, march: March, stop: float, room: int, budget: int = 10_000, settings: Settings = SETTINGS
 ) -> Chunk:
-    steps, equations = empty_steps(room, march.position.size), new_equations(system)
+    steps, equations = empty_steps(system, room), new_equations(system)
     restart(system, march, equations)
     status, filled = advance(system, settings, march, equations, stop, budget, steps)
     assert status == REACHED
-    return Chunk(**{name: array[:filled] for name, array in steps._asdict().items()}, reached=stop)
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
+    return Chunk(**rows, loads=Loads(*(array[:filled] for array in steps.loads)), reached=stop)
 
 
 def test_states_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:
     times = np.array([0.0123, 0.1, 0.25, 0.7])
-    chunk = Chunk.join([Chunk.start(straight(spinning)), run(spinning, start(spinning), 0.7, 10_000)])
+    chunk = Chunk.join([Chunk.start(spinning, straight(spinning)), run(spinning, start(spinning), 0.7, 10_000)])
     assert chunk.time[-1] == 0.7
     position, velocity = chunk.at(times)
     np.testing.assert_allclose(position[:, -1], 0.5 * ACCELERATION * times**2, atol=ROUNDING)
@@ -87,7 +88,7 @@ def test_steps_grow_to_the_longest_allowed(spinning: System) -> None:
 def test_nan_forces_end_with_too_small_a_step(spinning: System) -> None:
     march = start(spinning)
     broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
-    steps = empty_steps(1, march.position.size)
+    steps = empty_steps(spinning, 1)
     found = advance(broken, SETTINGS, march, new_equations(spinning), 1.0, 10_000, steps)
     assert found == (STEP_TOO_SMALL, 0)
     assert march.counts[FAILED] > 0

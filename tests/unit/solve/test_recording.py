@@ -13,6 +13,7 @@ from beltdyn.solve.recording import Recording, result_layout
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.build import drive_system
+from beltdyn.system.loads import load_history
 from beltdyn.system.state import laid
 
 Change = Callable[..., Drive]
@@ -25,7 +26,7 @@ def system(change: Change) -> System:
 
 def chunk(change: Change, system: System, time: float) -> Chunk:
     state = laid(system, change().path)
-    return replace(Chunk.start(state), time=np.array([time]), step=np.array([1e-4]), reached=time)
+    return replace(Chunk.start(system, state), time=np.array([time]), step=np.array([1e-4]), reached=time)
 
 
 @pytest.mark.parametrize(
@@ -58,8 +59,8 @@ def test_closes_with_its_status(
 def test_empty_chunks_only_tell(change: Change, system: System) -> None:
     told: list[float] = []
     with Recording(change(), system, None, "title", lambda progress: told.append(progress.time)) as recording:
-        none = np.empty((0, 62))
-        recording.take(Chunk(np.empty(0), np.empty(0), none, none, np.empty((0, len(ENERGY_WORKS))), reached=0.5))
+        none, works = np.empty((0, 62)), np.empty((0, len(ENERGY_WORKS)))
+        recording.take(Chunk(np.empty(0), np.empty(0), none, none, works, load_history(system, 0), reached=0.5))
     assert told[-1] == 0.5
     assert recording.run().dataset.sizes["time"] == 0
 

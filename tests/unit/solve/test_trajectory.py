@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.solve.trajectory import Statistics, Task, drive_task, velocity_scale
+from beltdyn.model.instants import Instants
+from beltdyn.solve.trajectory import Chunk, Statistics, Task, drive_task, velocity_scale
+from beltdyn.system.arrays import ENERGY_WORKS
 from beltdyn.system.build import drive_system
+from beltdyn.system.loads import load_history
 from beltdyn.system.state import laid
 
 Change = Callable[..., Drive]
@@ -61,3 +64,20 @@ def test_a_motor_drives_up_to_its_synchronous_speed(drive: Drive, change: Change
     pulleys: list[dict[str, Any]] = [pulley.model_dump(exclude_none=True) for pulley in drive.pulleys]
     pulleys[0] |= {"speed": None, "inertia": 0.1, "load": [motor]}
     assert velocity_scale(change(pulley=pulleys)) == pytest.approx(100.0 * 0.08125)
+
+
+@pytest.mark.parametrize("interval", [0.05, 0.011, 0.5])
+def test_outputs_need_only_the_states_around_them(change: Change, interval: float) -> None:
+    """Steps of all lengths, some of which end on outputs; the states in between change nothing."""
+    system, instants = drive_system(change()), Instants(interval, 3.0)
+    random = np.random.default_rng(1)
+    times = np.unique(np.append(random.uniform(0.0, 3.0, 120), instants[np.arange(0, instants.count, 2)]))
+    count = len(times)
+    position, velocity = random.uniform(size=(2, count, 3))
+    work, loads = np.zeros((count, len(ENERGY_WORKS))), load_history(system, count)
+    chunk = Chunk(times, np.diff(times, prepend=0.0), position, velocity, work, loads, reached=3.0)
+    around = chunk.around(instants, -interval)
+    wanted = instants[np.arange(instants.count)]
+    for found, expected in zip(chunk.only(around).at(wanted), chunk.at(wanted), strict=True):
+        np.testing.assert_array_equal(found, expected)
+    assert np.count_nonzero(around) < 2 * instants.count

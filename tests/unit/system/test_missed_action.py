@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Belt, Constant, Drive, Harmonic, Pulley, Table
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Motion, System
 from beltdyn.system.build import belt_system
-from beltdyn.system.missed_action import Motion, missed_action
+from beltdyn.system.missed_action import missed_action
 from beltdyn.system.state import straight
 
 START, LENGTH = 0.11, 0.37

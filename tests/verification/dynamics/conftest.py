@@ -76,7 +76,7 @@ def fixed_steps() -> Callable[[System, FloatArray, float, int, FloatArray], tupl
         settings = Settings(radius, anything, 1e-13 / (anything * step), step)
         march = new_march(system, 0.0, step, start, np.zeros_like(start))
         equations = new_equations(system)
-        taken = empty_steps(steps + 1, start.size)
+        taken = empty_steps(system, steps + 1)
         restart(system, march, equations)
         status, count = advance(system, settings, march, equations, end, 10 * steps, taken)
         assert status == REACHED

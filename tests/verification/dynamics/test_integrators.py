@@ -97,7 +97,7 @@ def test_spectral_radius_at_infinite_frequency(measured: Measured, curve: Measur
         march = new_march(system, 0.0, step, rest, np.zeros_like(rest))
         arrays = (march.position, march.velocity, march.acceleration, march.auxiliary)
         arrays[column][own] += small * scales[column]
-        none = empty_steps(0, rest.size)
+        none = empty_steps(system, 0)
         assert advance(system, settings, march, new_equations(system), step, 1, none)[0] == REACHED
         assert march.counts[STEPS] == 1
         state = np.array([array[own] for array in arrays])
