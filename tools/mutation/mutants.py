@@ -121,9 +121,14 @@ def _places(parent: ast.AST, at_import: bool) -> Iterator[_Place]:
             continue
         inside = name == "body" and isinstance(parent, ast.FunctionDef | ast.Lambda)
         for index, node in enumerate(value) if isinstance(value, list) else [(None, value)]:
-            if isinstance(node, ast.AST) and not isinstance(node, LEFT_ALONE):
+            if isinstance(node, ast.AST) and not _left_alone(node):
                 yield _Place(parent, name, index, node, at_import and not inside)
                 yield from _places(node, at_import and not inside)
+
+
+def _left_alone(node: ast.AST) -> bool:
+    for_types = isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING"
+    return for_types or isinstance(node, LEFT_ALONE)
 
 
 def _changes(node: ast.AST) -> Iterator[ast.AST]:
