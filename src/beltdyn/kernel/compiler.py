@@ -34,7 +34,10 @@ def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
     Returns
     -------
     numba.core.dispatcher.Dispatcher
+        Or the function itself with ``NUMBA_DISABLE_JIT=1``, as for debuggers.
     """
+    if numba.config.DISABLE_JIT:
+        return function
     if compiles_quickly():
         from beltdyn.kernel.quick import QuickDispatcher
 

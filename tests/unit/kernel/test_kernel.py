@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numba
 import pytest
 
 from beltdyn.kernel import CACHE_VARIABLE, PACKAGE, kernel, kernel_cache, source_hash
@@ -103,13 +104,27 @@ def test_only_kernels_that_python_calls_become_machine_code(tmp_path: Path, monk
     assert inner(6.0, 2) == 9.0
 
 
+def test_without_compilation_kernels_run_as_python(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With NUMBA_DISABLE_JIT=1: what could never be compiled is done."""
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
+    seen: list[float] = []
+
+    @kernel
+    def note(x: float) -> float:
+        seen.append(x)
+        return 2.0 * x
+
+    assert note(3.0) == 6.0
+    assert seen == [3.0]
+
+
 _CALLER = """
-from beltdyn.contact.law import ContactLaw, Wheel
+from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach
 from beltdyn.contact.point_force import point_force
 law = ContactLaw(1e7, 0.0, friction=1.2, friction_law=0, creep=1e5, may_pull=False, follow_zone=True, arm_to_rim=False)
 here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "distance": 0.08})
-print(point_force(here, Wheel(0.0, 0.0, 0.081, 0.0), law).normal)
+print(point_force(here, PulleyState(0.0, 0.0, 0.081, 0.0), law).normal)
 """
 
 
