@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError
 
 from beltdyn import __version__
+from beltdyn.analyses import ANALYSES
+from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error
@@ -45,6 +47,8 @@ _COMMANDS: tuple[Callable[..., object], ...] = (
 )
 for position, command in enumerate(_COMMANDS):
     app.command(command, sort_key=position)
+for analysis in ANALYSES.values():
+    app.command(App(name=analysis.name, help=analysis.purpose, sort_key=len(_COMMANDS)))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -72,6 +76,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
+    for name in ANALYSES.keys() & set(sys.argv[1:2] if arguments is None else arguments[:1]):
+        app[name].default(analysis_command(ANALYSES[name]))  # imported here, where it is used
     try:
         return app(arguments, exit_on_error=False, result_action="return_int_as_exit_code_else_zero") or 0
     except CycloptsError:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from beltdyn.cli.console import show
+from beltdyn.errors import ModelError
 
 if TYPE_CHECKING:
-    from beltdyn.results import Run
+    from beltdyn.results import Result
 
 
 def plot(
@@ -27,7 +28,7 @@ def plot(
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run`.
+        The result file, NetCDF, written by `beltdyn run` or another analysis.
     output
         The folder of the figures; by default beside the result file, named after it with -figures.
     figures
@@ -43,20 +44,23 @@ def plot(
     force
         Replace other files than figures of beltdyn too.
     """
-    from beltdyn.results import open_run
+    from beltdyn.results import open_result
 
     folder = output or file.with_name(f"{file.stem}-figures")
     choice = {"figures": _names(figures), "pulley": pulley, "variable": variable, "overwrite": force}
-    draw(open_run(file), folder, animate, **choice)
+    draw(open_result(file), folder, animate, **choice)
 
 
-def draw(run: "Run", folder: Path, animate: bool, **choice: Any) -> None:
-    """Draw figures of a run into a folder, as `plot.save_all` does, and say where they are."""
+def draw(result: "Result", folder: Path, animate: bool, **choice: Any) -> None:
+    """Draw figures of a result into a folder, as `plot.save_all` does, and say where they are."""
     from beltdyn import plot
+    from beltdyn.results import Run
 
-    paths = plot.save_all(run, folder, **choice)
-    if animate:
-        paths = [*paths, plot.animate(run, folder / "animation.gif", overwrite=bool(choice.get("overwrite")))]
+    if animate and not isinstance(result, Run):
+        raise ModelError(f"--animate needs results over time, and these are of {result.kind}. Leave it away.")
+    paths = plot.save_all(result, folder, **choice)
+    if animate and isinstance(result, Run):
+        paths = [*paths, plot.animate(result, folder / "animation.gif", overwrite=bool(choice.get("overwrite")))]
     show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
 
 

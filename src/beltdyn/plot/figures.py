@@ -7,25 +7,25 @@ from beltdyn.errors import ModelError
 from beltdyn.plot.registry import FIGURES, Choice
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import styled
-from beltdyn.results import Run, derived
+from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import is_marked, make_folder, require_replaceable
 
 
 @styled
 def save_all(
-    run: Run,
+    run: Result,
     folder: Path | str,
     figures: Iterable[str] | None = None,
     pulley: str | int | None = None,
     variable: str = "span_tension",
     overwrite: bool = False,
 ) -> list[Path]:
-    """Write figures as PNG.
+    """Write figures of a run, or of the result of another analysis, as PNG.
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Result
+        The run or other result.
     folder : Path or str
         Where to write; made if need be.
     figures : iterable of str, optional
@@ -49,16 +49,19 @@ def save_all(
         If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, a file cannot
         be written, or would replace one that is no figure of ours.
     """
-    run.require_output()
-    essential = (name for name, figure in FIGURES.items() if figure.by_default(run))
-    chosen = tuple(essential if figures is None else figures)
-    unknown = [name for name in chosen if name not in FIGURES]
+    if isinstance(run, Run):
+        run.require_output()
+    known = {name: figure for name, figure in FIGURES.items() if figure.of == run.kind}
+    if not known:
+        raise ModelError(f"there is no figure of {run.kind}. Look at its dataset: `bd.open_result(path).dataset`.")
+    chosen = tuple(figures if figures is not None else (name for name in known if known[name].by_default(run)))
+    unknown = [name for name in chosen if name not in known]
     if unknown:
-        raise ModelError(f"figure {unknown[0]!r} is not known. Choose out of {', '.join(FIGURES)}.")
+        raise ModelError(f"figure {unknown[0]!r} is not known. Choose out of {', '.join(known)}.")
     choice = Choice(None if pulley is None else derived.pulley_number(run, pulley), variable)
     paths = {name: Path(folder) / f"{name}.png" for name in chosen}
     for path in paths.values():
         require_replaceable(path, is_marked, overwrite)
-    drawn = {name: FIGURES[name].arrange(run, choice) for name in chosen}
+    drawn = {name: known[name].arrange(run, choice) for name in chosen}
     make_folder(Path(folder))
     return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from beltdyn.plot.style import new_figure
-from beltdyn.results import Run
+from beltdyn.results import Result
 
 Item = TypeVar("Item")
 
@@ -16,15 +16,15 @@ _PANEL = (4.2, 2.9)
 _COLUMNS = 4
 
 
-def one_panel(draw: Callable[..., Axes], run: Run, choice: object) -> Figure:
+def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:
     """Lay out a figure of one panel.
 
     Parameters
     ----------
     draw : callable
         ``draw(run, ax=None) -> Axes``.
-    run : Run
-        The run.
+    run : Result
+        What is drawn.
     choice : Choice
         Not needed.
 

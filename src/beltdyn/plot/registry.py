@@ -2,14 +2,15 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, ParamSpec
+from typing import Any, NamedTuple, ParamSpec
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from beltdyn.plot.panels import one_panel
 from beltdyn.plot.style import styled
-from beltdyn.results import Run
+from beltdyn.results import Result, Run
+from beltdyn.results.schema import RUN
 
 P = ParamSpec("P")
 
@@ -39,23 +40,26 @@ class Registered:
         ``arrange(run, choice) -> Figure``: all its panels on one page.
     by_default : callable
         ``by_default(run) -> bool``: whether it is drawn where no figures are chosen.
+    of : str
+        Kind of the results that it is drawn of, the name of an analysis.
     """
 
-    arrange: Callable[[Run, Choice], Figure]
-    by_default: Callable[[Run], bool]
+    arrange: Callable[[Any, Choice], Figure]
+    by_default: Callable[[Any], bool]
+    of: str
 
 
 FIGURES: dict[str, Registered] = {}
 """All figures by name."""
 
 
-def on_request(run: Run) -> bool:
+def on_request(result: Result) -> bool:
     """Draw a figure only where it is chosen."""
     return False
 
 
-def always(run: Run) -> bool:
-    """Draw a figure of every run."""
+def always(result: Result) -> bool:
+    """Draw a figure of every result of its kind."""
     return True
 
 
@@ -65,8 +69,9 @@ def over_time(run: Run) -> bool:
 
 
 def figure(
-    by_default: Callable[[Run], bool] = on_request,
-    arrange: Callable[[Callable[..., Axes], Run, Choice], Figure] = one_panel,
+    by_default: Callable[[Any], bool] = on_request,
+    arrange: Callable[[Callable[..., Axes], Any, Choice], Figure] = one_panel,
+    of: str = RUN,
 ) -> Callable[[Callable[P, Axes]], Callable[P, Axes]]:
     """Register a figure under the name of the function that draws it, and draw it in the style of this package.
 
@@ -76,6 +81,8 @@ def figure(
         Whether it is drawn where no figures are chosen: `on_request`, `always`, `over_time`, or a function of the run.
     arrange : callable
         ``arrange(draw, run, choice) -> Figure`` lays its panels out where it is saved; one panel by default.
+    of : str
+        Kind of the results that it is drawn of: of runs by default, or the name of an analysis.
 
     Returns
     -------
@@ -85,7 +92,7 @@ def figure(
 
     def register(draw: Callable[P, Axes]) -> Callable[P, Axes]:
         drawn = styled(draw)
-        FIGURES[draw.__name__] = Registered(lambda run, choice: arrange(drawn, run, choice), by_default)
+        FIGURES[draw.__name__] = Registered(lambda run, choice: arrange(drawn, run, choice), by_default, of)
         return drawn
 
     return register

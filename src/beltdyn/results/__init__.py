@@ -10,7 +10,8 @@ from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
 from beltdyn.results.resolution import Resolution
-from beltdyn.results.run import Run, open_run
+from beltdyn.results.result import Result, build_result
+from beltdyn.results.run import Run, open_result, open_run
 from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.size import describe_size, expected_bytes, require_room
 from beltdyn.results.summary import Summary, summarize
@@ -32,15 +33,18 @@ __all__ = [
     "PulleySummary",
     "Recorder",
     "Resolution",
+    "Result",
     "Run",
     "SpanSummary",
     "Status",
     "Summary",
     "TensionerSummary",
     "Variable",
+    "build_result",
     "derived",
     "describe_size",
     "expected_bytes",
+    "open_result",
     "open_run",
     "power_balance",
     "provenance",

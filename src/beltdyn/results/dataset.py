@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, RUN, TIMES, VARIABLES, Variable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,7 +52,7 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
 
 
 def open_dataset(path: Path) -> "xr.Dataset":
-    """Open a result file; values are read when they are used.
+    """Open the result file of a run; values are read when they are used.
 
     Parameters
     ----------
@@ -63,6 +63,36 @@ def open_dataset(path: Path) -> "xr.Dataset":
     -------
     xarray.Dataset
         Its complete outputs.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, is not the result of a run, or has a format that is not known yet.
+    """
+    dataset = read_dataset(path)
+    try:
+        _check_names(path, dataset)
+        return _complete(dataset)
+    except ModelError:
+        dataset.close()
+        raise
+    except Exception as error:  # see read_dataset
+        dataset.close()
+        raise ModelError(unreadable(path, error)) from error
+
+
+def read_dataset(path: Path) -> "xr.Dataset":
+    """Open a result file of any kind; values are read when they are used.
+
+    Parameters
+    ----------
+    path : Path
+        A result file.
+
+    Returns
+    -------
+    xarray.Dataset
+        What it holds.
 
     Raises
     ------
@@ -80,15 +110,19 @@ def open_dataset(path: Path) -> "xr.Dataset":
     except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
         raise ModelError(unreadable(path, error)) from error
     try:
-        _check_format(path, dataset)
-        _check_names(path, dataset)
-        return _complete(dataset)
+        _check_attributes(path, dataset)
+        return dataset
     except ModelError:
         dataset.close()
         raise
     except Exception as error:
         dataset.close()
         raise ModelError(unreadable(path, error)) from error
+
+
+def kind_of(dataset: "xr.Dataset") -> str:
+    """Kind of a result: the name of the analysis. The first files, which are of runs, said none."""
+    return str(dataset.attrs.get("kind", RUN))
 
 
 def unreadable(path: Path, error: Exception) -> str:
@@ -113,8 +147,16 @@ def unreadable(path: Path, error: Exception) -> str:
     )
 
 
-def _check_format(path: Path, dataset: "xr.Dataset") -> None:
-    """Make sure that a file has a format that this version reads. The first files said none."""
+def _check_attributes(path: Path, dataset: "xr.Dataset") -> None:
+    """Make sure that a file is a result, and has a format that this version reads. The first files said none."""
+    missing = [name for name in _OURS if name not in dataset.attrs]
+    if missing:
+        raise ModelError(
+            f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
+        )
+    for name in _OURS:
+        if not isinstance(dataset.attrs[name], str):
+            raise ValueError(f"`{name}` is no text")
     ours, given = ".".join(map(str, FORMAT)), str(dataset.attrs.get("format", "1.0"))
     if int(given.split(".")[0]) > FORMAT[0]:
         raise ModelError(
@@ -124,16 +166,16 @@ def _check_format(path: Path, dataset: "xr.Dataset") -> None:
 
 
 def _check_names(path: Path, dataset: "xr.Dataset") -> None:
-    """Make sure that a file holds the core of a result; and what it holds, along the same dimensions and of one kind.
+    """Make sure that a file holds the core of a run; and what it holds, along the same dimensions and of one kind.
 
     Variables that are not known are left as they are.
     """
-    known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
-    missing = [name for name in _OURS if name not in dataset.attrs]
-    if missing:
+    if kind_of(dataset) != RUN:
         raise ModelError(
-            f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
+            f"{path} is the result of another analysis, {kind_of(dataset)}, and holds no outputs over time. "
+            "Open it with `bd.open_result`, or draw it with `beltdyn plot`."
         )
+    known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
     missing = [name for name in known if _is_needed(known[name], dataset) and name not in dataset.variables]
     if missing:
         raise ModelError(
@@ -144,9 +186,6 @@ def _check_names(path: Path, dataset: "xr.Dataset") -> None:
         variable, dtype = dataset[name], known[name].dtype
         if variable.dims != known[name].dims or (dtype != "str" and variable.dtype.kind != np.dtype(dtype).kind):
             raise ValueError(f"`{name}` is not what it should be")
-    for name in _OURS:
-        if not isinstance(dataset.attrs[name], str):
-            raise ValueError(f"`{name}` is no text")
 
 
 def _is_needed(variable: Variable, dataset: "xr.Dataset") -> bool:

@@ -4,12 +4,12 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import version
 
-from beltdyn.results.schema import FORMAT
+from beltdyn.results.schema import FORMAT, RUN
 
 _PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
 
 
-def provenance(drive_text: str, title: str) -> dict[str, str]:
+def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
     """Global attributes that are known before anything is computed.
 
     Parameters
@@ -18,16 +18,19 @@ def provenance(drive_text: str, title: str) -> dict[str, str]:
         The drive file's text.
     title : str
         What the dataset is, in a few words.
+    kind : str
+        Name of the analysis; "run" where results grow over time.
 
     Returns
     -------
     dict
-        ``title``, ``drive``, ``format`` (version of the result file), ``beltdyn_version``, ``numba_version``,
+        ``title``, ``kind``, ``drive``, ``format`` (version of the result file), ``beltdyn_version``, ``numba_version``,
         ``numpy_version``, ``scipy_version``, ``python_version`` and ``created`` (ISO 8601, UTC).
     """
     versions = {f"{package}_version": version(package) for package in _PACKAGES}
     return {
         "title": title,
+        "kind": kind,
         "drive": drive_text,
         "format": ".".join(map(str, FORMAT)),
         **versions,

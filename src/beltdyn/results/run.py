@@ -10,17 +10,19 @@ import h5py
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, loads
+from beltdyn.model import Drive
 from beltdyn.results.checks import Finding, find
-from beltdyn.results.dataset import open_dataset, unreadable
+from beltdyn.results.dataset import kind_of, open_dataset, read_dataset, unreadable
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
+from beltdyn.results.result import Result, drive_of
+from beltdyn.results.schema import RUN
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-class Run:
+class Run(Result):
     """What a simulation gave.
 
     Parameters
@@ -34,8 +36,7 @@ class Run:
     """
 
     def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:
-        self.drive, self.path = drive, path
-        self._dataset = dataset
+        super().__init__(dataset, drive, path)
         self._stamp = _stamp(path)
 
     def __repr__(self) -> str:
@@ -46,6 +47,11 @@ class Run:
         from beltdyn.results.notebook import run_html
 
         return run_html(self)
+
+    @property
+    def kind(self) -> str:
+        """The kind of all results over time."""
+        return RUN
 
     @property
     def dataset(self) -> "xr.Dataset":
@@ -206,10 +212,46 @@ def open_run(path: Path | str) -> Run:
     path = Path(path)
     dataset = open_dataset(path)
     try:
-        drive = loads(dataset.attrs["drive"], base=path.parent)
+        drive = drive_of(dataset, path)
         if list(dataset["pulley"].values) != [pulley.name for pulley in drive.pulleys]:
-            raise ValueError("its pulleys are not those of its drive")
-    except ValueError as error:
+            raise ModelError(unreadable(path, ValueError("its pulleys are not those of its drive")))
+    except ModelError:
         dataset.close()
-        raise ModelError(unreadable(path, error)) from error
+        raise
     return Run(dataset, drive, path)
+
+
+def open_result(path: Path | str) -> Result:
+    """Open a result file of any kind; values are read when they are used.
+
+    Parameters
+    ----------
+    path : Path or str
+        A file written by a run or by another analysis.
+
+    Returns
+    -------
+    Result
+        A `Run` where results grow over time.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read or is not a result of beltdyn.
+
+    Examples
+    --------
+    >>> _ = bd.equilibrium(drive).save("rest.nc")
+    >>> bd.open_result("rest.nc").dataset.sizes["span"]
+    2
+    """
+    path = Path(path)
+    dataset = read_dataset(path)
+    try:
+        if kind_of(dataset) != RUN:
+            return Result(dataset, drive_of(dataset, path), path)
+    except ModelError:
+        dataset.close()
+        raise
+    dataset.close()
+    return open_run(path)

@@ -7,6 +7,9 @@ FORMAT = (1, 0)
 """Version of the result file. The first number grows when earlier readers would misread a file, the second when a file
 holds more than before."""
 
+RUN = "run"
+"""Kind of the results that grow over time. Those of other analyses are of a kind named after the analysis."""
+
 COORDINATE_NAMES = ("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy")
 """Order of the nodal coordinates; the nodes of a chain of links have the first two only."""
 

@@ -6,6 +6,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
+from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import TIMES
 
@@ -56,13 +57,13 @@ def window(run: Run, start: float | None = None, end: float | None = None) -> xr
     return dataset
 
 
-def pulley_number(run: Run, pulley: str | int) -> int:
+def pulley_number(run: Result, pulley: str | int) -> int:
     """Give the number of a pulley.
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Result
+        What was computed of a drive.
     pulley : str or int
         Its name or number.
 

@@ -1,0 +1,146 @@
+"""What an analysis gives: one labelled dataset with dimensions of its own, its drive, and its file."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, loads
+from beltdyn.results.atomic import atomic_path
+from beltdyn.results.dataset import is_result, kind_of, unreadable
+from beltdyn.results.provenance import provenance
+from beltdyn.results.schema import DERIVED, Variable
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+class Result:
+    """What an analysis gave.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Labelled variables; its attributes tell ``kind``, ``drive``, ``status`` and ``warnings``.
+    drive : Drive
+        The drive that was analysed.
+    path : Path or None
+        The file that it was read from, or None for a result in memory.
+    """
+
+    def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:
+        self.drive, self.path = drive, path
+        self._dataset = dataset
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(kind={self.kind!r}, path={self.path!r})"
+
+    def _repr_html_(self) -> str:
+        """Show the result in a notebook."""
+        return str(self.dataset._repr_html_())
+
+    @property
+    def dataset(self) -> "xr.Dataset":
+        """Every variable with its dimensions, units and meaning."""
+        assert self._dataset is not None
+        return self._dataset
+
+    @property
+    def kind(self) -> str:
+        """Name of the analysis, or "run" where results grow over time; a figure belongs to one kind."""
+        return kind_of(self.dataset)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What makes the results doubtful, and what to do; empty when all is well."""
+        return str(self.dataset.attrs.get("warnings", "")).splitlines()
+
+    def save(self, path: Path | str, overwrite: bool = False) -> Path:
+        """Write the result to a file, which `open_result` and `beltdyn plot` read.
+
+        Parameters
+        ----------
+        path : Path or str
+            The file (NetCDF4); a result of beltdyn that is there is replaced.
+        overwrite : bool
+            Replace any regular file.
+
+        Returns
+        -------
+        Path
+            The file.
+
+        Raises
+        ------
+        ModelError
+            If the file cannot be written, or would replace one that is no result.
+        """
+        path = Path(path)
+        with atomic_path(path, is_result, overwrite) as temporary:
+            self.dataset.load().drop_vars(DERIVED, errors="ignore").to_netcdf(temporary, engine="h5netcdf")
+        return path
+
+
+def build_result(
+    kind: str,
+    drive: Drive,
+    variables: Mapping[str, tuple[Variable, ArrayLike]],
+    coordinates: Mapping[str, tuple[Variable, ArrayLike]],
+    warnings: Sequence[str] = (),
+) -> Result:
+    """Put the result of an analysis together.
+
+    Parameters
+    ----------
+    kind : str
+        Name of the analysis.
+    drive : Drive
+        The drive that was analysed.
+    variables : mapping
+        Name -> what a variable is, and its values.
+    coordinates : mapping
+        The same of coordinates; one named after its dimension labels that dimension.
+    warnings : sequence of str
+        What makes the results doubtful, one line each.
+
+    Returns
+    -------
+    Result
+        In memory, with where it comes from among its attributes.
+    """
+    import xarray as xr
+
+    def labelled(parts: Mapping[str, tuple[Variable, ArrayLike]]) -> dict[str, tuple[object, ...]]:
+        return {name: (variable.dims, values, variable.attributes) for name, (variable, values) in parts.items()}
+
+    origin = provenance(drive.text, f"Belt drive, {kind}", kind)
+    attributes = origin | {"status": "completed", "warnings": "\n".join(warnings)}
+    return Result(xr.Dataset(labelled(variables), labelled(coordinates), attributes), drive)
+
+
+def drive_of(dataset: "xr.Dataset", path: Path) -> Drive:
+    """Read the drive of a result file.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Its dataset.
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Drive
+        The drive.
+
+    Raises
+    ------
+    ModelError
+        If its text is no drive file.
+    """
+    try:
+        return loads(dataset.attrs["drive"], base=path.parent)
+    except ValueError as error:
+        raise ModelError(unreadable(path, error)) from error
