@@ -40,13 +40,13 @@ compatibility: ## kernels with the oldest Numba, the last one known and the newe
 		.venv-numba/bin/pip install --quiet "numba$$version" pytest hypothesis . && \
 		.venv-numba/bin/python -c "import numba; print('Numba', numba.__version__)" && \
 		BELTDYN_CACHE_DIR=.venv-numba/kernels .venv-numba/bin/python -m pytest --quiet tests/unit/kernel tests/unit/contact \
-			tests/unit/ancf tests/unit/chain tests/unit/system || exit 1; \
+			tests/unit/elements tests/unit/system || exit 1; \
 	done
 	rm -rf .venv-numba
 
 mutation: install ## small changes of the sources, taken at random, and how many of them the tests notice
-	$(BIN)/python -m tools.mutation contact ancf chain system results/derived --sample 100 \
-		--tests tests/unit/contact tests/unit/ancf tests/unit/chain tests/unit/system tests/unit/results/derived
+	$(BIN)/python -m tools.mutation contact elements system results/derived --sample 100 \
+		--tests tests/unit/contact tests/unit/elements tests/unit/system tests/unit/results/derived
 
 bench: install ## benchmarks
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done

@@ -11,11 +11,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from beltdyn.ancf.elastic_force import element_force
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
+from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import find_equilibrium
@@ -62,24 +62,14 @@ def repeat_substitution(system: System, _s: FloatArray, _rates: FloatArray, work
 @kernel
 def repeat_elasticity(system: System, state: FloatArray, _r: FloatArray, work: Equations, _none: FloatArray) -> None:
     """Elastic forces with their tangent."""
-    scratch, points = work.work, system.elastic
+    scratch = work.work
     for _ in range(REPEATS):
         for element in range(system.length.size):
             dof = len(system.scale)
             for c in range(dof):
                 scratch.coordinates[0, c] = state[dof * element + c]
                 scratch.coordinates[0, dof + c] = state[dof * ((element + 1) % system.nodes) + c]
-            element_force(
-                scratch.coordinates[0],
-                system.section,
-                system.length[element],
-                points.points,
-                points.weights,
-                True,
-                scratch.elastic,
-                scratch.gradient,
-                scratch.tangent,
-            )
+            elastic_force(system.element, scratch.coordinates[0], system.length[element], True, scratch.element)
 
 
 @kernel

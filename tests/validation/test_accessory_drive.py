@@ -130,7 +130,7 @@ def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
     paths, belts, stretched = [], [], []
     for instant in (0.0, 0.3, 0.47, 0.7, 1.19, 1.27, 2.0):
         output = run().fields_at(instant)
-        pieces = np.diff(centerline(output["nodal_coordinates"].values, lengths, 33), axis=1)
+        pieces = np.diff(centerline(drive.belt.element_kind, output["nodal_coordinates"].values, lengths, 33), axis=1)
         path = replace(drive.path, centers=output["pulley_center"].values)
         touched = output["contact_pulley"].values.astype(int)
         sunk = np.where(

@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.elastic_force import element_energy, element_force
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.model import Belt, Drive, loads
 from beltdyn.quadrature import gauss_points
+from beltdyn.records import blank
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_section, belt_system
+from beltdyn.system.build import belt_system
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.state import State, at_rest
 
 settings.register_profile("patient", deadline=None)  # a kernel is compiled at its first call
@@ -48,14 +52,12 @@ def unloaded(element_length: float) -> FloatArray:
 @pytest.fixture(scope="session")
 def evaluate() -> Callable[[Belt, FloatArray], tuple[float, FloatArray, FloatArray]]:
     """Energy, its gradient and its tangent for one element of a belt."""
-    work = elastic_workspace()
 
     def values(belt: Belt, e: FloatArray) -> tuple[float, FloatArray, FloatArray]:
         section, length = belt_section(belt), belt.length / belt.elements
-        points, weights = gauss_points(belt.quadrature_points)
-        gradient, tangent = np.empty(12), np.empty((12, 12))
-        element_force(e, section, length, points, weights, True, work, gradient, tangent)
-        return element_energy(e, section, length, points, weights), gradient, tangent
+        element, work = Ancf(section, gauss_points(belt.quadrature_points)), blank(ANCF.workspace)
+        element_force(element, e, length, True, work)
+        return element_energy(element, e, length), work.gradient, work.tangent
 
     return values
 

@@ -17,7 +17,8 @@ from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_section, belt_system
+from beltdyn.system.build import belt_system
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.state import State
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import stretch

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.ancf.inertia import element_mass
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.inertia import element_mass
 from beltdyn.model import Belt
-from beltdyn.system.build import belt_section
+from beltdyn.system.discretization import belt_section
 
 SPEEDS = st.integers(-1000, 1000).map(lambda tenths: 0.1 * tenths)
 EXACT = 1e-13  # a dozen roundings

@@ -12,13 +12,16 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.linalg import eig
 
-from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
-from beltdyn.ancf.inertia import element_mass
-from beltdyn.ancf.material_damping import damping_force, damping_workspace
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.elastic_force import element_energy, element_force
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.elements.ancf.inertia import element_mass
+from beltdyn.elements.ancf.kind import ANCF
+from beltdyn.elements.ancf.material_damping import damping_force
 from beltdyn.model import Belt
 from beltdyn.quadrature import gauss_points
-from beltdyn.system.build import belt_section
+from beltdyn.records import blank
+from beltdyn.system.discretization import belt_section
 
 TIME = 1e-4
 """Damping time, s."""
@@ -41,15 +44,17 @@ def make_belt(elements: int) -> Belt:
 
 def straight_matrices(belt: Belt) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mass, damping and stiffness of the straight open belt, shape (6 N, 6 N)."""
-    section, length, rule = belt_section(belt), belt.length / belt.elements, gauss_points(4)
+    section, length = belt_section(belt), belt.length / belt.elements
     unloaded = np.array([0, 0, 1, 0, 0, 1, length, 0, 1, 0, 0, 1], dtype=float)
-    stiffness, damping = np.zeros((12, 12)), np.zeros((12, 12))
-    element_force(unloaded, section, length, *rule, True, elastic_workspace(), np.zeros(12), stiffness)
-    damping_force(unloaded, np.zeros(12), section, length, *rule, 0.0, 1.0, damping_workspace(), np.zeros(12), damping)
+    element, work = Ancf(section, gauss_points(4)), blank(ANCF.workspace)
+    damping_force(element, unloaded, np.zeros(12), length, 0.0, 1.0, work)
+    damping = work.tangent.copy()
+    element_force(element, unloaded, length, True, work)
+    stiffness = work.tangent
     size = 6 * (belt.elements + 1)
     whole = np.zeros((3, size, size))
-    for element in range(belt.elements):
-        rows = slice(6 * element, 6 * element + 12)
+    for first in range(0, 6 * belt.elements, 6):
+        rows = slice(first, first + 12)
         whole[:, rows, rows] += [element_mass(section, length), damping, stiffness]
     return whole[0], whole[1], whole[2]
 
@@ -86,26 +91,23 @@ def test_modes_decay_with_half_omega_tau(kind: str, measured: Callable[..., None
 def test_energy_of_a_free_flight_is_lost_to_damping_alone(measured: Callable[..., None]) -> None:
     """Kinetic and strain energy and the loss together stay as they are, momentum and angular momentum too, to 1e-9."""
     belt = make_belt(16).replace(thickness="5 mm", stretch_damping_time="1 ms", bending_damping_time="2 ms")
-    section, length, rule = belt_section(belt), belt.length / belt.elements, gauss_points(4)
-    mass, elastic, damping = element_mass(section, length), elastic_workspace(), damping_workspace()
+    section, length = belt_section(belt), belt.length / belt.elements
+    element, mass, work = Ancf(section, gauss_points(4)), element_mass(section, length), blank(ANCF.workspace)
     random = np.random.default_rng(2)
     scale = np.tile([length, length, 1, 1, 1, 1], 2)
     start = np.array([0, 0, 1, 0, 0, 1, length, 0, 1, 0, 0, 1]) + 0.1 * scale * random.uniform(-1, 1, 12)
     velocity = 20.0 * scale * random.uniform(-1, 1, 12)
-    gradient, tangent = np.empty(12), np.empty((12, 12))
 
     def rates(_time: float, state: FloatArray) -> FloatArray:
         e, rate = np.ascontiguousarray(state[:12]), np.ascontiguousarray(state[12:24])
-        element_force(e, section, length, *rule, True, elastic, gradient, tangent)
-        lost = damping_force(e, rate, section, length, *rule, 0.0, 0.0, damping, gradient, tangent)
-        return np.concatenate([rate, -np.linalg.solve(mass, gradient), [lost]])
+        element_force(element, e, length, False, work)
+        lost = damping_force(element, e, rate, length, 0.0, 0.0, work)
+        return np.concatenate([rate, -np.linalg.solve(mass, work.gradient), [lost]])
 
     run = solve_ivp(rates, (0.0, 2e-3), np.concatenate([start, velocity, [0.0]]), "DOP853", rtol=1e-11, atol=1e-13)
     assert run.success
     states = run.y.T[[0, -1]]
-    energy = [
-        0.5 * y[12:24] @ mass @ y[12:24] + element_energy(y[:12].copy(), section, length, *rule) + y[24] for y in states
-    ]
+    energy = [0.5 * y[12:24] @ mass @ y[12:24] + element_energy(element, y[:12].copy(), length) + y[24] for y in states]
     spins = [(mass @ y[12:24]) @ np.stack([-y[1:12:2], y[:12:2]], axis=1).ravel() for y in states]
     lost = states[-1][24] / energy[0]
     measured(lost=lost, energy=energy[1] / energy[0] - 1.0, angular_momentum=spins[1] / spins[0] - 1.0)

@@ -17,7 +17,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_section
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.state import straight
 
 Cantilever = Callable[..., tuple[Belt, System]]

@@ -2,18 +2,23 @@
 
 from collections.abc import Mapping
 from math import pi, sin
-from typing import Any, Literal, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
+from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
 from beltdyn.model.part import Part, computed
 from beltdyn.model.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
 
-_LINKS = {"truss": 1, "three-node-beam": 2}
-_GROUP = 3
-_FEWEST_LINKS = 9
+_KINDS = {kind.name: kind for kind in ELEMENTS}
+_MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS)
+
+if TYPE_CHECKING:
+    ElementName = str
+else:
+    ElementName = Literal[tuple(_KINDS)]
 
 Side = Literal["inside", "outside"]
 """The side of the belt that touches a pulley; the outside is the belt's back."""
@@ -70,11 +75,7 @@ class Belt(Part):
         description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
     )
     elements: Count = Field(20, ge=3, le=100_000, description="the number of belt elements")
-    discretization: Literal["ancf", "truss", "three-node-beam"] = Field(
-        "ancf",
-        description="the kind of elements: the paper's, or for comparison straight links without bending stiffness, "
-        "or pairs of links with torsional springs",
-    )
+    discretization: ElementName = Field(ELEMENTS[0].name, description=f"the kind of elements: {_MEANINGS}")
     integration: Literal["full", "reduced"] = Field(
         "full",
         description="the integration of the elastic forces: over Gauss points, or over three Lobatto points, "
@@ -96,10 +97,10 @@ class Belt(Part):
         return to_material(data, (info.context or {}).get("base"))
 
     @model_validator(mode="after")
-    def _only_the_papers_element_is_damped(self) -> Self:
+    def _only_some_elements_are_damped(self) -> Self:
         for key in ("stretch_damping_time", "bending_damping_time"):
             time = getattr(self, key)
-            if self.links and time > 0:
+            if time > 0 and not self.element_kind.is_damped:
                 raise ValueError(
                     f'{key} = {time:g} s does not fit discretization = "{self.discretization}", which has no '
                     'damping. Remove it, or set discretization = "ancf"'
@@ -110,19 +111,6 @@ class Belt(Part):
     def _has_length_or_tension(self) -> Self:
         if self.length is None and self.installed_tension is None:
             raise ValueError("length is missing. Give the unstretched length, or installed_tension in its place")
-        return self
-
-    @model_validator(mode="after")
-    def _links_come_in_threes(self) -> Self:
-        links, each = self.links, _LINKS.get(self.discretization, 0)
-        if each and (links % _GROUP or links < _FEWEST_LINKS):
-            fewest = -(-_FEWEST_LINKS // (_GROUP * each)) * _GROUP
-            fewer = self.elements // _GROUP * _GROUP
-            choice = f"{fewer} or {fewer + _GROUP}" if fewer >= fewest else f"{fewest}"
-            raise ValueError(
-                f'elements = {self.elements} does not fit discretization = "{self.discretization}", whose number of '
-                f"elements is a multiple of {_GROUP}, at least {fewest}. Choose {choice}"
-            )
         return self
 
     @property
@@ -170,14 +158,9 @@ class Belt(Part):
         return self.pitch_offset if side == "inside" else self.back_offset
 
     @property
-    def links(self) -> int:
-        """Number of straight links, one of a truss element and two of a three-node beam element; zero for "ancf"."""
-        return self.elements * _LINKS.get(self.discretization, 0)
-
-    @property
-    def multiple(self) -> int:
-        """What the number of elements is a multiple of."""
-        return _GROUP if self.links else 1
+    def element_kind(self) -> ElementKind:
+        """What the elements are: `discretization` by its name."""
+        return _KINDS[self.discretization]
 
     @property
     def area(self) -> float:

@@ -58,10 +58,10 @@ class Drive(Part):
 
     @model_validator(mode="after")
     def _joint_fits_the_belt(self) -> Self:
-        if self.simulation.joint == "multipliers" and self.belt.discretization != "ancf":
+        if self.simulation.joint == "multipliers" and not self.belt.element_kind.has_ends:
             raise ValueError(
                 f'simulation.joint = "multipliers" does not fit belt.discretization = "{self.belt.discretization}": '
-                'only the element "ancf" has ends to tie. Choose joint = "shared_node", or discretization = "ancf".'
+                'its elements have no ends to tie. Choose joint = "shared_node", or discretization = "ancf".'
             )
         return self
 

@@ -111,8 +111,22 @@ class Path:
         """
         return self._trace(s)[1]
 
-    def _trace(self, s: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Points and tangents: a piece starts at a point p with a tangent u and has the curvature 1/r or 0."""
+    def bend(self, s: ArrayLike) -> FloatArray:
+        """Curvature vector, the derivative of the tangent: zero on spans.
+
+        Parameters
+        ----------
+        s : array_like, shape (k,), m
+            Arc lengths, periodic in the length of the path.
+
+        Returns
+        -------
+        ndarray, shape (k, 2), 1/m
+        """
+        return self._trace(s)[2]
+
+    def _trace(self, s: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Points, tangents and their rates: a piece starts at p with a tangent u and has the curvature 1/r or 0."""
         reduced = np.mod(np.asarray(s, dtype=float), self.length)
         piece = np.clip(np.searchsorted(self._starts, reduced, side="right") - 1, 0, 2 * self.count - 1)
         along = reduced - self._starts[piece]
@@ -125,7 +139,8 @@ class Path:
         tangents = cosine * forward + sine * _left(forward)
         on_circle = start + radius[:, None] * (sine * forward + (1 - cosine) * _left(forward))
         on_line = start + along[:, None] * forward
-        return np.where(on_arc[:, None], on_circle, on_line), tangents
+        bends = np.where(on_arc, 1.0 / radius, 0.0)[:, None] * _left(tangents)
+        return np.where(on_arc[:, None], on_circle, on_line), tangents, bends
 
 
 def span_directions(centers: FloatArray, radii: FloatArray) -> FloatArray:

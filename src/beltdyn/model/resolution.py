@@ -34,8 +34,6 @@ _SURE = 2.0
 """Estimates of which an error is hardly ever more."""
 _COARSE = 12.0
 """y from which elements touch at single points, and errors grow less."""
-_LINK = 48.0
-"""A straight link over the length l misses a circle as a cubic over (48 R^2 l^2)^(1/4) does."""
 _MOST = 100_000
 
 
@@ -56,10 +54,8 @@ class Running:
 
 
 def element_angles(drive: Drive, elements: int) -> FloatArray:
-    """Angle of each pulley that one element covers, rad; of a straight link, that of the cubic that misses as much."""
-    belt, radii = drive.belt, drive.radii
-    angles = belt.length / (elements * radii)
-    return np.sqrt(angles * belt.elements / belt.links) * _LINK**0.25 if belt.links else angles
+    """Angle of each pulley that one element covers, rad; of others, that of the cubic that misses as much."""
+    return drive.belt.element_kind.cubic_angle(drive.belt.length / (elements * drive.radii))
 
 
 def mesh_errors(drive: Drive, running: Running, elements: int | None = None) -> dict[str, float]:
@@ -114,14 +110,14 @@ def elements_needed(drive: Drive, running: Running) -> dict[str, int]:
 
 def _fewest(drive: Drive, running: Running, name: str, limit: float) -> int:
     """Fewest elements for one error, by halving: errors fall with the number."""
-    few, many, group = 0, _MOST // drive.belt.multiple, drive.belt.multiple
+    few, many = 0, _MOST
     while many - few > 1:
         middle = (few + many) // 2
-        if mesh_errors(drive, running, middle * group)[name] > limit:
+        if mesh_errors(drive, running, middle)[name] > limit:
             few = middle
         else:
             many = middle
-    return many * group
+    return many
 
 
 def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> tuple[str, str] | None:

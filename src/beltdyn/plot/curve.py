@@ -4,6 +4,8 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import BINOMIALS
+from beltdyn.elements import ElementKind
 
 POINTS = 17
 """Points drawn on an element, ends included."""
@@ -28,34 +30,30 @@ def element_lengths(dataset: xr.Dataset, belt_length: float) -> FloatArray:
     return np.diff(nodes, append=nodes[0] + belt_length)
 
 
-def centerline(coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
-    """Interpolate the centreline by the element's cubic Hermite polynomials (Eq. 6), or by straight links.
+def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
+    """Points on the centreline, by the Bezier curves of the elements.
 
     Parameters
     ----------
-    coordinates : ndarray, shape (nodes, 6) or (nodes, 2)
-        Nodal coordinates: positions (m) and, but for links, slopes along the belt first.
+    kind : ElementKind
+        Of the belt: ``drive.belt.element_kind``.
+    coordinates : ndarray, shape (nodes, k)
+        Nodal coordinates of a result: positions (m) first.
     lengths : ndarray, shape (nodes,)
         Reference length from each node to the next around the belt, m.
     points : int
-        Points on an element, ends included.
+        Points on a curve, ends included.
 
     Returns
     -------
     ndarray, shape (nodes, points, 2)
-        Points on the element that begins at each node, m.
+        Points on the curve that begins at each node, m.
     """
-    xi = np.linspace(0.0, 1.0, points)[None, :, None]
-    position = coordinates[:, None, 0:2]
-    next_position = np.roll(position, -1, axis=0)
-    if coordinates.shape[1] == 2:
-        return (1 - xi) * position + xi * next_position
-    slope = coordinates[:, None, 2:4]
-    next_slope = np.roll(slope, -1, axis=0)
-    length = lengths[:, None, None]
-    return (
-        (1 - 3 * xi**2 + 2 * xi**3) * position
-        + (xi - 2 * xi**2 + xi**3) * length * slope
-        + (3 * xi**2 - 2 * xi**3) * next_position
-        + (xi**3 - xi**2) * length * next_slope
-    )
+    first = coordinates.reshape(-1, kind.dof)
+    element = np.hstack([first, np.roll(first, -1, axis=0)])
+    vectors = np.stack([element[:, start : start + 2] for start in kind.vectors], axis=1)
+    control = np.stack([kind.control(float(np.sum(length))) for length in lengths.reshape(len(first), -1)])
+    degree, xi = control.shape[2] - 1, np.linspace(0.0, 1.0, points)[:, None]
+    order = np.arange(degree + 1)
+    weights = BINOMIALS[degree, order] * xi**order * (1.0 - xi) ** (degree - order)
+    return np.asarray(np.einsum("pk,nckv,nva->ncpa", weights, control, vectors)).reshape(-1, points, 2)

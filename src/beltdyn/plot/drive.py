@@ -44,6 +44,7 @@ class DrivePicture:
     """
 
     def __init__(self, run: Run, ax: Axes, norm: Normalize) -> None:
+        self._kind = run.drive.belt.element_kind
         self._lengths = element_lengths(run.dataset, run.drive.belt.length)
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
         self._centers = run.drive.centers
@@ -66,7 +67,7 @@ class DrivePicture:
         instant : xarray.Dataset
             The result at one time.
         """
-        self._belt.set_segments(list(centerline(instant["nodal_coordinates"].values, self._lengths)))
+        self._belt.set_segments(list(centerline(self._kind, instant["nodal_coordinates"].values, self._lengths)))
         self._belt.set_array(instant["belt_tension"].values)
         centers = instant["pulley_center"].values if "pulley_center" in instant else self._centers
         angles = instant["pulley_angle"].values

@@ -12,7 +12,7 @@ from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Sta
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.result import Result, build_result
 from beltdyn.results.run import Run, open_result, open_run
-from beltdyn.results.schema import COORDINATE_NAMES, COORDINATES, RECORDED, VARIABLES, Variable
+from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.size import describe_size, expected_bytes, require_room
 from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tables import write_csv
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COORDINATES",
-    "COORDINATE_NAMES",
     "RECORDED",
     "VARIABLES",
     "Balance",

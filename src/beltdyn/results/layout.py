@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
 from beltdyn.results.friction_work import ARC_PARTS, arc_shares
-from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, COORDINATES, RECORDED, Variable
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, Variable
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +39,7 @@ class Layout:
     node_coordinate: FloatArray
     element_coordinate: FloatArray
     belt_coordinate: FloatArray
-    coordinate_names: tuple[str, ...] = COORDINATE_NAMES
+    coordinate_names: tuple[str, ...]
     tensioners: tuple[str, ...] = ()
 
     @property

@@ -10,9 +10,6 @@ holds more than before."""
 RUN = "run"
 """Kind of the results that grow over time. Those of other analyses are of a kind named after the analysis."""
 
-COORDINATE_NAMES = ("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy")
-"""Order of the nodal coordinates; the nodes of a chain of links have the first two only."""
-
 AXIS_NAMES = ("x", "y")
 """Names of the two directions of the plane."""
 

@@ -10,7 +10,7 @@ import psutil
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.friction_work import ARC_PARTS
-from beltdyn.results.schema import AXIS_NAMES, COORDINATE_NAMES, RECORDED, Variable
+from beltdyn.results.schema import AXIS_NAMES, RECORDED, Variable
 
 _CHUNK_BYTES = 32768
 _CHUNK_ROWS = 1024
@@ -100,15 +100,15 @@ def require_room(drive: Drive, path: Path | None) -> None:
 def _sizes(drive: Drive) -> dict[str, int]:
     """Size of every dimension but times."""
     belt, pulleys = drive.belt, len(drive.pulleys)
-    curves = belt.links or belt.elements
+    kind, curves = belt.element_kind, belt.element_kind.curves * belt.elements
     points = 2 if drive.contact.sampling == "nodal" else drive.contact.quadrature_points
     return {
         "pulley": pulleys,
         "span": pulleys,
         "tensioner": sum(tensioner.kind != "fixed" for tensioner in drive.tensioners),
         "axis": len(AXIS_NAMES),
-        "coordinate": len(AXIS_NAMES) if belt.links else len(COORDINATE_NAMES),
-        "node": curves + (drive.simulation.joint == "multipliers"),
+        "coordinate": len(kind.coordinates),
+        "node": kind.points * (belt.elements + (drive.simulation.joint == "multipliers")),
         "element": curves,
         "contact_point": points * curves,
         "arc_part": ARC_PARTS,

@@ -58,7 +58,7 @@ class FlutterWatch:
     """
 
     def __init__(self, system: System) -> None:
-        angular_frequency = sqrt(system.law.stiffness / system.section.mass)
+        angular_frequency = sqrt(system.law.stiffness / system.element.section.mass)
         self._system = system
         self._memory = _PERIODS * 2.0 * np.pi / angular_frequency
         self._shift = _SHIFT * angular_frequency

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.results import (
-    COORDINATE_NAMES,
     RECORDED,
     FileRecorder,
     Layout,
@@ -331,6 +330,6 @@ def result_layout(drive: Drive, system: System) -> Layout:
         node_coordinate=point_coordinates(system),
         element_coordinate=starts + 0.5 * lengths,
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
-        coordinate_names=COORDINATE_NAMES[: len(system.scale) // system.points],
+        coordinate_names=drive.belt.element_kind.coordinates,
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
     )

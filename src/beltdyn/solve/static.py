@@ -164,7 +164,7 @@ class _Search:
         self._here: Equations = new_equations(self._system)
         self._ahead: Equations = _with_sides_of_its_own(self._here)
         self._length = float(np.sum(system.length))
-        self._time_scale = self._length**2 * system.section.mass / system.section.axial
+        self._time_scale = self._length**2 * system.element.section.mass / system.element.section.axial
         self._scale = system.scale
         self._reach = system.bodies.reach[system.bodies.size - system.tensioners.size :]
 
@@ -178,7 +178,7 @@ class _Search:
         """Largest force out of balance where the equations were linearised last, over E A alpha1."""
         nodes = np.abs(self._here.matrix.node_side / self._scale)
         tensioners = np.abs(self._here.matrix.border_side[: self._reach.size] / self._reach)
-        return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.section.axial
+        return max(float(np.max(nodes)), float(np.max(tensioners, initial=0.0))) / self._system.element.section.axial
 
     def linearise(self, shift: float) -> float:
         """Linearise where the belt stands, with an inertial shift relative to axial waves; energy norm of the step.
@@ -190,7 +190,7 @@ class _Search:
         if not linearise(self._system, 0.0, *self._motion, self._multipliers, 1.0, 0.0, shift, here):
             here.node_part[:] = np.nan
         energy = abs(float(np.sum(matrix.node_side * here.node_part) + matrix.border_side @ here.border_part))
-        return float(np.sqrt(energy / (self._system.section.axial * self._length)))
+        return float(np.sqrt(energy / (self._system.element.section.axial * self._length)))
 
     def step(self, length: float) -> None:
         """Take the step, or a part of it."""

@@ -9,9 +9,9 @@ does not ask how a belt is discretised.
 
 from typing import NamedTuple
 
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
+from beltdyn.elements import Element
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import Records, record
 from beltdyn.system.machine_arrays import Profiles, Torques
@@ -53,10 +53,10 @@ class System(NamedTuple):
     """Whether the last element ends at the first node (Eq. 27)."""
     joint: bool
     """Whether the last node is tied to the first by Lagrange multipliers (Eq. 25)."""
-    chain: bool
-    """Whether an element is a piece of chain (`beltdyn.chain`), or the paper's (`beltdyn.ancf`)."""
+    element: Element
+    """Section and quadrature; its class is the kind of elements, `ElementKind.element`."""
     points: int
-    """Material points whose places are the first coordinates of a node: 1, or 3 of a chain."""
+    """Material points of a node."""
     scale: tuple[float, ...]
     """Lengths that turn changes of the n coordinates of a node into m; of a tuple the compiler knows how many."""
     first_body: int
@@ -64,15 +64,15 @@ class System(NamedTuple):
     length: FloatArray
     """Reference lengths of the elements, m, shape (elements,)."""
     mass: FloatArray
-    """Mass matrices of the elements, shape (elements, 12, 12)."""
-    vectors: tuple[int, int, int, int]
-    """Where among the 12 coordinates of an element the four vectors begin that carry its centreline."""
-    shift: tuple[float, float, float, float]
-    """What a shift of the whole belt does to these vectors: 1 for places, 0 for slopes."""
+    """Mass matrices of the elements, shape (elements, 2 n, 2 n)."""
+    vectors: tuple[int, ...]
+    """Where among the 2 n coordinates of an element the v vectors begin that carry its centreline."""
+    shift: tuple[float, ...]
+    """What a shift of the whole belt does to these vectors: 1 for places, 0 for derivatives."""
     control: FloatArray
-    """Control points of the curves of the centreline from these vectors, shape (elements, curves, 4, 4)."""
-    section: Section
-    elastic: Quadrature
+    """Control points of the curves of the centreline from these vectors, shape (elements, curves, degree + 1, v)."""
+    turned: int
+    """Coordinate of a node with which the vector begins that a moment on the node turns; -1 if none does."""
     law: ContactLaw
     contact: Quadrature
     pulleys: Records
@@ -119,8 +119,8 @@ class RingFactors(NamedTuple):
     rows: FloatArray
     """Rows of the node in hand, shape (n, width)."""
     panels: FloatArray
-    """What the chain without border answers to each column of the border, after n columns that are worked in; padded,
-    shape (N, n, width)."""
+    """What the inner nodes answer to each column of the border, after n columns that are worked in; padded, shape
+    (N, n, width)."""
     squares: FloatArray
     """Triangular factors of the nodes' blocks, shape (N, n, n)."""
     pivots: IntArray

@@ -7,17 +7,17 @@ C a = 0                                                      joint, where the ri
 
 import numpy as np
 
-from beltdyn.ancf.elastic_force import ELASTIC_WORKSPACE, element_force
-from beltdyn.ancf.material_damping import DAMPING_WORKSPACE, damping_force
 from beltdyn.arrays import FloatArray
-from beltdyn.chain.chain_force import chain_force
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force, contact_record
 from beltdyn.contact.contact_zone import out_of_reach
+from beltdyn.elements.dispatch import damping_force, elastic_force
+from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import Loads, RingMatrix, System
 from beltdyn.system.carriage import carriage_of, couple_carriage, drift_record, keep_drift
+from beltdyn.system.discretization import element_kind
 from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.pulley_state import law_of, pulley_state
 from beltdyn.system.ring_matrix import clear
@@ -29,14 +29,11 @@ def assembly_workspace(system: System) -> np.record:
     count, vectors = system.control.shape[2:]
     return blank(
         record(
-            elastic=ELASTIC_WORKSPACE,
-            damping=DAMPING_WORKSPACE,
+            element=element_kind(system).workspace,  # residual and tangent of one element
             contact=contact_record(count, vectors),
-            coordinates="(3,12)f8",  # position, velocity and acceleration of one element
+            coordinates=f"(3,{2 * len(system.scale)})f8",  # position, velocity and acceleration of one element
             control=f"({count},2)f8",  # control points of a curve of the centreline
             control_velocity=f"({count},2)f8",
-            gradient="12f8",  # residual of one element
-            tangent="(12,12)f8",  # its tangent
             drift=drift_record(vectors),  # by a change of the velocity of a pulley's centre
         )
     )
@@ -88,7 +85,7 @@ def assemble(
     wanted = by_position != 0.0 or by_velocity != 0.0 or by_acceleration != 0.0
     clear(matrix, wanted)
     clear_loads(loads)
-    damped = system.section.axial_damping > 0.0 or system.section.bending_damping > 0.0
+    damped = is_damped(system.element.section)
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes
         gather(system, element, position, work.coordinates[0])
@@ -97,17 +94,13 @@ def assemble(
         _elastic_and_inertia(system, element, by_position, by_acceleration, wanted, work)
         if damped:
             loads.power[4] += damping_force(
+                system.element,
                 work.coordinates[0],
                 work.coordinates[1],
-                system.section,
                 system.length[element],
-                system.elastic.points,
-                system.elastic.weights,
                 by_position,
                 by_velocity,
-                work.damping,
-                work.gradient,
-                work.tangent,
+                work.element,
             )
         for curve in range(system.control.shape[1]):
             _contact(system, element, curve, node_j, position, velocity, by_position, by_velocity, work, matrix, loads)
@@ -147,31 +140,17 @@ def _elastic_and_inertia(
     system: System, element: int, by_position: float, by_acceleration: float, wanted: bool, work: np.record
 ) -> None:
     """Overwrite residual and tangent of the element by those of elasticity and inertia."""
-    dof, section, length = len(system.scale), system.section, system.length[element]
-    if system.chain:
-        chain_force(work.coordinates[0], section.axial, section.bending, length, work.gradient, work.tangent)
-    else:
-        element_force(
-            work.coordinates[0],
-            section,
-            length,
-            system.elastic.points,
-            system.elastic.weights,
-            wanted,
-            work.elastic,
-            work.gradient,
-            work.tangent,
-        )
-    mass, acceleration = system.mass[element], work.coordinates[2]
+    elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
+    gradient, whole = work.element.gradient, work.element.tangent
+    dof, mass, acceleration = len(system.scale), system.mass[element], work.coordinates[2]
     for row in range(2 * dof):
         total = 0.0
         for column in range(2 * dof):
             total += mass[row, column] * acceleration[column]
-        work.gradient[row] += total
+        gradient[row] += total
         if wanted:
             for column in range(2 * dof):
-                tangent = by_position * work.tangent[row, column]
-                work.tangent[row, column] = tangent + by_acceleration * mass[row, column]
+                whole[row, column] = by_position * whole[row, column] + by_acceleration * mass[row, column]
 
 
 @kernel
@@ -184,7 +163,7 @@ def fill_control(system: System, element: int, curve: int, coordinates: FloatArr
         The system.
     element, curve
         Which curve of which element.
-    coordinates : ndarray, shape (12,)
+    coordinates : ndarray, shape (2 n,)
         Nodal coordinates (or velocities) of the element.
     points : ndarray, shape (n, 2)
         Overwritten.
@@ -263,11 +242,11 @@ def _contact(
 @kernel(inline=True)
 def _take_contact(system: System, wanted: bool, work: np.record) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
-    contact, tangent = work.contact, work.tangent
+    contact, gradient, tangent = work.contact, work.element.gradient, work.element.tangent
     for a in range(len(system.vectors)):
         row = system.vectors[a]
-        work.gradient[row] -= contact.force[a, 0]
-        work.gradient[row + 1] -= contact.force[a, 1]
+        gradient[row] -= contact.force[a, 0]
+        gradient[row + 1] -= contact.force[a, 1]
         if not wanted:
             continue
         for b in range(len(system.vectors)):
@@ -301,17 +280,17 @@ def _couple(
 @kernel(inline=True)
 def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
     """Add residual and tangent of the element between nodes i and j."""
-    dof = len(matrix.unknowns)
+    dof, gradient, tangent = len(matrix.unknowns), work.element.gradient, work.element.tangent
     for row in range(dof):
-        matrix.node_side[i, row] += work.gradient[row]
-        matrix.node_side[j, row] += work.gradient[dof + row]
+        matrix.node_side[i, row] += gradient[row]
+        matrix.node_side[j, row] += gradient[dof + row]
         if not wanted:
             continue
         for column in range(dof):
-            matrix.diagonal[i, row, column] += work.tangent[row, column]
-            matrix.upper[i, row, column] += work.tangent[row, dof + column]
-            matrix.lower[i, row, column] += work.tangent[dof + row, column]
-            matrix.diagonal[j, row, column] += work.tangent[dof + row, dof + column]
+            matrix.diagonal[i, row, column] += tangent[row, column]
+            matrix.upper[i, row, column] += tangent[row, dof + column]
+            matrix.lower[i, row, column] += tangent[dof + row, column]
+            matrix.diagonal[j, row, column] += tangent[dof + row, dof + column]
 
 
 @kernel(inline=True)

@@ -5,7 +5,6 @@ from typing import Literal
 
 import numpy as np
 
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import LAWS
 from beltdyn.contact.law import ContactLaw
@@ -25,9 +24,6 @@ from beltdyn.system.build_machines import (
 )
 from beltdyn.system.discretization import discretize
 from beltdyn.system.weight import weight_forces
-
-_REDUCED = 3
-"""Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
 
 Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
@@ -81,7 +77,7 @@ def belt_system(
     contact
         Contact constants; needed where there are pulleys.
     closure
-        How the ends meet; those of a chain of links share a node, since nothing moves the end of an open one.
+        How the ends meet.
     tensioners
         What carries some of the pulleys.
     path
@@ -89,11 +85,12 @@ def belt_system(
     gravity
         Acceleration of gravity, m/s^2; the belt's weight joins the forces on the nodes.
     fixed
-        Pairs (node, coordinate) that do not move; coordinates 0 to 5 are r, r_x, r_y (Eq. 6).
+        Pairs (node, coordinate) that do not move; coordinates 0 to 5 of the paper's element are r, r_x, r_y (Eq. 6).
     forces
         Pairs (node, force), N.
     moments
-        Pairs (node, moment), N m, counter-clockwise positive; a moment turns the section r_y of its node.
+        Pairs (node, moment), N m, counter-clockwise positive; a moment turns a vector of its node, the section
+        r_y of the paper's element.
 
     Returns
     -------
@@ -103,17 +100,22 @@ def belt_system(
     Raises
     ------
     ModelError
-        If there are pulleys but no contact, or a chain of links whose ends share no node.
+        If there are pulleys but no contact, or the kind of elements has no ends to leave open or nothing that a moment
+        turns.
     """
     if pulleys and contact is None:
         raise ModelError("contact is missing: a belt on pulleys needs its constants. Give a Contact.")
-    if belt.links and closure != "shared_node":
+    if not belt.element_kind.has_ends and closure != "shared_node":
         raise ModelError(
             f'closure = "{closure}" does not fit belt.discretization = "{belt.discretization}": nothing would move the '
-            'last points of an open chain. Choose closure = "shared_node", or discretization = "ancf".'
+            'last point of an open belt. Choose closure = "shared_node", or discretization = "ancf".'
         )
-    section = belt_section(belt)
-    mesh = discretize(belt, section)
+    if moments and belt.element_kind.turned < 0:
+        raise ModelError(
+            f'moments do not fit belt.discretization = "{belt.discretization}", whose nodes have nothing that turns. '
+            'Leave them out, or choose discretization = "ancf".'
+        )
+    mesh = discretize(belt)
     elements = mesh.length.size
     nodes = elements if closure == "shared_node" else elements + 1
     radii = effective_radii(pulleys, belt)
@@ -126,8 +128,6 @@ def belt_system(
         joint=closure == "multipliers",
         first_body=nodes * len(mesh.scale),
         **mesh._asdict(),
-        section=section,
-        elastic=_elastic_points(belt),
         law=_contact_law(contact),
         contact=contact_points(contact),
         pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
@@ -135,41 +135,6 @@ def belt_system(
         **machines._asdict(),
         supports=supports._replace(force=supports.force + weight_forces(mesh, nodes, gravity)),
     )
-
-
-def belt_section(belt: Belt) -> Section:
-    """Stiffness, damping and inertia of a belt's section.
-
-    Parameters
-    ----------
-    belt
-        The belt.
-
-    Returns
-    -------
-    Section
-        Factors of Eqs. 14 and 15, integrated over the section; a truss does not resist bending.
-    """
-    shear = belt.shear_coefficient * belt.shear_modulus * belt.bending_factor
-    return Section(
-        axial=belt.axial_stiffness,
-        bending=0.0 if belt.discretization == "truss" else belt.bending_stiffness,
-        quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
-        shear=shear * belt.area,
-        shear_gradient=shear * belt.second_moment,
-        thickness=belt.youngs_modulus * belt.area,
-        mass=belt.mass_per_length,
-        rotary_inertia=belt.rotary_inertia,
-        axial_damping=belt.axial_stiffness * belt.stretch_damping_time,
-        bending_damping=belt.bending_stiffness * belt.bending_damping_time,
-    )
-
-
-def _elastic_points(belt: Belt) -> Quadrature:
-    """Where the elastic forces of an element are evaluated."""
-    if belt.integration == "reduced":
-        return lobatto_points(_REDUCED)
-    return gauss_points(belt.quadrature_points)
 
 
 def contact_points(contact: Contact | None) -> Quadrature:

@@ -1,71 +1,98 @@
-"""How a belt is cut into elements: the paper's element, or pieces of three links of a chain."""
+"""How a belt is cut into elements."""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.ancf.inertia import element_mass
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import FloatArray
-from beltdyn.chain.chain_force import LINKS
-from beltdyn.chain.inertia import lumped_mass
+from beltdyn.elements import ELEMENTS, Element, ElementKind, Section
 from beltdyn.model import Belt
+from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.system.arrays import System
+
+_KINDS = {kind.element: kind for kind in ELEMENTS}
+_REDUCED = 3
+"""Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
 
 
 class Discretization(NamedTuple):
-    """Fields of `System` that depend on the discretisation; see there."""
+    """Fields of `System` that depend on the kind of elements and on their lengths; see there."""
 
-    chain: bool
+    element: Element
     points: int
     scale: tuple[float, ...]
     length: FloatArray
     mass: FloatArray
-    vectors: tuple[int, int, int, int]
-    shift: tuple[float, float, float, float]
+    vectors: tuple[int, ...]
+    shift: tuple[float, ...]
     control: FloatArray
+    turned: int
 
 
-def discretize(belt: Belt, section: Section) -> Discretization:
+def discretize(belt: Belt) -> Discretization:
     """Cut a belt into equal elements.
 
     Parameters
     ----------
     belt
         The belt.
-    section
-        Its section.
 
     Returns
     -------
     Discretization
-        The element of section 2 of the paper, or pieces of chain: links are grouped by three, since the places of three
-        points are as many coordinates as those of a node of the paper.
+        Elements of the kind ``belt.element_kind``.
     """
-    if belt.discretization == "ancf":
-        length = belt.length / belt.elements
-        return Discretization(
-            chain=False,
-            points=1,
-            scale=(1.0, 1.0, length, length, length, length),
-            length=np.full(belt.elements, length),
-            mass=np.tile(element_mass(section, length), (belt.elements, 1, 1)),
-            vectors=(0, 2, 6, 8),
-            shift=(1.0, 0.0, 1.0, 0.0),
-            control=np.tile(_hermite_control(length), (belt.elements, 1, 1, 1)),
-        )
-    pieces = belt.links // LINKS
-    length = belt.length / pieces
+    kind, section = belt.element_kind, belt_section(belt)
+    length = np.full(belt.elements, belt.length / belt.elements)
     return Discretization(
-        chain=True,
-        points=LINKS,
-        scale=(1.0,) * 6,
-        length=np.full(pieces, length),
-        mass=np.tile(lumped_mass(section.mass, length), (pieces, 1, 1)),
-        vectors=(0, 2, 4, 6),
-        shift=(1.0, 1.0, 1.0, 1.0),
-        control=np.tile(_straight_control(), (pieces, 1, 1, 1)),
+        element=kind.element(section, _elastic_points(belt)),
+        points=kind.points,
+        scale=kind.scale(float(np.mean(length))),
+        length=length,
+        mass=np.stack([kind.mass(section, float(each)) for each in length]),
+        vectors=kind.vectors,
+        shift=kind.shift,
+        control=np.stack([kind.control(float(each)) for each in length]),
+        turned=kind.turned,
     )
+
+
+def belt_section(belt: Belt) -> Section:
+    """Stiffness, damping and inertia of a belt's section.
+
+    Parameters
+    ----------
+    belt
+        The belt.
+
+    Returns
+    -------
+    Section
+        Factors of Eqs. 14 and 15, integrated over the section.
+    """
+    shear = belt.shear_coefficient * belt.shear_modulus * belt.bending_factor
+    return Section(
+        axial=belt.axial_stiffness,
+        bending=belt.bending_stiffness,
+        quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
+        shear=shear * belt.area,
+        shear_gradient=shear * belt.second_moment,
+        thickness=belt.youngs_modulus * belt.area,
+        mass=belt.mass_per_length,
+        rotary_inertia=belt.rotary_inertia,
+        axial_damping=belt.axial_stiffness * belt.stretch_damping_time,
+        bending_damping=belt.bending_stiffness * belt.bending_damping_time,
+    )
+
+
+def _elastic_points(belt: Belt) -> Quadrature:
+    """Where the elastic forces of an element are evaluated."""
+    return lobatto_points(_REDUCED) if belt.integration == "reduced" else gauss_points(belt.quadrature_points)
+
+
+def element_kind(system: System) -> ElementKind:
+    """Kind of the elements of a system."""
+    return _KINDS[type(system.element)]
 
 
 def curve_lengths(system: System) -> FloatArray:
@@ -80,38 +107,18 @@ def point_coordinates(system: System) -> FloatArray:
     return ends[: system.nodes * system.points]
 
 
-def nodal_coordinates(system: System, place: FloatArray, slope: FloatArray) -> FloatArray:
-    """Nodal coordinates of a centreline whose sections stand upright on it.
+def nodal_coordinates(system: System, place: FloatArray, slope: FloatArray, bend: FloatArray) -> FloatArray:
+    """Nodal coordinates of a curve.
 
     Parameters
     ----------
     system
         The system.
-    place : ndarray, shape (N * points, 2)
-        Places of the material points, m.
-    slope : ndarray, shape (N * points, 2)
-        dr/dx there.
+    place, slope, bend : ndarray, shape (N * points, 2)
+        r (m), dr/dx and d2r/dx2 (1/m) of the material points.
 
     Returns
     -------
-    ndarray, shape (N, 6)
+    ndarray, shape (N, n)
     """
-    if system.chain:
-        return place.reshape(system.nodes, -1)
-    normal = np.stack([-slope[:, 1], slope[:, 0]], axis=1)
-    return np.hstack([place, slope, normal / np.linalg.norm(slope, axis=1, keepdims=True)])
-
-
-def _hermite_control(length: float) -> FloatArray:
-    """Control points of a cubic Hermite curve from r_i, r_x,i, r_j, r_x,j, shape (1, 4, 4)."""
-    third = length / 3.0
-    return np.array([[[1, 0, 0, 0], [1, third, 0, 0], [0, 0, 1, -third], [0, 0, 1, 0]]], dtype=float)
-
-
-def _straight_control() -> FloatArray:
-    """Control points of three straight links from the places of their four ends, shape (3, 4, 4)."""
-    along = np.linspace(0.0, 1.0, 4)
-    control = np.zeros((LINKS, 4, 4))
-    for link in range(LINKS):
-        control[link, :, link], control[link, :, link + 1] = 1.0 - along, along
-    return control
+    return element_kind(system).nodal(place, slope, bend)

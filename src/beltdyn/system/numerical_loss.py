@@ -35,8 +35,8 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
     float
         J; of belt and free bodies.
     """
-    way, change, mean, speed = work.coordinates[0], work.coordinates[1], work.coordinates[2], work.gradient
-    taken, dof = work.tangent[0], len(system.scale)
+    way, change, mean = work.coordinates[0], work.coordinates[1], work.coordinates[2]
+    speed, taken, dof = work.element.gradient, work.element.tangent[0], len(system.scale)
     total = 0.0
     for element in range(system.length.size):
         node_j = (element + 1) % system.nodes

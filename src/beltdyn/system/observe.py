@@ -4,16 +4,13 @@ from math import atan2, sqrt
 
 import numpy as np
 
-from beltdyn.ancf.elastic_force import element_energy
-from beltdyn.ancf.material_damping import damping_tension
-from beltdyn.ancf.strain_energy import axial_force
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.chain.chain_force import chain_energy
 from beltdyn.contact.bezier import combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
+from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import fill_control, gather
@@ -105,11 +102,8 @@ def fill_observations(
 @kernel(inline=True)
 def _observe_energy(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
     """Energies of an element."""
-    e, v, section, length = samples.element[0], samples.element[1], system.section, system.length[element]
-    if system.chain:
-        result.strain_energy[k] += chain_energy(e, section.axial, section.bending, length)
-    else:
-        result.strain_energy[k] += element_energy(e, section, length, system.elastic.points, system.elastic.weights)
+    e, v = samples.element[0], samples.element[1]
+    result.strain_energy[k] += strain_energy(system.element, e, system.length[element])
     dof, kinetic, mass = len(system.scale), 0.0, system.mass[element]
     for row in range(2 * dof):
         momentum = 0.0
@@ -127,19 +121,17 @@ def _stretch(system: System, samples: Samples, xi: float, length: float) -> tupl
     x, y = combine(samples.control, rates)
     vx, vy = combine(samples.control_velocity, rates)
     square = length * length
-    metric = (x * x + y * y) / square
-    tension = axial_force(metric, system.section)
-    tension += damping_tension(metric, 2.0 * (x * vx + y * vy) / square, system.section)
-    return x / length, y / length, tension
+    metric, rate = (x * x + y * y) / square, 2.0 * (x * vx + y * vy) / square
+    return x / length, y / length, tension(system.element, metric, rate)
 
 
 @kernel(inline=True)
 def _observe_tension(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
     """Axial force of a curve: its mean, and how much it varies."""
     mean = square = 0.0
-    for point in range(system.elastic.points.size):
-        weight = system.elastic.weights[point]
-        _, _, force = _stretch(system, samples, system.elastic.points[point], length)
+    for point in range(system.element.elastic.points.size):
+        weight = system.element.elastic.weights[point]
+        _, _, force = _stretch(system, samples, system.element.elastic.points[point], length)
         mean += weight * force
         square += weight * force * force
     result.belt_tension[k, curve] = mean

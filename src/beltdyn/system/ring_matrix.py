@@ -1,9 +1,9 @@
 """Linear algebra of the belt: a block-tridiagonal matrix, cyclic or open, with a border, solved in O(n).
 
-A closed ring is cut open by moving its last node to the border.  The chain that remains is factorised, and solved for
-all columns of the border at once; what the border's own equations leave of these solutions is a small dense matrix.
-An equation of the border touches few nodes, so that the cost is linear in nodes times border.  Another right-hand side
-costs a sixth of a factorisation.
+A closed ring is cut open by moving its last node to the border.  The inner nodes that remain are factorised, and
+solved for all columns of the border at once; what the border's own equations leave of these solutions is a small dense
+matrix.  An equation of the border touches few nodes, so that the cost is linear in nodes times border.  Another
+right-hand side costs a sixth of a factorisation.
 """
 
 import numpy as np
@@ -123,16 +123,16 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
         False if a pivot vanished (singular to working precision); the factors are then meaningless.
     """
     dof, nodes, extra = len(matrix.unknowns), matrix.diagonal.shape[0], matrix.corner.shape[0]
-    cut, chain = (dof, nodes - 1) if closed else (0, nodes)
+    cut, inner = (dof, nodes - 1) if closed else (0, nodes)
     rows, panels, squares, pivots, links, dense, dense_pivots, no_columns, _ = matrix.factors
-    for k in range(chain):
-        _load_node(matrix, k, closed, chain, rows)
+    for k in range(inner):
+        _load_node(matrix, k, closed, inner, rows)
         if k > 0:
             _subtract_product(dof, matrix.lower[k - 1], panels[k - 1], rows)
-        _split(dof, rows, matrix.upper[k], k < chain - 1, squares[k], panels[k])
+        _split(dof, rows, matrix.upper[k], k < inner - 1, squares[k], panels[k])
         if not _eliminate(squares[k], pivots[k], panels[k], dof):
             return False
-    for k in range(chain - 2, -1, -1):
+    for k in range(inner - 2, -1, -1):
         for i in range(dof):
             for j in range(dof):
                 links[k, i, j] = panels[k, i, j]
@@ -141,9 +141,9 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
     _load_border(matrix, closed, dense)
     if closed:
         for i in range(dof):
-            _reduce(dof, matrix.upper[chain, i], panels[0], cut + extra, dense[i])
-            _reduce(dof, matrix.lower[chain - 1, i], panels[chain - 1], cut + extra, dense[i])
-    for k in range(chain):
+            _reduce(dof, matrix.upper[inner, i], panels[0], cut + extra, dense[i])
+            _reduce(dof, matrix.lower[inner - 1, i], panels[inner - 1], cut + extra, dense[i])
+    for k in range(inner):
         for i in range(extra):
             _reduce(dof, matrix.row[k, i], panels[k], cut + extra, dense[cut + i])
     return _eliminate(dense, dense_pivots, no_columns, cut + extra)
@@ -165,32 +165,32 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
         Overwritten by the solution.
     """
     dof, nodes, extra = len(matrix.unknowns), matrix.diagonal.shape[0], matrix.corner.shape[0]
-    cut, chain = (dof, nodes - 1) if closed else (0, nodes)
+    cut, inner = (dof, nodes - 1) if closed else (0, nodes)
     _, panels, squares, pivots, links, dense, dense_pivots, _, answer = matrix.factors
-    for k in range(chain):
+    for k in range(inner):
         for i in range(dof):
             node_part[k, i] = matrix.node_side[k, i]
         if k > 0:
             _subtract_image(dof, matrix.lower[k - 1], node_part[k - 1], node_part[k])
         _solve_factorised(squares[k], pivots[k], dof, node_part[k])
-    for k in range(chain - 2, -1, -1):
+    for k in range(inner - 2, -1, -1):
         _subtract_image(dof, links[k], node_part[k + 1], node_part[k])
     if closed:
         for i in range(dof):
-            answer[i] = matrix.node_side[chain, i]
-        _subtract_image(dof, matrix.upper[chain], node_part[0], answer)
-        _subtract_image(dof, matrix.lower[chain - 1], node_part[chain - 1], answer)
+            answer[i] = matrix.node_side[inner, i]
+        _subtract_image(dof, matrix.upper[inner], node_part[0], answer)
+        _subtract_image(dof, matrix.lower[inner - 1], node_part[inner - 1], answer)
     for i in range(extra):
         answer[cut + i] = matrix.border_side[i]
-        for k in range(chain):
+        for k in range(inner):
             for j in range(dof):
                 answer[cut + i] -= matrix.row[k, i, j] * node_part[k, j]
     _solve_factorised(dense, dense_pivots, cut + extra, answer)
     for i in range(extra):
         border_part[i] = answer[cut + i]
     for i in range(cut):
-        node_part[chain, i] = answer[i]
-    for k in range(chain):
+        node_part[inner, i] = answer[i]
+    for k in range(inner):
         for i in range(dof):
             total = node_part[k, i]
             for j in range(cut + extra):
@@ -199,7 +199,7 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
 
 
 @kernel(inline=True)
-def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: FloatArray) -> None:
+def _load_node(matrix: RingMatrix, k: int, closed: bool, inner: int, rows: FloatArray) -> None:
     """Rows of node k: [diagonal block | columns of the border]."""
     dof, extra = len(matrix.unknowns), matrix.corner.shape[0]
     start = 2 * dof if closed else dof
@@ -212,8 +212,8 @@ def _load_node(matrix: RingMatrix, k: int, closed: bool, chain: int, rows: Float
             for j in range(dof):
                 rows[i, dof + j] = 0.0
                 if k == 0:
-                    rows[i, dof + j] += matrix.lower[chain, i, j]
-                if k == chain - 1:
+                    rows[i, dof + j] += matrix.lower[inner, i, j]
+                if k == inner - 1:
                     rows[i, dof + j] += matrix.upper[k, i, j]
 
 
@@ -332,7 +332,7 @@ def _subtract_image(dof: int, block: FloatArray, vector: FloatArray, target: Flo
 
 @kernel(inline=True)
 def _reduce(dof: int, coupling: FloatArray, panel: FloatArray, border: int, row: FloatArray) -> None:
-    """Put the chain's answers into an equation of the border that couples to a node."""
+    """Put the answers of the inner nodes into an equation of the border that couples to a node."""
     for k in range(dof):
         factor = coupling[k]
         if factor != 0.0:

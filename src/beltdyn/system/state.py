@@ -72,7 +72,9 @@ def laid(system: System, path: Path, tensioners: FloatArray | None = None) -> St
     """
     stretch = path.length / float(np.sum(system.length))
     along = stretch * point_coordinates(system)
-    state = at_rest(system, nodal_coordinates(system, path.position(along), stretch * path.tangent(along)))
+    bend = stretch**2 * path.bend(along)
+    nodes = nodal_coordinates(system, path.position(along), stretch * path.tangent(along), bend)
+    state = at_rest(system, nodes)
     if tensioners is not None:
         state.position[state.position.size - tensioners.size :] = tensioners
     return state
@@ -83,9 +85,10 @@ def straight(system: System) -> State:
     along = point_coordinates(system)
     flat = np.zeros_like(along)
     place, slope = np.stack([along, flat], axis=1), np.stack([flat + 1.0, flat], axis=1)
-    return at_rest(system, nodal_coordinates(system, place, slope))
+    return at_rest(system, nodal_coordinates(system, place, slope, np.zeros_like(slope)))
 
 
 def crossing_time(system: System) -> float:
     """Time that an axial wave takes from one end of the belt to the other, s."""
-    return float(np.sum(system.length)) * float(np.sqrt(system.section.mass / system.section.axial))
+    section = system.element.section
+    return float(np.sum(system.length)) * float(np.sqrt(section.mass / section.axial))

@@ -4,11 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.ancf.material_damping import damping_force
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
+from beltdyn.elements.dispatch import damping_force
+from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Loads, Motion, System
 from beltdyn.system.assembly import assembly_workspace, fill_control, gather
@@ -85,23 +86,19 @@ def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArr
         Overwritten.
     """
     clear_loads(loads)
-    damped = system.section.axial_damping > 0.0 or system.section.bending_damping > 0.0
+    damped = is_damped(system.element.section)
     for element in range(system.length.size):
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])
         if damped:
             loads.power[4] += damping_force(
+                system.element,
                 work.coordinates[0],
                 work.coordinates[1],
-                system.section,
                 system.length[element],
-                system.elastic.points,
-                system.elastic.weights,
                 0.0,
                 0.0,
-                work.damping,
-                work.gradient,
-                work.tangent,
+                work.element,
             )
         for curve in range(system.control.shape[1]):
             fill_control(system, element, curve, work.coordinates[0], work.control)

@@ -9,15 +9,15 @@ from beltdyn.system.arrays import RingMatrix, System
 def add_nodal_loads(system: System, position: FloatArray, by_position: float, matrix: RingMatrix) -> None:
     """Take constant forces and moments off the residual.
 
-    A moment m turns the section: its work is m dphi with phi the direction of r_y, so that it acts on r_y with
-    m n / |r_y|, n normal to r_y.  (On r_x it would be a couple of opposite shears within one element, which grows with
-    every refinement of the mesh, since the energy holds s but not its jumps.)
+    A moment m turns a vector d of its node, r_y of the paper's element: its work is m dphi with phi the direction of
+    d, so that it acts on d with m n / |d|, n normal to d.  (On r_x it would be a couple of opposite shears within one
+    element, which grows with every refinement of the mesh, since the energy holds s but not its jumps.)
 
     Parameters
     ----------
     system
         With its supports.
-    position : ndarray, shape (6 N + P,)
+    position : ndarray, shape (n N + D,)
         Nodal coordinates first.
     by_position
         Factor of the derivative with respect to position in the tangent.
@@ -30,15 +30,16 @@ def add_nodal_loads(system: System, position: FloatArray, by_position: float, ma
             matrix.node_side[node, c] -= supports.force[dof * node + c]
         moment = supports.moment[node]
         if moment != 0.0:
-            x, y = position[dof * node + 4], position[dof * node + 5]
+            c, first = system.turned, dof * node + system.turned
+            x, y = position[first], position[first + 1]
             square = x * x + y * y
-            matrix.node_side[node, 4] += moment * y / square
-            matrix.node_side[node, 5] -= moment * x / square
+            matrix.node_side[node, c] += moment * y / square
+            matrix.node_side[node, c + 1] -= moment * x / square
             factor = by_position * moment / (square * square)
-            matrix.diagonal[node, 4, 4] -= 2.0 * factor * x * y
-            matrix.diagonal[node, 4, 5] += factor * (x * x - y * y)
-            matrix.diagonal[node, 5, 4] += factor * (x * x - y * y)
-            matrix.diagonal[node, 5, 5] += 2.0 * factor * x * y
+            matrix.diagonal[node, c, c] -= 2.0 * factor * x * y
+            matrix.diagonal[node, c, c + 1] += factor * (x * x - y * y)
+            matrix.diagonal[node, c + 1, c] += factor * (x * x - y * y)
+            matrix.diagonal[node, c + 1, c + 1] += 2.0 * factor * x * y
 
 
 @kernel

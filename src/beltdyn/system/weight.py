@@ -9,8 +9,8 @@ from beltdyn.system.discretization import Discretization
 def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]) -> FloatArray:
     """Generalised forces of a uniform gravity, the integral of rho A S^T g over the belt.
 
-    A uniform acceleration moves the material points alone, not the gradients, so that the integral is the mass matrix
-    of an element times g at its points; for a chain it is half of the weight of every link at each of its ends.
+    A uniform acceleration moves the material points alone, not the derivatives, so that the integral is the mass
+    matrix of an element times g at its points.
 
     Parameters
     ----------
@@ -23,8 +23,8 @@ def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]
 
     Returns
     -------
-    ndarray, shape (6 * nodes,)
-        N for the rows of r (of every point of a chain), N m for those of r_x, nothing for r_y.
+    ndarray, shape (n * nodes,)
+        N for the rows of places, N m for those of r_x.
     """
     dof = len(mesh.scale)
     node = np.zeros(dof)

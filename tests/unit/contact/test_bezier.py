@@ -5,9 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.ancf.shape_functions import slopes
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import MAX_DEGREE, combine, fill_bernstein, fill_bernstein_rates, fill_shape_functions
+from beltdyn.elements.ancf.shape_functions import slopes
 from beltdyn.model import Belt
 from beltdyn.system.build import belt_system
 

@@ -136,13 +136,13 @@ def test_advice_on_soft_pulleys(drive: Drive) -> None:
     assert [name in warning for name, warning in zip(("driver", "driven"), penetration, strict=True)] == [True, True]
 
 
-def test_a_chain_cannot_be_tied_by_multipliers(drive: Drive) -> None:
-    chain = drive.belt.replace(discretization="truss", elements=30)
+def test_elements_without_ends_cannot_be_tied_by_multipliers(drive: Drive) -> None:
+    beams = drive.belt.replace(discretization="three-node-beam", elements=30)
     with pytest.raises(ModelError) as caught:
-        drive.replace(belt=chain, simulation=drive.simulation.replace(joint="multipliers"))
+        drive.replace(belt=beams, simulation=drive.simulation.replace(joint="multipliers"))
     assert str(caught.value) == (
-        'simulation.joint = "multipliers" does not fit belt.discretization = "truss": only the element "ancf" has ends '
-        'to tie. Choose joint = "shared_node", or discretization = "ancf".'
+        'simulation.joint = "multipliers" does not fit belt.discretization = "three-node-beam": its elements have no '
+        'ends to tie. Choose joint = "shared_node", or discretization = "ancf".'
     )
 
 

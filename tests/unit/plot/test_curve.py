@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 
+from beltdyn.elements.ancf.kind import ANCF
+from beltdyn.elements.truss import TRUSS
 from beltdyn.plot.curve import centerline, element_lengths
 from beltdyn.results import Run
 
@@ -17,7 +19,7 @@ def test_circle_is_missed_by_no_more_than_the_cubic_must() -> None:
     normal = np.column_stack([np.cos(angle), np.sin(angle)])
     tangent = np.column_stack([-np.sin(angle), np.cos(angle)])
     lengths = np.full(nodes, 2 * np.pi * radius / nodes)
-    points = centerline(np.hstack([radius * normal, tangent, normal]), lengths)
+    points = centerline(ANCF, np.hstack([radius * normal, tangent, normal]), lengths)
     assert points.shape == (nodes, 17, 2)
     np.testing.assert_allclose(points[:, 0], radius * normal, atol=1e-15)
     np.testing.assert_allclose(points[:, -1], np.roll(points[:, 0], -1, axis=0), atol=1e-15)
@@ -27,7 +29,7 @@ def test_circle_is_missed_by_no_more_than_the_cubic_must() -> None:
 
 def test_links_are_straight() -> None:
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0]])
-    points = centerline(corners, np.ones(3), points=5)
+    points = centerline(TRUSS, corners, np.ones(3), points=5)
     along = np.linspace(0.0, 1.0, 5)[:, None]
     for number, start in enumerate(corners):
         end = corners[(number + 1) % 3]

@@ -17,7 +17,7 @@ PAUSE = 0.05
 
 
 def write(path: Path, outputs: int) -> None:
-    layout = Layout(("a", "b"), ("a-b", "b-a"), np.arange(20.0), np.arange(20.0), np.arange(100.0))
+    layout = Layout(("a", "b"), ("a-b", "b-a"), np.arange(20.0), np.arange(20.0), np.arange(100.0), ("r_x", "r_y"))
     recorder = FileRecorder(path, layout, {"drive": ""})
     sys.stdout.write("ready\n")
     sys.stdout.flush()

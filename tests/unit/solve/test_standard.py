@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.element import Ancf
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.solve.standard import Name, StandardIntegrator
 from beltdyn.solve.trajectory import Chunk, Task
@@ -47,7 +48,8 @@ def test_longest_step(spin: Spin, name: Name) -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # SciPy's, of the nan that is meant
 def test_failure_names_the_integrator_and_a_remedy(spin: Spin, spinning: System, name: Name) -> None:
-    broken = spinning._replace(section=spinning.section._replace(axial=np.nan))
+    element = spinning.element
+    broken = spinning._replace(element=Ancf(element.section._replace(axial=np.nan), element.elastic))
     with pytest.raises(ConvergenceError, match=f"integrator {name} cannot go on.*generalized_alpha"):
         list(StandardIntegrator(name, 1e-3)(spin(INTERVAL, system=broken)))
 

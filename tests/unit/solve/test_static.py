@@ -7,7 +7,8 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_section, belt_system, drive_system
+from beltdyn.system.build import belt_system, drive_system
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.state import laid, straight
 
 SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]

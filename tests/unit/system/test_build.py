@@ -4,7 +4,8 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
-from beltdyn.system.build import Closure, belt_section, belt_system, drive_system
+from beltdyn.system.build import Closure, belt_system, drive_system
+from beltdyn.system.discretization import belt_section
 
 
 def test_section_of_the_papers_belt(drive: Drive) -> None:
@@ -58,7 +59,7 @@ def test_the_elements_make_up_the_belt(drive: Drive) -> None:
     shift = np.tile([1, 0, 0, 0, 0, 0], 2)
     mass = np.einsum("i,kij,j->", shift, system.mass, shift)
     assert mass == pytest.approx(drive.belt.mass_per_length * drive.belt.length)
-    np.testing.assert_array_equal(system.elastic.points, gauss_points(drive.belt.quadrature_points)[0])
+    np.testing.assert_array_equal(system.element.elastic.points, gauss_points(drive.belt.quadrature_points)[0])
 
 
 def test_pulleys(drive: Drive) -> None:

@@ -54,7 +54,7 @@ def test_jacobian(system: System, equations: FirstOrder, moving: State, scale: F
 def test_tolerances_are_lengths(system: System, equations: FirstOrder) -> None:
     tolerances = equations.tolerances(1e-3, 0.1)
     position, velocity, work = equations.unpack(tolerances)
-    np.testing.assert_allclose(velocity[:6] * system.scale, 1e-3)
+    np.testing.assert_allclose(velocity[: len(system.scale)] * system.scale, 1e-3)
     np.testing.assert_allclose(velocity[-2:] * system.pulleys.radius, 1e-3)
     np.testing.assert_allclose(position, 0.1 * velocity)
     assert np.all(work > 1e5)

@@ -14,7 +14,8 @@ from beltdyn.model import Belt
 from beltdyn.model.instants import Instants
 from beltdyn.solve.alpha_march import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
-from beltdyn.system.build import belt_section, belt_system
+from beltdyn.system.build import belt_system
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State

@@ -15,7 +15,8 @@ from beltdyn.model import Contact, Drive
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import simulate
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_section, belt_system, drive_system
+from beltdyn.system.build import belt_system, drive_system
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.state import State
 from beltdyn.theory.sliding_flutter import SlidingBelt, fastest_flutter, flutter_at

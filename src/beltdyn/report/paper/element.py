@@ -12,7 +12,8 @@ from beltdyn.report.runs import Runs
 from beltdyn.report.statement import Finding, Number, Section, Statement, verdict
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_section, belt_system
+from beltdyn.system.build import belt_system
+from beltdyn.system.discretization import belt_section
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, at_rest, straight
 

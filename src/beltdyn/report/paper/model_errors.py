@@ -129,9 +129,8 @@ def half_pulley(drive: Drive) -> int:
     """Nodal coordinates of the elements on half a pulley, the nodes at both ends included."""
     belt, arc = drive.belt, float(drive.path.wrap_angles[0]) * float(drive.radii[0])
     elements = round(arc / (drive.path.length / belt.elements))
-    if not belt.links:
-        return 6 * (elements + 1)
-    return 2 * (elements * belt.links // belt.elements + 1)
+    kind = belt.element_kind
+    return len(kind.coordinates) * (kind.points * elements + 1)
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,8 +53,8 @@ def _found(elements: int, plain: bool) -> Equilibrium:
 
 def _curve(nodes: FloatArray) -> FloatArray:
     """Points on the centreline, ends of elements included, shape (k, 2), m."""
-    lengths = np.full(len(nodes), released_belt(len(nodes)).length / len(nodes))
-    return centerline(nodes, lengths, _POINTS).reshape(-1, 2)
+    belt = released_belt(len(nodes))
+    return centerline(belt.element_kind, nodes, np.full(len(nodes), belt.length / len(nodes)), _POINTS).reshape(-1, 2)
 
 
 def _unknowns() -> Statement:

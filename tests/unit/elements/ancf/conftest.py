@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.section import Section
 from beltdyn.model import Drive
-from beltdyn.system.build import belt_section
+from beltdyn.system.discretization import belt_section
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from beltdyn.ancf.section import Section
+from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
 
 
@@ -121,12 +121,6 @@ def energy_curvature(metric: float, turning: float, sine: float, sine_rate: floa
         quarter * by_sine * by_rate + 2.0 * section.shear_gradient * sine * sine_rate,
         stiff + weight * 2.0 + quarter * by_rate * by_rate + section.shear_gradient * square,
     )
-
-
-@kernel
-def axial_force(metric: float, section: Section) -> float:
-    """Tension carried by the stretch of the centreline, EA alpha1 (G - 1) / 2 sqrt(G), N (first term of Eq. 14)."""
-    return 0.5 * section.axial * (metric - 1.0) * metric**0.5
 
 
 @kernel

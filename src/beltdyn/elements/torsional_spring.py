@@ -27,7 +27,7 @@ def bend_angle(e: FloatArray, i: int) -> float:
 
     Parameters
     ----------
-    e : ndarray, shape (12,)
+    e : ndarray
         Places of points in turn, m.
     i
         Index of the first coordinate of point i; those of j and k follow.
@@ -53,9 +53,9 @@ def add_spring(e: FloatArray, i: int, stiffness: float, gradient: FloatArray, ta
         As for `bend_angle`.
     stiffness
         EI / L, N m.
-    gradient : ndarray, shape (12,)
+    gradient : ndarray
         dU/de, N.
-    tangent : ndarray, shape (12, 12)
+    tangent : ndarray
         d2U/de2, N/m.
     """
     before = _direction(e[i + 2] - e[i], e[i + 3] - e[i + 1])

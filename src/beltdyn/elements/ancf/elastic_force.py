@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.ancf.cross_section import NodalShear, add_shear_curvature, nodal_shear, shear_gradient
-from beltdyn.ancf.section import Section
-from beltdyn.ancf.shape_functions import Four, bends, slopes
-from beltdyn.ancf.strain_energy import energy_curvature, energy_density, energy_gradient, thickness_energy
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.cross_section import NodalShear, add_shear_curvature, nodal_shear, shear_gradient
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.elements.ancf.shape_functions import Four, bends, slopes
+from beltdyn.elements.ancf.strain_energy import energy_curvature, energy_density, energy_gradient, thickness_energy
 from beltdyn.kernel import kernel
-from beltdyn.records import blank, record
+from beltdyn.records import record
 
 ELASTIC_WORKSPACE = record(
     xx="(4,4)f8",  # d2U / d(x of vector a) d(x of vector b)
@@ -24,7 +24,7 @@ ELASTIC_WORKSPACE = record(
     yy="(4,4)f8",
     by_shear="(2,12)f8",  # d2U / d(coordinate) d(s_k)
 )
-"""Scratch arrays of `element_force`, made once for many elements by `elastic_workspace`."""
+"""Scratch arrays of `element_force`."""
 
 
 class ShearSums(NamedTuple):
@@ -37,9 +37,22 @@ class ShearSums(NamedTuple):
     jj: float
 
 
-def elastic_workspace() -> np.record:
-    """Make the scratch arrays of `element_force`."""
-    return blank(ELASTIC_WORKSPACE)
+class _Strain(NamedTuple):
+    """A quadrature point, and how q and w there change G = q . q and theta = (q x w) / G."""
+
+    slope: Four
+    """Factors of the centreline's vectors in q."""
+    bend: Four
+    """Factors of the centreline's vectors in w."""
+    gx: float
+    """dG/dq."""
+    gy: float
+    ax: float
+    """dtheta/dq."""
+    ay: float
+    bx: float
+    """dtheta/dw."""
+    by: float
 
 
 @kernel
@@ -60,27 +73,11 @@ def centreline(e: FloatArray, factors: Four) -> tuple[float, float]:
 
 
 @kernel
-def element_energy(e: FloatArray, section: Section, length: float, points: FloatArray, weights: FloatArray) -> float:
-    """Strain energy U of one element (Eqs. 8, 14 and 15).
-
-    Parameters
-    ----------
-    e : ndarray, shape (12,)
-        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
-    section
-        Stiffnesses of the section.
-    length
-        Reference length L, m.
-    points, weights : ndarray, shape (k,)
-        Quadrature on [0, 1] along the element.
-
-    Returns
-    -------
-    float
-        U, J.
-    """
+def element_energy(element: Ancf, e: FloatArray, length: float) -> float:
+    """Strain energy U of one element, J (Eqs. 8, 14 and 15); see `ElementKind.energy`."""
     shear_i = nodal_shear(e[2], e[3], e[4], e[5])
     shear_j = nodal_shear(e[8], e[9], e[10], e[11])
+    points, weights, section = element.elastic.points, element.elastic.weights, element.section
     rate = (shear_j.sine - shear_i.sine) / length
     total = thickness_energy(_thickness_strain(e[4], e[5]), _thickness_strain(e[10], e[11]), section, length)
     for point in range(points.size):
@@ -94,123 +91,100 @@ def element_energy(e: FloatArray, section: Section, length: float, points: Float
 
 
 @kernel
-def element_force(
-    e: FloatArray,
-    section: Section,
-    length: float,
-    points: FloatArray,
-    weights: FloatArray,
-    wanted: bool,
-    work: np.record,
-    gradient: FloatArray,
-    tangent: FloatArray,
-) -> None:
+def element_force(element: Ancf, e: FloatArray, length: float, wanted: bool, work: np.record) -> None:
     """Gradient dU/de of the strain energy (the elastic force with the opposite sign, Eq. 16) and its exact tangent.
 
     Parameters
     ----------
-    e, section, length, points, weights
-        As for `element_energy`.
+    element
+        Section and quadrature.
+    e : ndarray, shape (12,)
+        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
+    length
+        Reference length L, m.
     wanted
         Whether the tangent is.
     work
-        Scratch arrays.
-    gradient : ndarray, shape (12,)
-        Overwritten by dU/de; N for the rows of r, N m for those of the gradients.
-    tangent : ndarray, shape (12, 12)
-        Overwritten by d2U/de2, or left alone.
+        Its `gradient` is overwritten by dU/de, N for the rows of r and N m for those of the gradients; its `tangent` by
+        d2U/de2, or left alone. `elastic` is scratch.
     """
     shear_i = nodal_shear(e[2], e[3], e[4], e[5])
     shear_j = nodal_shear(e[8], e[9], e[10], e[11])
+    scratch, gradient, tangent = work.elastic, work.gradient, work.tangent
     gradient[:] = 0.0
     if wanted:
-        work.xx[:] = 0.0
-        work.xy[:] = 0.0
-        work.yy[:] = 0.0
-        work.by_shear[:] = 0.0
+        scratch.xx[:] = 0.0
+        scratch.xy[:] = 0.0
+        scratch.yy[:] = 0.0
+        scratch.by_shear[:] = 0.0
+    sines = shear_i.sine, shear_j.sine
     sums = ShearSums(0.0, 0.0, 0.0, 0.0, 0.0)
-    for point in range(points.size):
-        xi, weight = points[point], weights[point] * length
-        sums = _add_point(e, shear_i.sine, shear_j.sine, xi, weight, section, length, wanted, work, gradient, sums)
+    for point in range(element.elastic.points.size):
+        more = _add_point(element, e, length, point, sines, wanted, work)
+        sums = ShearSums(sums.i + more.i, sums.j + more.j, sums.ii + more.ii, sums.ij + more.ij, sums.jj + more.jj)
     hi, hj = shear_gradient(shear_i), shear_gradient(shear_j)
     for c in range(4):
         gradient[2 + c] += sums.i * hi[c]
         gradient[8 + c] += sums.j * hj[c]
     if wanted:
-        _fill_centreline(work, tangent)
-        _carry_shear(shear_i, shear_j, hi, hj, sums, work, tangent)
-    _add_thickness(e, section, length, wanted, gradient, tangent)
+        _fill_centreline(scratch, tangent)
+        _carry_shear(shear_i, shear_j, hi, hj, sums, scratch, tangent)
+    _add_thickness(element, e, length, wanted, work)
 
 
 @kernel(inline=True)
 def _add_point(
-    e: FloatArray,
-    sine_i: float,
-    sine_j: float,
-    xi: float,
-    weight: float,
-    section: Section,
-    length: float,
-    wanted: bool,
-    work: np.record,
-    gradient: FloatArray,
-    sums: ShearSums,
+    element: Ancf, e: FloatArray, length: float, point: int, sines: tuple[float, float], wanted: bool, work: np.record
 ) -> ShearSums:
-    """Add one quadrature point.
+    """Add one quadrature point; gives its part of the derivatives with respect to the nodal shears.
 
     The energy density is a function of G = q . q, theta = (q x w) / G, s and p.  With g = dG/dq = 2 q and the
     derivatives a = dtheta/dq, b = dtheta/dw, its second derivatives in q and w are tensors made of g, a, b, the
     identity (from d2G) and the cross product (from d2(q x w)).
     """
+    xi, weight = element.elastic.points[point], element.elastic.weights[point] * length
     slope, bend = slopes(xi, length), bends(xi, length)
     qx, qy = centreline(e, slope)
     wx, wy = centreline(e, bend)
     metric = qx * qx + qy * qy
     inverse = 1.0 / metric
     turning = (qx * wy - qy * wx) * inverse
-    sine, rate = (1.0 - xi) * sine_i + xi * sine_j, (sine_j - sine_i) / length
-    first = energy_gradient(metric, turning, sine, rate, section)
+    sine, rate = (1.0 - xi) * sines[0] + xi * sines[1], (sines[1] - sines[0]) / length
+    first = energy_gradient(metric, turning, sine, rate, element.section)
     gx, gy = 2.0 * qx, 2.0 * qy
     ax, ay = (wy - turning * gx) * inverse, -(wx + turning * gy) * inverse
     bx, by = -qy * inverse, qx * inverse
-    fx, fy = weight * (first.metric * gx + first.turning * ax), weight * (first.metric * gy + first.turning * ay)
-    mx, my = weight * first.turning * bx, weight * first.turning * by
-    gradient[0] += slope[0] * fx + bend[0] * mx
-    gradient[1] += slope[0] * fy + bend[0] * my
-    gradient[2] += slope[1] * fx + bend[1] * mx
-    gradient[3] += slope[1] * fy + bend[1] * my
-    gradient[6] += slope[2] * fx + bend[2] * mx
-    gradient[7] += slope[2] * fy + bend[2] * my
-    gradient[8] += slope[3] * fx + bend[3] * mx
-    gradient[9] += slope[3] * fy + bend[3] * my
+    strain = _Strain(slope, bend, gx, gy, ax, ay, bx, by)
+    _add_strain(work.gradient, strain, weight * first.metric, weight * first.turning)
     at_i, at_j, by_rate = 1.0 - xi, xi, 1.0 / length
     by_sine, by_sine_rate = weight * first.sine, weight * first.sine_rate * by_rate
-    by_i, by_j = sums.i + at_i * by_sine - by_sine_rate, sums.j + at_j * by_sine + by_sine_rate
+    by_i, by_j = at_i * by_sine - by_sine_rate, at_j * by_sine + by_sine_rate
     if not wanted:
         return ShearSums(by_i, by_j, 0.0, 0.0, 0.0)
 
-    second = energy_curvature(metric, turning, sine, rate, section)
+    second = energy_curvature(metric, turning, sine, rate, element.section)
+    scratch = work.elastic
     gg, tt = weight * second.gg, weight * second.tt
     gt = weight * (second.gt - first.turning * inverse)
     direct = 2.0 * weight * (first.metric - first.turning * turning * inverse)
     cross = weight * first.turning * inverse
     ux, uy = gg * gx + gt * ax, gg * gy + gt * ay
     vx, vy = gt * gx + tt * ax, gt * gy + tt * ay
-    _add_block(work.xx, slope, bend, ux * gx + vx * ax + direct, vx * bx, vx * bx, tt * bx * bx)
-    _add_block(work.xy, slope, bend, ux * gy + vx * ay, vx * by + cross, vy * bx - cross, tt * bx * by)
-    _add_block(work.yy, slope, bend, uy * gy + vy * ay + direct, vy * by, vy * by, tt * by * by)
+    _add_block(scratch.xx, slope, bend, ux * gx + vx * ax + direct, vx * bx, vx * bx, tt * bx * bx)
+    _add_block(scratch.xy, slope, bend, ux * gy + vx * ay, vx * by + cross, vy * bx - cross, tt * bx * by)
+    _add_block(scratch.yy, slope, bend, uy * gy + vy * ay + direct, vy * by, vy * by, tt * by * by)
 
-    gs, gp = weight * second.gs, weight * second.gp
-    ts, tp = weight * second.ts, weight * second.tp
-    _add_shear_row(work.by_shear, 0, slope, bend, at_i, -by_rate, gs, ts, gp, tp, gx, gy, ax, ay, bx, by)
-    _add_shear_row(work.by_shear, 1, slope, bend, at_j, by_rate, gs, ts, gp, tp, gx, gy, ax, ay, bx, by)
+    gs, gp = weight * second.gs, weight * second.gp * by_rate
+    ts, tp = weight * second.ts, weight * second.tp * by_rate
+    _add_strain(scratch.by_shear[0], strain, at_i * gs - gp, at_i * ts - tp)
+    _add_strain(scratch.by_shear[1], strain, at_j * gs + gp, at_j * ts + tp)
     ss, sp, pp = weight * second.ss, weight * second.sp * by_rate, weight * second.pp * by_rate * by_rate
     return ShearSums(
         by_i,
         by_j,
-        sums.ii + at_i * at_i * ss - 2.0 * at_i * sp + pp,
-        sums.ij + at_i * at_j * ss + (at_i - at_j) * sp - pp,
-        sums.jj + at_j * at_j * ss + 2.0 * at_j * sp + pp,
+        at_i * at_i * ss - 2.0 * at_i * sp + pp,
+        at_i * at_j * ss + (at_i - at_j) * sp - pp,
+        at_j * at_j * ss + 2.0 * at_j * sp + pp,
     )
 
 
@@ -233,49 +207,33 @@ def _add_row(block: FloatArray, a: int, slope: Four, bend: Four, q: float, w: fl
 
 
 @kernel(inline=True)
-def _add_shear_row(
-    by_shear: FloatArray,
-    k: int,
-    slope: Four,
-    bend: Four,
-    at_node: float,
-    by_rate: float,
-    gs: float,
-    ts: float,
-    gp: float,
-    tp: float,
-    gx: float,
-    gy: float,
-    ax: float,
-    ay: float,
-    bx: float,
-    by: float,
-) -> None:
-    """Mixed derivatives in the centreline vectors and s_k, where ds/ds_k = at_node and dp/ds_k = by_rate."""
-    g, t = at_node * gs + by_rate * gp, at_node * ts + by_rate * tp
-    qx, qy, wx, wy = g * gx + t * ax, g * gy + t * ay, t * bx, t * by
-    by_shear[k, 0] += slope[0] * qx + bend[0] * wx
-    by_shear[k, 1] += slope[0] * qy + bend[0] * wy
-    by_shear[k, 2] += slope[1] * qx + bend[1] * wx
-    by_shear[k, 3] += slope[1] * qy + bend[1] * wy
-    by_shear[k, 6] += slope[2] * qx + bend[2] * wx
-    by_shear[k, 7] += slope[2] * qy + bend[2] * wy
-    by_shear[k, 8] += slope[3] * qx + bend[3] * wx
-    by_shear[k, 9] += slope[3] * qy + bend[3] * wy
+def _add_strain(row: FloatArray, strain: _Strain, by_metric: float, by_turning: float) -> None:
+    """Add by_metric dG/de + by_turning dtheta/de to a row, in the places of the centreline's vectors."""
+    slope, bend = strain.slope, strain.bend
+    qx, qy = by_metric * strain.gx + by_turning * strain.ax, by_metric * strain.gy + by_turning * strain.ay
+    wx, wy = by_turning * strain.bx, by_turning * strain.by
+    row[0] += slope[0] * qx + bend[0] * wx
+    row[1] += slope[0] * qy + bend[0] * wy
+    row[2] += slope[1] * qx + bend[1] * wx
+    row[3] += slope[1] * qy + bend[1] * wy
+    row[6] += slope[2] * qx + bend[2] * wx
+    row[7] += slope[2] * qy + bend[2] * wy
+    row[8] += slope[3] * qx + bend[3] * wx
+    row[9] += slope[3] * qy + bend[3] * wy
 
 
 @kernel(inline=True)
-def _fill_centreline(work: np.record, tangent: FloatArray) -> None:
+def _fill_centreline(scratch: np.record, tangent: FloatArray) -> None:
     """Overwrite the tangent by the centreline's part."""
     tangent[:] = 0.0
     for a in range(4):
         row = 6 * (a // 2) + 2 * (a % 2)
         for b in range(4):
             column = 6 * (b // 2) + 2 * (b % 2)
-            tangent[row, column] = work.xx[a, b]
-            tangent[row, column + 1] = work.xy[a, b]
-            tangent[row + 1, column] = work.xy[b, a]
-            tangent[row + 1, column + 1] = work.yy[a, b]
+            tangent[row, column] = scratch.xx[a, b]
+            tangent[row, column + 1] = scratch.xy[a, b]
+            tangent[row + 1, column] = scratch.xy[b, a]
+            tangent[row + 1, column + 1] = scratch.yy[a, b]
 
 
 @kernel(inline=True)
@@ -285,7 +243,7 @@ def _carry_shear(
     hi: Four,
     hj: Four,
     sums: ShearSums,
-    work: np.record,
+    scratch: np.record,
     tangent: FloatArray,
 ) -> None:
     """Chain rule from the nodal shears to r_x and r_y of their nodes.
@@ -294,11 +252,11 @@ def _carry_shear(
     tangent gains sum_k (m_k h_k^T + h_k m_k^T) + sum_kl c_kl h_k h_l^T + sum_k dU/ds_k d2s_k/de2; the second sum is
     folded into the m_k.
     """
-    _add_four(work.by_shear, 0, 2, 0.5 * sums.ii, hi)
-    _add_four(work.by_shear, 0, 8, sums.ij, hj)
-    _add_four(work.by_shear, 1, 8, 0.5 * sums.jj, hj)
-    _add_shear(0, 2, hi, work.by_shear, tangent)
-    _add_shear(1, 8, hj, work.by_shear, tangent)
+    _add_four(scratch.by_shear, 0, 2, 0.5 * sums.ii, hi)
+    _add_four(scratch.by_shear, 0, 8, sums.ij, hj)
+    _add_four(scratch.by_shear, 1, 8, 0.5 * sums.jj, hj)
+    _add_shear(0, 2, hi, scratch.by_shear, tangent)
+    _add_shear(1, 8, hj, scratch.by_shear, tangent)
     add_shear_curvature(shear_i, sums.i, tangent, 2)
     add_shear_curvature(shear_j, sums.j, tangent, 8)
 
@@ -331,11 +289,10 @@ def _thickness_strain(section_x: float, section_y: float) -> float:
 
 
 @kernel(inline=True)
-def _add_thickness(
-    e: FloatArray, section: Section, length: float, wanted: bool, gradient: FloatArray, tangent: FloatArray
-) -> None:
+def _add_thickness(element: Ancf, e: FloatArray, length: float, wanted: bool, work: np.record) -> None:
     """Add force and tangent of the thickness energy to the rows of r_y."""
-    stiffness = section.thickness * length / 6.0
+    gradient, tangent = work.gradient, work.tangent
+    stiffness = element.section.thickness * length / 6.0
     strain_i, strain_j = _thickness_strain(e[4], e[5]), _thickness_strain(e[10], e[11])
     pressure_i, pressure_j = stiffness * (2.0 * strain_i + strain_j), stiffness * (2.0 * strain_j + strain_i)
     for row in range(2):

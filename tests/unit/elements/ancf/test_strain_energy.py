@@ -5,14 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.ancf.section import Section
-from beltdyn.ancf.strain_energy import (
-    axial_force,
+from beltdyn.elements.ancf.strain_energy import (
     energy_curvature,
     energy_density,
     energy_gradient,
     thickness_energy,
 )
+from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
 
 ARGUMENTS = ("metric", "turning", "sine", "sine_rate")
@@ -67,15 +66,6 @@ def test_curvature(strain: tuple[float, float, float, float], section: Section) 
         column = complex_step(energy_gradient, strain, j, section)
         for i, first in enumerate(letters[: j + 1]):
             assert curvature[first + second] == pytest.approx(column[i], rel=EXACT, abs=EXACT)
-
-
-def test_axial_force_is_the_slope_of_the_axial_energy(
-    strain: tuple[float, float, float, float], section: Section
-) -> None:
-    """N = d psi / d|r_x| = 2 |r_x| d psi / dG."""
-    metric = strain[0]
-    slope = energy_gradient(metric, 0.0, 0.0, 0.0, section).metric
-    assert axial_force(metric, section) == pytest.approx(2.0 * metric**0.5 * slope, rel=EXACT)
 
 
 def test_thickness_energy_is_that_of_a_linear_strain(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.chain.torsional_spring import add_spring, bend_angle, spring_energy
+from beltdyn.elements.torsional_spring import add_spring, bend_angle, spring_energy
 
 STIFFNESS = 3.0
 DIFFERENCES = 1e-8

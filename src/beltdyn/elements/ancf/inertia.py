@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.section import Section
 
 
 def element_mass(section: Section, length: float) -> FloatArray:

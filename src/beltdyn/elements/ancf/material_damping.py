@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.ancf.cross_section import add_shear_curvature, nodal_shear, shear_gradient
-from beltdyn.ancf.elastic_force import centreline
-from beltdyn.ancf.section import Section
-from beltdyn.ancf.shape_functions import Four, bends, slopes
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.cross_section import add_shear_curvature, nodal_shear, shear_gradient
+from beltdyn.elements.ancf.elastic_force import centreline
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.elements.ancf.shape_functions import Four, bends, slopes
 from beltdyn.kernel import kernel
-from beltdyn.records import blank, record
+from beltdyn.records import record
 
 DAMPING_WORKSPACE = record(
     slope="(2,12)f8",  # derivatives of eps and kappa with respect to the coordinates e at a point
@@ -29,7 +29,7 @@ DAMPING_WORKSPACE = record(
     shear_curvature="(12,12)f8",  # second derivative of p with respect to e
     pull="12f8",  # sum over the points of the moment times the derivative of |q| with respect to e
 )
-"""Scratch arrays of `damping_force`, made once for many elements by `damping_workspace`."""
+"""Scratch arrays of `damping_force`."""
 
 
 class _Point(NamedTuple):
@@ -49,92 +49,64 @@ class _Point(NamedTuple):
     cross: float
 
 
-def damping_workspace() -> np.record:
-    """Make the scratch arrays of `damping_force`."""
-    return blank(DAMPING_WORKSPACE)
-
-
 @kernel
 def damping_force(
+    element: Ancf,
     e: FloatArray,
     velocity: FloatArray,
-    section: Section,
     length: float,
-    points: FloatArray,
-    weights: FloatArray,
     by_position: float,
     by_velocity: float,
     work: np.record,
-    gradient: FloatArray,
-    tangent: FloatArray,
 ) -> float:
     """Add dR/d(de/dt), the damping force with the opposite sign, and its exact tangent.
 
     Parameters
     ----------
-    e : ndarray, shape (12,)
-        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6).
-    velocity : ndarray, shape (12,)
-        Their rates.
-    section
-        With its factors of damping.
+    element
+        Section, with its factors of damping, and quadrature.
+    e, velocity : ndarray, shape (12,)
+        Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6), and their rates.
     length
         Reference length L, m.
-    points, weights : ndarray, shape (k,)
-        Quadrature on [0, 1] along the element: that of the elastic force.
     by_position, by_velocity
         The tangent is the sum of these times the derivatives with respect to e and to its rate; with both zero there
         is none.
     work
-        Scratch arrays.
-    gradient : ndarray, shape (12,)
-        Changed in place; N for the rows of r, N m for those of the gradients.
-    tangent : ndarray, shape (12, 12)
-        Changed in place.
+        The force is added to its `gradient`, N for the rows of r and N m for those of the gradients, and the tangent to
+        its `tangent`. `damping` is scratch.
 
     Returns
     -------
     float
         Power lost, 2 R, W; never negative.
     """
+    points, weights, section = element.elastic.points, element.elastic.weights, element.section
+    scratch, gradient, tangent = work.damping, work.gradient, work.tangent
     wanted = by_position != 0.0 or by_velocity != 0.0
-    work.pull[:] = 0.0
-    shear, shear_rate = _shear_rates(e, velocity, length, work)
+    scratch.pull[:] = 0.0
+    shear, shear_rate = _shear_rates(e, velocity, length, scratch)
     power, twist = 0.0, 0.0
     for k in range(points.size):
         weight = weights[k] * length
         axial, bending = weight * section.axial_damping, weight * section.bending_damping
         slope, bend = slopes(points[k], length), bends(points[k], length)
-        point = _strain_rates(e, velocity, slope, bend, shear, shear_rate, work)
+        point = _strain_rates(e, velocity, slope, bend, shear, shear_rate, scratch)
         force, moment = axial * point.strain_rate, bending * point.curvature_rate
         power += force * point.strain_rate + moment * point.curvature_rate
         twist += moment * point.stretch
         for column in range(12):
-            gradient[column] += force * work.slope[0, column] + moment * work.slope[1, column]
+            gradient[column] += force * scratch.slope[0, column] + moment * scratch.slope[1, column]
         if not wanted:
             continue
-        _add_products(axial, bending, by_position, by_velocity, work, tangent)
+        _add_products(axial, bending, by_position, by_velocity, scratch, tangent)
         _add_curvature(point, slope, bend, by_position * force, by_position * moment, tangent)
         for a in range(4):
-            work.pull[_first(a)] += moment * slope[a] * point.tangent_x
-            work.pull[_first(a) + 1] += moment * slope[a] * point.tangent_y
+            scratch.pull[_first(a)] += moment * slope[a] * point.tangent_x
+            scratch.pull[_first(a) + 1] += moment * slope[a] * point.tangent_y
     if wanted:
-        _add_shear_products(by_position, twist, work, tangent)
+        _add_shear_products(by_position, twist, scratch, tangent)
     return power
-
-
-@kernel
-def damping_tension(metric: float, metric_rate: float, section: Section) -> float:
-    """Tension by the rate of stretch, EA alpha1 tau_s |q| deps/dt, N: to be added to `strain_energy.axial_force`.
-
-    Parameters
-    ----------
-    metric, metric_rate
-        q . q and its rate, 1/s.
-    section
-        With its factors of damping.
-    """
-    return 0.5 * section.axial_damping * metric_rate * sqrt(metric)
 
 
 @kernel(inline=True)
@@ -144,10 +116,10 @@ def _first(a: int) -> int:
 
 
 @kernel(inline=True)
-def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: np.record) -> tuple[float, float]:
+def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, scratch: np.record) -> tuple[float, float]:
     """Overwrite the derivatives of p = (s_j - s_i) / L; give p (1/m) and its rate."""
-    work.by_shear[:] = 0.0
-    work.shear_curvature[:] = 0.0
+    scratch.by_shear[:] = 0.0
+    scratch.shear_curvature[:] = 0.0
     total, rate = 0.0, 0.0
     for node in range(2):
         first, factor = 6 * node + 2, (2.0 * node - 1.0) / length
@@ -155,12 +127,12 @@ def _shear_rates(e: FloatArray, velocity: FloatArray, length: float, work: np.re
         gradient = shear_gradient(shear)
         total += factor * shear.sine
         for c in range(4):
-            work.by_shear[0, first + c] = factor * gradient[c]
+            scratch.by_shear[0, first + c] = factor * gradient[c]
             rate += factor * gradient[c] * velocity[first + c]
-        add_shear_curvature(shear, factor, work.shear_curvature, first)
+        add_shear_curvature(shear, factor, scratch.shear_curvature, first)
         for c in range(first, first + 4):
             for d in range(first, first + 4):
-                work.by_shear[1, c] += work.shear_curvature[c, d] * velocity[d]
+                scratch.by_shear[1, c] += scratch.shear_curvature[c, d] * velocity[d]
     return total, rate
 
 
@@ -172,7 +144,7 @@ def _strain_rates(
     bend: Four,
     shear: float,
     shear_rate: float,
-    work: np.record,
+    scratch: np.record,
 ) -> _Point:
     """Overwrite the derivatives of both strains at a point and their rates.
 
@@ -195,17 +167,17 @@ def _strain_rates(
     )
     turn = q_across_rate / stretch
     for c in range(12):
-        work.slope[0, c], work.change[0, c] = 0.0, 0.0
-        work.slope[1, c] = stretch * work.by_shear[0, c]
-        work.change[1, c] = q_along_rate * work.by_shear[0, c] + stretch * work.by_shear[1, c]
+        scratch.slope[0, c], scratch.change[0, c] = 0.0, 0.0
+        scratch.slope[1, c] = stretch * scratch.by_shear[0, c]
+        scratch.change[1, c] = q_along_rate * scratch.by_shear[0, c] + stretch * scratch.by_shear[1, c]
     for a in range(4):
         x, y = _first(a), _first(a) + 1
-        work.slope[0, x], work.slope[0, y] = slope[a] * qx, slope[a] * qy
-        work.change[0, x], work.change[0, y] = slope[a] * rate_x, slope[a] * rate_y
-        work.slope[1, x] += slope[a] * (shear * ux + lean * uy) - bend[a] * uy
-        work.slope[1, y] += slope[a] * (shear * uy - lean * ux) + bend[a] * ux
-        work.change[1, x] += slope[a] * (along * ux - across * uy) - bend[a] * turn * ux
-        work.change[1, y] += slope[a] * (along * uy + across * ux) - bend[a] * turn * uy
+        scratch.slope[0, x], scratch.slope[0, y] = slope[a] * qx, slope[a] * qy
+        scratch.change[0, x], scratch.change[0, y] = slope[a] * rate_x, slope[a] * rate_y
+        scratch.slope[1, x] += slope[a] * (shear * ux + lean * uy) - bend[a] * uy
+        scratch.slope[1, y] += slope[a] * (shear * uy - lean * ux) + bend[a] * ux
+        scratch.change[1, x] += slope[a] * (along * ux - across * uy) - bend[a] * turn * ux
+        scratch.change[1, y] += slope[a] * (along * uy + across * ux) - bend[a] * turn * uy
     strain_rate = stretch * q_along_rate
     curvature_rate = shear * q_along_rate - lean * q_across_rate + w_across_rate + stretch * shear_rate
     return _Point(ux, uy, stretch, strain_rate, curvature_rate, fold, cross)
@@ -213,18 +185,18 @@ def _strain_rates(
 
 @kernel(inline=True)
 def _add_products(
-    axial: float, bending: float, by_position: float, by_velocity: float, work: np.record, tangent: FloatArray
+    axial: float, bending: float, by_position: float, by_velocity: float, scratch: np.record, tangent: FloatArray
 ) -> None:
     """Add what the rates of the strains at a point contribute to the tangent."""
     for column in range(12):
         for k, stiffness in ((0, axial), (1, bending)):
-            work.change[k, column] = stiffness * (
-                by_position * work.change[k, column] + by_velocity * work.slope[k, column]
+            scratch.change[k, column] = stiffness * (
+                by_position * scratch.change[k, column] + by_velocity * scratch.slope[k, column]
             )
     for row in range(12):
-        along, across = work.slope[0, row], work.slope[1, row]
+        along, across = scratch.slope[0, row], scratch.slope[1, row]
         for column in range(12):
-            tangent[row, column] += along * work.change[0, column] + across * work.change[1, column]
+            tangent[row, column] += along * scratch.change[0, column] + across * scratch.change[1, column]
 
 
 @kernel(inline=True)
@@ -249,12 +221,12 @@ def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment:
 
 
 @kernel(inline=True)
-def _add_shear_products(by_position: float, twist: float, work: np.record, tangent: FloatArray) -> None:
+def _add_shear_products(by_position: float, twist: float, scratch: np.record, tangent: FloatArray) -> None:
     """Add the sum over the points of the moment times the second derivative of kappa in q and p, and in p alone."""
     for row in range(12):
         for column in range(12):
             tangent[row, column] += by_position * (
-                work.pull[row] * work.by_shear[0, column]
-                + work.by_shear[0, row] * work.pull[column]
-                + twist * work.shear_curvature[row, column]
+                scratch.pull[row] * scratch.by_shear[0, column]
+                + scratch.by_shear[0, row] * scratch.pull[column]
+                + twist * scratch.shear_curvature[row, column]
             )

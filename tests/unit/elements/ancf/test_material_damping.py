@@ -3,11 +3,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.ancf.elastic_force import elastic_workspace, element_energy, element_force
-from beltdyn.ancf.material_damping import damping_force, damping_tension, damping_workspace
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.elastic_force import element_energy, element_force
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.elements.ancf.kind import ANCF
+from beltdyn.elements.ancf.material_damping import damping_force
+from beltdyn.elements.section import Section
+from beltdyn.elements.tension import damping_tension
 from beltdyn.quadrature import gauss_points
+from beltdyn.records import blank
 
 Damping = Callable[..., tuple[float, FloatArray, FloatArray]]
 
@@ -30,16 +34,14 @@ def state(request: pytest.FixtureRequest, unloaded: FloatArray, length: float) -
 @pytest.fixture
 def damping(length: float) -> Damping:
     """Power, force and tangent of an element."""
-    work = damping_workspace()
 
     def values(
         e: FloatArray, velocity: FloatArray, section: Section, by_position: float = 0.0, by_velocity: float = 0.0
     ) -> tuple[float, FloatArray, FloatArray]:
-        gradient, tangent = np.zeros(12), np.zeros((12, 12))
-        power = damping_force(
-            e, velocity, section, length, *gauss_points(4), by_position, by_velocity, work, gradient, tangent
-        )
-        return power, gradient, tangent
+        work = blank(ANCF.workspace)
+        element = Ancf(section, gauss_points(4))
+        power = damping_force(element, e, velocity, length, by_position, by_velocity, work)
+        return power, work.gradient, work.tangent
 
     return values
 
@@ -132,8 +134,9 @@ def test_straight_belt_damps_as_it_resists(
     """C = tau K for the axial part; likewise for bending without shear: the closed form of Kelvin-Voigt damping."""
     for part, time in (("axial", STRETCH), ("bending", BENDING)):
         alone = Section(*(0.0 for _ in section))._replace(**{part: getattr(section, part)})
-        stiffness = np.empty((12, 12))
-        element_force(unloaded, alone, length, *gauss_points(4), True, elastic_workspace(), np.empty(12), stiffness)
+        work = blank(ANCF.workspace)
+        element_force(Ancf(alone, gauss_points(4)), unloaded, length, True, work)
+        stiffness = work.tangent
         matrix = damping(unloaded, np.zeros(12), damped(alone, time, time), 0.0, 1.0)[2]
         np.testing.assert_allclose(matrix, time * stiffness, atol=1e-14 * time * np.abs(stiffness).max())
 
@@ -153,22 +156,12 @@ def test_adds_to_what_is_there(
     """Force and tangent are added; the scratch arrays and what stood in them leave no trace."""
     e, velocity = state
     _, force, tangent = damping(e, velocity, damped(section), 0.5, 2.0)
-    gradient, matrix = np.ones(12), np.ones((12, 12))
+    work = blank(ANCF.workspace)
+    work.gradient[:], work.tangent[:] = 1.0, 1.0
     for _ in range(2):
-        damping_force(
-            e,
-            velocity,
-            damped(section),
-            length,
-            *gauss_points(4),
-            0.5,
-            2.0,
-            damping_workspace(),
-            gradient,
-            matrix,
-        )
-    np.testing.assert_allclose(gradient, 1.0 + 2.0 * force, rtol=1e-12, atol=1e-12)
-    np.testing.assert_allclose(matrix, 1.0 + 2.0 * tangent, rtol=1e-12, atol=1e-12)
+        damping_force(Ancf(damped(section), gauss_points(4)), e, velocity, length, 0.5, 2.0, work)
+    np.testing.assert_allclose(work.gradient, 1.0 + 2.0 * force, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(work.tangent, 1.0 + 2.0 * tangent, rtol=1e-12, atol=1e-12)
 
 
 def test_elastic_strains_are_the_same(state: tuple[FloatArray, FloatArray], section: Section, length: float) -> None:
@@ -179,4 +172,4 @@ def test_elastic_strains_are_the_same(state: tuple[FloatArray, FloatArray], sect
         0.5 * section.axial * weight * length * strains(e, length, xi)[0] ** 2
         for xi, weight in zip(*gauss_points(4), strict=True)
     )
-    assert element_energy(e, alone, length, *gauss_points(4)) == pytest.approx(expected, rel=1e-12)
+    assert element_energy(Ancf(alone, gauss_points(4)), e, length) == pytest.approx(expected, rel=1e-12)

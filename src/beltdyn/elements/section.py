@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from beltdyn.kernel import kernel
+
 
 class Section(NamedTuple):
     """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia and damping."""
@@ -26,3 +28,9 @@ class Section(NamedTuple):
     """E A alpha1 times the damping time of stretch, N s."""
     bending_damping: float = 0.0
     """E I alpha2 times the damping time of bending, N m^2 s."""
+
+
+@kernel(inline=True)
+def is_damped(section: Section) -> bool:
+    """Whether the material of a section has damping."""
+    return section.axial_damping > 0.0 or section.bending_damping > 0.0

@@ -1,4 +1,4 @@
-"""Six points of a chain, bent by less than half a turn at each, and central differences."""
+"""Six points with links between them, bent by less than half a turn at each, and central differences."""
 
 from collections.abc import Callable
 

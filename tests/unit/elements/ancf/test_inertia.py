@@ -4,9 +4,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from beltdyn.ancf.inertia import element_mass
-from beltdyn.ancf.section import Section
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.inertia import element_mass
+from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
 
 

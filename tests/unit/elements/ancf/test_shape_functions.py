@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from beltdyn.ancf.shape_functions import bends, slopes
+from beltdyn.elements.ancf.shape_functions import bends, slopes
 
 PLACES = np.linspace(0.0, 1.0, 7)
 CUBIC = Polynomial([0.3, -0.7, 11.0, -130.0])

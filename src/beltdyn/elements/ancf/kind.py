@@ -1,0 +1,41 @@
+"""The paper's element as others see it: a cubic centreline, and sections that shear (Eqs. 2 and 6)."""
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.elastic_force import ELASTIC_WORKSPACE, element_energy, element_force
+from beltdyn.elements.ancf.element import Ancf
+from beltdyn.elements.ancf.inertia import element_mass
+from beltdyn.elements.ancf.material_damping import DAMPING_WORKSPACE, damping_force
+from beltdyn.elements.kind import ElementKind
+
+
+def _hermite_control(length: float) -> FloatArray:
+    """Control points of a cubic Hermite curve from r_i, r_x,i, r_j, r_x,j, shape (1, 4, 4)."""
+    third = length / 3.0
+    return np.array([[[1, 0, 0, 0], [1, third, 0, 0], [0, 0, 1, -third], [0, 0, 1, 0]]], dtype=float)
+
+
+def _upright(place: FloatArray, slope: FloatArray, _bend: FloatArray) -> FloatArray:
+    """Nodal coordinates of a centreline whose sections stand upright on it, shape (N, 6)."""
+    normal = np.stack([-slope[:, 1], slope[:, 0]], axis=1)
+    return np.hstack([place, slope, normal / np.linalg.norm(slope, axis=1, keepdims=True)])
+
+
+ANCF = ElementKind(
+    name="ancf",
+    meaning="the paper's",
+    element=Ancf,
+    coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy"),
+    vectors=(0, 2, 6, 8),
+    shift=(1.0, 0.0, 1.0, 0.0),
+    control=_hermite_control,
+    scale=lambda length: (1.0, 1.0, length, length, length, length),
+    mass=element_mass,
+    nodal=_upright,
+    energy=element_energy,
+    force=element_force,
+    damping=damping_force,
+    scratch={"elastic": ELASTIC_WORKSPACE, "damping": DAMPING_WORKSPACE},
+    turned=4,
+)
