@@ -3,10 +3,13 @@
 In kernels `table[k].name` is a number or an array of fixed shape, and a row alone is passed as one pointer.
 """
 
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+
+from beltdyn.arrays import IntArray
 
 Records = np.recarray[Any, Any]
 """Rows of one kind: `table.name` is a column, `table[k].name` a value."""
@@ -43,7 +46,44 @@ def records(kind: np.dtype[np.void], /, **columns: ArrayLike) -> Records:
     return table
 
 
+def row(kind: np.dtype[np.void], /, **values: Any) -> np.record:
+    """Make one row of a kind; fields that are not given are zero.
+
+    Parameters
+    ----------
+    kind
+        Names and types of the fields.
+    **values
+        Values of the fields, as for `fill`.
+    """
+    made = blank(kind)
+    fill(made, values)
+    return made
+
+
+def fill(given: np.record, values: Mapping[str, Any]) -> None:
+    """Set fields of a row.
+
+    Parameters
+    ----------
+    given
+        The row, changed in place.
+    values
+        Values by the names of the fields; those of a row within the row are a mapping again.
+    """
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            fill(given[name], value)
+        else:
+            given[name] = value
+
+
 def blank(kind: np.dtype[np.void]) -> np.record:
     """Make one row of a kind, of zeros."""
     row: np.record = np.zeros(1, kind).view(np.recarray)[0]
     return row
+
+
+def offsets(counts: Iterable[int]) -> IntArray:
+    """Where groups of rows begin that are laid end to end, and where the last one ends."""
+    return np.cumsum([0, *counts]).astype(np.int64)

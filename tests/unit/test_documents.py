@@ -10,6 +10,7 @@ import matplotlib.pyplot as plt
 import pytest
 import tomli_w
 
+from beltdyn.machines import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Step, Table
 from beltdyn.model import (
     Belt,
     Contact,
@@ -31,8 +32,7 @@ from beltdyn.model import (
 )
 from beltdyn.model.belt_form import Sold, Stiffnesses
 from beltdyn.model.catalogue import Entry
-from beltdyn.model.part import Part
-from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Step, Table
+from beltdyn.parts.part import Part
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"

@@ -23,8 +23,7 @@ from scipy.optimize import fsolve
 
 from beltdyn import Belt, Contact, Drive, Pulley, Run, Simulation, simulate
 from beltdyn.arrays import FloatArray
-from beltdyn.model.load import Resistance
-from beltdyn.model.profile import CosineRamp, Ramp
+from beltdyn.machines import CosineRamp, Ramp, Resistance
 from beltdyn.results import derived
 from beltdyn.theory.stretch import stretch
 

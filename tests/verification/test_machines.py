@@ -8,13 +8,13 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from beltdyn.arrays import FloatArray
+from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.loads.shaft import shaft_torque
+from beltdyn.machines.profiles.functions import prescribed_motion, profile_integral
+from beltdyn.machines.tensioners.registry import tensioner_force
 from beltdyn.model import Belt, Pulley, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.system.build_machines import Machines, body_inertias, machine_arrays
-from beltdyn.system.coupling import coupling_torque
-from beltdyn.system.excitation import prescribed_motion, profile_angle
-from beltdyn.system.shaft_torque import shaft_torque
-from beltdyn.system.tensioner import tensioner_force
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
 
@@ -35,7 +35,7 @@ def test_a_free_chain_swings_at_its_eigenfrequency() -> None:
 
     def rates(time: float, state: FloatArray) -> FloatArray:
         twist, rate = state[0] - state[1], state[2] - state[3]
-        torque = coupling_torque(machines.profiles, machines.couplings, 0, time, twist, rate)[0]
+        torque = link_torque(machines.profiles, machines.links[0], time, twist, rate)[0]
         return np.array([state[2], state[3], -torque / inertia[0], torque / inertia[1]])
 
     times = np.linspace(0.0, 0.3, 61)
@@ -53,7 +53,7 @@ def test_a_motor_runs_up_in_the_time_of_its_closed_form() -> None:
     _, machines = pulley(inertia=0.3, load=[motor])
 
     def rates(time: float, state: FloatArray) -> list[float]:
-        torque, _, _ = shaft_torque(machines.profiles, machines.torques, 0, time, state[0], state[1])
+        torque, _, _ = shaft_torque(machines.profiles, machines.shaft_loads, 0, time, state[0], state[1])
         return [state[1], torque / 0.3]
 
     slip = 0.01
@@ -75,7 +75,7 @@ def test_a_one_way_clutch_takes_its_body_to_the_largest_speed_of_the_rim() -> No
 
     def rates(time: float, state: FloatArray) -> list[float]:
         rate = prescribed_motion(machines.profiles, 0, time)[1] - state[0]
-        return [coupling_torque(machines.profiles, machines.couplings, 0, time, 0.0, rate)[0] / 0.01]
+        return [link_torque(machines.profiles, machines.links[0], time, 0.0, rate)[0] / 0.01]
 
     end, step = 2.0, 1e-4  # a step resolves both the wave of 160 rad/s and the time constant of 0.02 s
     speed = solve_ivp(rates, (0.0, end), [0.0], max_step=step, method="RK45").y[0]
@@ -91,7 +91,7 @@ def test_a_crank_turns_by_its_mean_speed_in_whole_waves(order: float) -> None:
     harmonic = {"order": order, "amplitude": 0.1, "phase": 0.4}
     _, machines = pulley(speed={"kind": "cosine_ramp", "start": 0.1, "end": 0.7, "value": 60.0}, harmonics=[harmonic])
     whole = quad(lambda t: prescribed_motion(machines.profiles, 0, t)[1], 0.0, 1.0, points=[0.1, 0.7], limit=400)[0]
-    theta = profile_angle(machines.profiles, 0, 1.0)
+    theta = profile_integral(machines.profiles, 0, 1.0)
     assert theta == pytest.approx(60.0 * (0.3 + 0.3), rel=1e-14)
     expected = theta + 0.1 / order * (np.sin(order * theta + 0.4) - np.sin(0.4))
     assert whole == pytest.approx(expected, rel=1e-10)
@@ -116,7 +116,7 @@ def test_losses_of_a_tensioner_in_a_cycle() -> None:
 
     def power(time: float, pick: Callable[[tuple[float, ...], float], float]) -> float:
         rate = amplitude * omega * np.cos(omega * time)
-        return pick(tensioner_force(tensioners, 0, amplitude * np.sin(omega * time), rate), rate)
+        return pick(tensioner_force(tensioners[0], amplitude * np.sin(omega * time), rate), rate)
 
     period = 2 * np.pi / omega
     turns = [0.25 * period, 0.75 * period]

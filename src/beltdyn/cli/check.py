@@ -157,20 +157,18 @@ def _spans(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]
 
 
 def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
-    from beltdyn.model import MovingTensioner, RotaryTensioner
-    from beltdyn.model.tensioner import place_of
-
     rows = list[tuple[str, ...]]()
-    moving = [one for one in drive.tensioners if isinstance(one, MovingTensioner)]
     others = other_balances(drive, installation)
-    for tensioner, position, other in zip(moving, installation.tensioner_positions.tolist(), others, strict=True):
-        unit = "N m" if isinstance(tensioner, RotaryTensioner) else "N"
+    for tensioner, position, other in zip(
+        drive.moving_tensioners, installation.tensioner_positions.tolist(), others, strict=True
+    ):
+        unit = "N m" if tensioner.turns else "N"
         rows.append(
             (
                 tensioner.pulley,
-                place_of(tensioner, position),
+                tensioner.written(position),
                 f"{tensioner.preload - tensioner.rate * position:.4g} {unit}",
-                " to ".join(place_of(tensioner, stop) for stop in tensioner.stops or ()),
+                " to ".join(tensioner.written(stop) for stop in tensioner.stops or ()),
                 other or "none",
             )
         )
@@ -179,15 +177,13 @@ def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str,
 
 def other_balances(drive: "Drive", installation: "Installation") -> list[str]:
     """Where tensioners balance the belt too, one text for each spring-loaded tensioner, empty without any."""
-    from beltdyn.model import MovingTensioner, tensioner_balances
-    from beltdyn.model.tensioner import place_of
+    from beltdyn.model import tensioner_balances
 
-    moving = [one for one in drive.tensioners if isinstance(one, MovingTensioner)]
     return [
         ", ".join(
-            f"{place_of(tensioner, balance.position)} ({'stable' if balance.stable else 'not stable'})"
+            f"{tensioner.written(balance.position)} ({'stable' if balance.stable else 'not stable'})"
             for balance in balances
             if not balance.here
         )
-        for tensioner, balances in zip(moving, tensioner_balances(drive, installation), strict=True)
+        for tensioner, balances in zip(drive.moving_tensioners, tensioner_balances(drive, installation), strict=True)
     ]

@@ -24,7 +24,7 @@ def static(file: Path, /) -> None:
         run = equilibrium(drive, report)
     show("Static equilibrium")
     show_summary(run)
-    names = [one.pulley for one in drive.tensioners if one.kind != "fixed"]
+    names = [one.pulley for one in drive.moving_tensioners]
     for name, others in zip(names, other_balances(run.drive, install(run.drive)), strict=True):
         if others:
             show(f"The tensioner of {name} balances the belt at {others} too.")

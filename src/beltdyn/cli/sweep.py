@@ -104,7 +104,7 @@ def run_up(drive: "Drive", pulley: str, start: float, end: float, duration: floa
 
 def _numbers(start: str, end: str, duration: str) -> tuple[float, float, float]:
     """Read the quantities of the command line, or say which one is wrong."""
-    from beltdyn.model.quantity import to_si
+    from beltdyn.parts.quantity import to_si
 
     numbers = []
     for option, text, unit in (("--from", start, "rad/s"), ("--to", end, "rad/s"), ("--duration", duration, "s")):

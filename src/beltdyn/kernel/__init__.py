@@ -2,7 +2,8 @@
 
 from beltdyn.kernel.by_type import by_type
 from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, kernel_cache, source_hash
-from beltdyn.kernel.decorator import Kernel, kernel
+from beltdyn.kernel.choice import choice
+from beltdyn.kernel.decorator import Kernel, interpreted, kernel
 from beltdyn.kernel.version import PLAIN_VARIABLE, compiles_quickly
 
 __all__ = [
@@ -11,7 +12,9 @@ __all__ = [
     "PLAIN_VARIABLE",
     "Kernel",
     "by_type",
+    "choice",
     "compiles_quickly",
+    "interpreted",
     "kernel",
     "kernel_cache",
     "source_hash",

@@ -2,10 +2,12 @@
 
 import functools
 from collections.abc import Callable
+from contextvars import ContextVar
 from typing import Any, Generic, ParamSpec, TypeVar, cast, overload
 
 P = ParamSpec("P")
 R = TypeVar("R")
+_interpreting = ContextVar("_interpreting", default=False)
 
 
 class Kernel(Generic[P, R]):
@@ -24,7 +26,9 @@ class Kernel(Generic[P, R]):
         functools.update_wrapper(self, function)
 
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R:
-        """Call the compiled function."""
+        """Call the compiled function, or inside of `interpreted` the function itself."""
+        if _interpreting.get():
+            return self.py_func(*args, **kwargs)
         return cast(R, self.dispatcher(*args, **kwargs))
 
     def __reduce__(self) -> tuple[type["Kernel[P, R]"], tuple[Callable[P, R], bool]]:
@@ -67,3 +71,27 @@ def kernel(function: Callable[..., Any] | None = None, /, *, inline: bool = Fals
     if function is None:
         return functools.partial(Kernel, inline=inline)
     return Kernel(function, inline)
+
+
+def interpreted(function: Callable[P, R]) -> Callable[P, R]:
+    """Let Python run a kernel and those that it calls, for a few calls where nothing is to be compiled.
+
+    Parameters
+    ----------
+    function
+        A kernel.
+
+    Returns
+    -------
+    Callable
+        The same function.  If it is written with NumPy's functions, it takes arrays in place of numbers.
+    """
+
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        token = _interpreting.set(True)
+        try:
+            return function(*args, **kwargs)
+        finally:
+            _interpreting.reset(token)
+
+    return run

@@ -1,19 +1,35 @@
 """What a user describes: the drive, validated and immutable, and its file."""
 
+from beltdyn.machines import (
+    Constant,
+    CosineRamp,
+    CosineRampPublished,
+    FixedTensioner,
+    FrictionClutch,
+    Harmonic,
+    Isolator,
+    LoadTable,
+    Motor,
+    MovingTensioner,
+    OneWayClutch,
+    Profile,
+    Ramp,
+    Resistance,
+    RotaryTensioner,
+    SlidingTensioner,
+    Step,
+    Table,
+)
 from beltdyn.model.advice import advise, unstable_balance
 from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
-from beltdyn.model.hub import FrictionClutch, Isolator, OneWayClutch
 from beltdyn.model.installation import Installation, describe, install, layer_lengths, tensioner_balances
-from beltdyn.model.load import LoadTable, Motor, Resistance
 from beltdyn.model.path import Path
-from beltdyn.model.profile import Constant, CosineRamp, CosineRampPublished, Harmonic, Profile, Ramp, Step, Table
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, mesh_errors, unresolved
 from beltdyn.model.simulation import Simulation
-from beltdyn.model.tensioner import FixedTensioner, MovingTensioner, RotaryTensioner, SlidingTensioner
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml_reader import json_schema, load, loads
 from beltdyn.model.toml_writer import dumps

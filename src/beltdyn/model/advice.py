@@ -8,7 +8,6 @@ import numpy as np
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
-from beltdyn.model.tensioner import MovingTensioner, place_of
 from beltdyn.theory.stretch import stretch
 
 _MOST_TENSION_LOST = 0.02
@@ -114,8 +113,7 @@ def _two_digits(value: float, rounded: Callable[[float], int]) -> float:
 
 def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:
     warnings = []
-    moving = [tensioner for tensioner in drive.tensioners if isinstance(tensioner, MovingTensioner)]
-    for tensioner, position in zip(moving, installation.tensioner_positions, strict=True):
+    for tensioner, position in zip(drive.moving_tensioners, installation.tensioner_positions, strict=True):
         if tensioner.stops is not None and not tensioner.stops[0] < position < tensioner.stops[1]:
             which, remedy = (
                 ("upper", "shorten the belt or raise its installed tension, or lower the preload")
@@ -132,9 +130,8 @@ def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:
 def _other_balances(drive: Drive, installation: Installation) -> list[str]:
     """Tell of other stable balances, to which a blow may drive a tensioner."""
     warnings = []
-    moving = [tensioner for tensioner in drive.tensioners if isinstance(tensioner, MovingTensioner)]
-    for tensioner, balances in zip(moving, tensioner_balances(drive, installation), strict=True):
-        others = [place_of(tensioner, balance.position) for balance in balances if balance.stable and not balance.here]
+    for tensioner, balances in zip(drive.moving_tensioners, tensioner_balances(drive, installation), strict=True):
+        others = [tensioner.written(balance.position) for balance in balances if balance.stable and not balance.here]
         if others:
             warnings.append(
                 f'the tensioner of "{tensioner.pulley}" is in stable balance at {" and ".join(others)} too, and a run '

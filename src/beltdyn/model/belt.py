@@ -9,8 +9,8 @@ from pydantic.fields import FieldInfo
 
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
-from beltdyn.model.part import Part, computed
-from beltdyn.model.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
+from beltdyn.parts.part import Part, computed
+from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
 
 _KINDS = {kind.name: kind for kind in ELEMENTS}
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS)

@@ -12,8 +12,8 @@ from typing import Any
 from pydantic import Field
 
 from beltdyn.model.catalogue import Entry, read_catalogue
-from beltdyn.model.part import Part
-from beltdyn.model.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 
 _POISSONS_RATIO = 0.3
 _MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")

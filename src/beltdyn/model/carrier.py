@@ -6,8 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
+from beltdyn.machines.tensioners.registry import tensioner_row
+from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
 from beltdyn.model.path import Path
-from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner, SlidingTensioner, path_gradient
+from beltdyn.model.pulley import Pulley
 
 
 @dataclass(frozen=True)
@@ -18,41 +21,27 @@ class Carrier:
     ----------
     pulley : int
         Number of the pulley.
-    tensioner : SlidingTensioner or RotaryTensioner
+    tensioner : MovingTensioner
         The tensioner.
-    center : ndarray, shape (2,), m
-        Where the pulley stands at q = 0.
-    sense : float
-        1, or -1 for an arm that lengthens the path by turning clockwise.
+    row : record
+        The row of `beltdyn.machines.tensioners.registry.TENSIONER` that kernels get, without weight.
     """
 
     pulley: int
     tensioner: MovingTensioner
-    center: FloatArray
-    sense: float
+    row: np.record
 
     def place(self, position: float) -> tuple[FloatArray, FloatArray]:
         """Center of the pulley at a position q (m, rad), and its derivative with respect to q."""
-        if isinstance(self.tensioner, SlidingTensioner):
-            direction = np.array(self.tensioner.direction)
-            return self.center + position * direction, direction
-        assert isinstance(self.tensioner, RotaryTensioner)
-        pivot, angle = np.array(self.tensioner.pivot), self.sense * position
-        x, y = self.center - pivot
-        arm = np.array([x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)])
-        return pivot + arm, self.sense * np.array([-arm[1], arm[0]])
+        center = interpreted(type(self.tensioner).center_at)(self.row[self.tensioner.kind], position)
+        return np.array([center.x, center.y]), np.array([center.dx, center.dy])
 
     def force(self, position: float) -> float:
         """What spring and stops press with at a position (m, rad): N, or N m of an arm."""
-        given = self.tensioner
-        assert isinstance(given, SlidingTensioner | RotaryTensioner)
-        force = given.preload - given.rate * position
-        if given.stops is not None and given.stop_stiffness is not None:
-            force += given.stop_stiffness * float(np.clip(position, *given.stops) - position)
-        return force
+        return float(interpreted(type(self.tensioner).force_at)(self.row[self.tensioner.kind], position, 0.0).force)
 
 
-def carriers_of(tensioners: Sequence[AnyTensioner], names: Sequence[str], path: Path) -> list[Carrier]:
+def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Path) -> list[Carrier]:
     """Put spring-loaded tensioners and the pulleys that they carry together.
 
     Parameters
@@ -73,9 +62,8 @@ def carriers_of(tensioners: Sequence[AnyTensioner], names: Sequence[str], path: 
     for tensioner in tensioners:
         if isinstance(tensioner, MovingTensioner):
             pulley = names.index(tensioner.pulley)
-            center, gradient = path_gradient(path, pulley)
-            sense = float(np.sign(tensioner.leverage(center, gradient)))
-            carriers.append(Carrier(pulley, tensioner, center, sense))
+            row = tensioner_row(tensioner, pulley, path.centers[pulley], path.gradient(pulley))
+            carriers.append(Carrier(pulley, tensioner, row))
     return carriers
 
 
@@ -87,3 +75,42 @@ def moved(path: Path, carriers: Sequence[Carrier], positions: FloatArray) -> Pat
     for one, position in zip(carriers, positions, strict=True):
         centers[one.pulley] = one.place(float(position))[0]
     return Path(centers, path.radii)
+
+
+def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley], path: Path) -> None:
+    """Check that tensioners carry the pulleys of a drive, and can tension its belt.
+
+    Parameters
+    ----------
+    tensioners : sequence
+        The tensioners.
+    pulleys : sequence of Pulley
+        The pulleys.
+    path : Path
+        Around all pulleys.
+
+    Raises
+    ------
+    ValueError
+        If a pulley does not exist or is carried twice, or a tensioner does not tension or has no inertia.
+    """
+    names, carried = [pulley.name for pulley in pulleys], [item.pulley for item in tensioners]
+    for position, (item, name) in enumerate(zip(tensioners, carried, strict=True), 1):
+        if name not in names:
+            raise ValueError(
+                f'tensioner[{position}].pulley = "{name}" is not the name of a pulley. Known here: {", ".join(names)}'
+            )
+        if carried.count(name) > 1:
+            raise ValueError(
+                f'pulley "{name}" is carried by {carried.count(name)} tensioners, and one can carry it. '
+                "Remove the others"
+            )
+        if isinstance(item, MovingTensioner):
+            number = names.index(name)
+            center = path.centers[number]
+            item.leverage(center, path.gradient(number))
+            if item.moved_inertia(center, pulleys[number].mass) == 0:
+                raise ValueError(
+                    f'the tensioner of "{name}" moves nothing that has inertia. Give the pulley\'s mass, or that of '
+                    "the tensioner"
+                )

@@ -9,11 +9,11 @@ from typing import Literal
 
 from pydantic import Field, ValidationError
 
-from beltdyn.model.guide import shorten
-from beltdyn.model.messages import explain, reason
-from beltdyn.model.part import Part
-from beltdyn.model.quantity import Angle, AxialStiffness, BendingStiffness, Length, MassPerLength, Time
-from beltdyn.model.text_file import LONGEST_TOML, parse_toml, read_text
+from beltdyn.parts.error_location import shorten
+from beltdyn.parts.messages import explain, reason
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Angle, AxialStiffness, BendingStiffness, Length, MassPerLength, Time
+from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
 
 
 class Entry(Part):

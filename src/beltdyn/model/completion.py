@@ -4,21 +4,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
-from beltdyn.model.carrier import Carrier, carriers_of
+from beltdyn.model.carrier import Carrier, carriers_of, check_tensioners
 from beltdyn.model.contact import Contact
 from beltdyn.model.layout import lay_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.rest import Rest
-from beltdyn.model.tensioner import (
-    LEAST_LEVERAGE,
-    AnyTensioner,
-    FixedTensioner,
-    MovingTensioner,
-    check_tensioners,
-    path_gradient,
-)
 from beltdyn.model.tensioner_balance import come_to_rest
 
 _LARGEST_STRAIN = 0.5
@@ -32,7 +26,7 @@ class _Open(NamedTuple):
     belt: Belt
     pulleys: tuple[Pulley, ...]
     contact: Contact
-    tensioners: tuple[AnyTensioner, ...]
+    tensioners: tuple[Tensioner, ...]
 
     def rest(self) -> Rest:
         """The belt at rest, with spring-loaded tensioners in balance."""
@@ -50,7 +44,7 @@ class _Open(NamedTuple):
 
 
 def complete(
-    belt: Belt, pulleys: tuple[Pulley, ...], contact: Contact, tensioners: tuple[AnyTensioner, ...]
+    belt: Belt, pulleys: tuple[Pulley, ...], contact: Contact, tensioners: tuple[Tensioner, ...]
 ) -> dict[str, Any]:
     """Make parts of a drive definite.
 
@@ -124,7 +118,7 @@ def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner, distance: flo
 
 
 def take_up(
-    pulleys: tuple[Pulley, ...], tensioners: tuple[AnyTensioner, ...], path: Path, distance: float
+    pulleys: tuple[Pulley, ...], tensioners: tuple[Tensioner, ...], path: Path, distance: float
 ) -> tuple[Pulley, ...]:
     """Move the pulley of the one fixed tensioner, so that the path becomes longer by a small distance, m.
 
@@ -142,17 +136,17 @@ def take_up(
     return _moved(pulleys, fixed, distance / _leverage(path, number, fixed))
 
 
-def _fixed(tensioners: tuple[AnyTensioner, ...]) -> FixedTensioner:
+def _fixed(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
     """The first fixed tensioner."""
     return next(tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner))
 
 
 def _leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
     """How much longer the path becomes by a metre of take-up, m."""
-    return float(path_gradient(path, pulley)[1] @ np.array(tensioner.direction))
+    return float(path.gradient(pulley) @ np.array(tensioner.direction))
 
 
-def _check_take_up_is_open(tensioners: tuple[AnyTensioner, ...]) -> None:
+def _check_take_up_is_open(tensioners: tuple[Tensioner, ...]) -> None:
     """Refuse a belt of given length and tension without the one fixed tensioner whose take-up is to be computed."""
     fixed = [tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner)]
     if len(fixed) != 1:

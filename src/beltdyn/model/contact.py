@@ -5,8 +5,8 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from beltdyn.contact.friction import LAWS, FrictionLaw
-from beltdyn.model.part import Part, computed
-from beltdyn.model.quantity import Count, CreepRate, Length, LineDamping, LineStiffness, Ratio, Speed
+from beltdyn.parts.part import Part, computed
+from beltdyn.parts.quantity import Count, CreepRate, Length, LineDamping, LineStiffness, Ratio, Speed
 
 _LAWS = {law.name: law for law in LAWS}
 

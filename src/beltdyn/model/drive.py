@@ -8,17 +8,19 @@ import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.arrays import FloatArray
+from beltdyn.machines import MovingTensioner, Tensioner
+from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
+from beltdyn.model.carrier import Carrier, carriers_of
 from beltdyn.model.completion import complete, take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.layout import radii, trace
-from beltdyn.model.part import Part
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
-from beltdyn.model.quantity import Acceleration
 from beltdyn.model.simulation import Simulation
-from beltdyn.model.tensioner import AnyTensioner, Tensioner
 from beltdyn.model.toml_writer import dumps
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Acceleration
 
 
 class Drive(Part):
@@ -34,7 +36,7 @@ class Drive(Part):
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
     contact: Contact = Field(description="the group [contact]")
-    tensioners: tuple[Tensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
+    tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
     simulation: Simulation = Field(description="the group [simulation]")
     gravity: tuple[Acceleration, Acceleration] = Field(
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
@@ -113,7 +115,17 @@ class Drive(Part):
         """
         return super().replace(**{"belt": self.belt.given} | changes)
 
-    def carried(self, tensioner: AnyTensioner) -> int:
+    @property
+    def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
+        """The tensioners that move while the drive runs."""
+        return tuple(one for one in self.tensioners if isinstance(one, MovingTensioner))
+
+    @cached_property
+    def carriers(self) -> list[Carrier]:
+        """The same with the pulleys that they carry."""
+        return carriers_of(self.tensioners, [pulley.name for pulley in self.pulleys], self.path)
+
+    def carried(self, tensioner: Tensioner) -> int:
         """Tell the number of the pulley that a tensioner carries."""
         return [pulley.name for pulley in self.pulleys].index(tensioner.pulley)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model.carrier import Carrier, carriers_of, moved
+from beltdyn.model.carrier import moved
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
 from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, come_to_rest
@@ -81,7 +81,7 @@ def install(drive: Drive) -> Installation:
     >>> round(bd.install(drive).tension, 1)  # N
     26.6
     """
-    rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, _carriers(drive))
+    rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, drive.carriers)
     path = rest.path
     turned = path.span_directions - np.roll(path.span_directions, 1, axis=0)
     tensions = np.full(path.count, rest.tension)
@@ -103,7 +103,7 @@ def describe(
     -------
     Installation
     """
-    path = moved(drive.path, _carriers(drive), positions)
+    path = moved(drive.path, drive.carriers, positions)
     laid = path.length / drive.belt.length
     return Installation(
         strain=laid - 1,
@@ -132,11 +132,7 @@ def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[
     tuple of tuples of TensionerBalance
         For each tensioner, in ascending order of the positions; without bending stiffness and weight.
     """
-    return all_balances(drive.path, drive.belt, drive.contact, _carriers(drive), installation.tensioner_positions)
-
-
-def _carriers(drive: Drive) -> list[Carrier]:
-    return carriers_of(drive.tensioners, [pulley.name for pulley in drive.pulleys], drive.path)
+    return all_balances(drive.path, drive.belt, drive.contact, drive.carriers, installation.tensioner_positions)
 
 
 def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatArray:

@@ -76,6 +76,23 @@ class Path:
         """Length of the path, m."""
         return float(self._starts[-1])
 
+    def gradient(self, pulley: int) -> FloatArray:
+        """Derivative of the length with respect to the center of a pulley.
+
+        It is u_in - u_out, the unit vectors along the spans before and behind the pulley; arcs do not contribute, since
+        the path is the shortest one.
+
+        Parameters
+        ----------
+        pulley : int
+            Number of the pulley.
+
+        Returns
+        -------
+        ndarray, shape (2,)
+        """
+        return np.asarray(self.span_directions[pulley - 1] - self.span_directions[pulley])
+
     @cached_property
     def _starts(self) -> FloatArray:
         """Arc lengths where the pieces start, and the total, shape (2 n + 1,): span 0, arc 1, span 1, ..., arc 0."""

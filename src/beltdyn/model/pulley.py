@@ -1,18 +1,18 @@
 """A pulley: driven with a prescribed speed, or turning freely, with what is behind its rim and on its shaft."""
 
-from typing import Annotated, Self
+from typing import Self
 
-from pydantic import Field, StringConstraints, model_validator
+from pydantic import Field, model_validator
 
+from beltdyn.machines.links.registry import AnyHubLink
+from beltdyn.machines.loads.registry import AnyLoad
+from beltdyn.machines.profiles.harmonic import Harmonic
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side
 from beltdyn.model.contact import Contact
-from beltdyn.model.hub import AnyHubLink
-from beltdyn.model.load import AnyLoad
-from beltdyn.model.part import Part
-from beltdyn.model.profile import Harmonic, Profile, SpeedProfile, TorqueProfile
-from beltdyn.model.quantity import Coordinate, Inertia, Length, Mass, Ratio
-
-Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio
 
 
 class Pulley(Part):
@@ -97,7 +97,7 @@ class Pulley(Part):
     @property
     def schedules(self) -> tuple[Profile | None, ...]:
         """The schedules of the loads, then of the links of the hub chain; None where there is none."""
-        return (*(item.schedule for item in self.load), *(getattr(link, "schedule", None) for link in self.hub))
+        return (*(item.schedule for item in self.load), *(link.factor for link in self.hub))
 
 
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:

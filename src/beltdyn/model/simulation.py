@@ -6,8 +6,8 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from beltdyn.model.instants import Instants
-from beltdyn.model.part import Part
-from beltdyn.model.quantity import Ratio, Time
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Ratio, Time
 
 _MOST_OUTPUTS = 1_000_000
 _FIELDS = 100

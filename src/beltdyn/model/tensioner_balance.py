@@ -11,7 +11,6 @@ from beltdyn.model.carrier import Carrier, moved
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
 from beltdyn.model.rest import Rest, settle
-from beltdyn.model.tensioner import RotaryTensioner, path_gradient, place_of
 
 _FIRST_STEP, _GROWTH = 1e-3, 1.3
 """Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
@@ -69,7 +68,7 @@ class _Situation(NamedTuple):
             raise ValueError("the belt leaves a pulley")
         if _covers_another(rest.path, one.pulley):
             raise ValueError("the pulley meets another one")
-        leverage = path_gradient(rest.path, one.pulley)[1] @ one.place(position)[1]
+        leverage = rest.path.gradient(one.pulley) @ one.place(position)[1]
         return one.force(position) - rest.tension * float(leverage)
 
     @property
@@ -193,7 +192,7 @@ def _nearest(situation: _Situation) -> float:
 
 def _balances(situation: _Situation, start: float) -> Iterator[float]:
     """Find positions in which the excess changes its sign, on both sides of a start, the nearer ones first."""
-    around = isinstance(situation.carrier.tensioner, RotaryTensioner)
+    around = situation.carrier.tensioner.turns
     reach = np.pi if around else _FARTHEST * situation.path.length
     first = situation.excess(start)
     if first == 0.0:
@@ -266,6 +265,6 @@ def _no_balance(one: Carrier, excess: float) -> str:
 def _no_stable_balance(one: Carrier, position: float, tension: float) -> str:
     return (
         f'with belt.installed_tension = {tension:.5g} N the tensioner of "{one.tensioner.pulley}" balances the belt at '
-        f"{place_of(one.tensioner, position)}, but not stably: what moves it a little drives it away. Change its pivot "
+        f"{one.tensioner.written(position)}, but not stably: what moves it a little drives it away. Change its pivot "
         "or direction, raise the rate of its spring, or give stops"
     )

@@ -8,9 +8,9 @@ from pydantic import ValidationError
 
 from beltdyn.errors import ModelError
 from beltdyn.model.drive import Drive
-from beltdyn.model.guide import shorten
-from beltdyn.model.messages import explain, reason
-from beltdyn.model.text_file import LONGEST_TOML, parse_toml, read_text
+from beltdyn.parts.error_location import shorten
+from beltdyn.parts.messages import explain, reason
+from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
 
 _LONGEST_REASON = 200
 

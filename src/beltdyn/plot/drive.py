@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
-from beltdyn.model.tensioner import RotaryTensioner
 from beltdyn.plot.curve import centerline, element_lengths
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
 from beltdyn.results import Run
@@ -111,7 +110,7 @@ def extent_of(drive: Drive, path: Path) -> FloatArray:
     """Lower left and upper right corner of what is drawn, shape (2, 2), m."""
     radii = np.maximum(np.abs(path.radii), [pulley.radius for pulley in drive.pulleys])[:, None]
     points = [*(path.centers - radii), *(path.centers + radii)]
-    points += [np.array(one.pivot) for one in drive.tensioners if isinstance(one, RotaryTensioner)]
+    points += [np.array(one.anchor) for one in drive.tensioners if one.anchor is not None]
     return np.array([np.min(points, axis=0), np.max(points, axis=0)])
 
 

@@ -1,5 +1,6 @@
 """The layout of a drive, before anything is simulated."""
 
+from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path as FilePath
 from typing import Any
@@ -10,15 +11,18 @@ from matplotlib.patches import Circle, FancyArrowPatch, Wedge
 from matplotlib.path import Path as Outline
 from numpy.typing import ArrayLike
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.machines import FixedTensioner, Tensioner
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
-from beltdyn.model.tensioner import AnyTensioner, MovingTensioner, RotaryTensioner
 from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 
 _BELT, _TENSIONER = COLORS[0], COLORS[1]
+_WAY, _POINTS = 1.4, 20
+"""Length of a way that is drawn, over the radius of the pulley, and its points."""
 _ARROW = "-|>,head_length=5,head_width=2.4"
 
 
@@ -47,10 +51,8 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     for number in range(path.count):
         _draw_pulley(ax, drive, path, number)
     _draw_belt(ax, path)
-    moving = iter(installation.tensioner_positions)
-    for tensioner in drive.tensioners:
-        position = float(next(moving)) if isinstance(tensioner, MovingTensioner) else 0.0
-        _draw_tensioner(ax, tensioner, path, drive.carried(tensioner), position)
+    for tensioner, way in _ways(drive, installation):
+        _draw_tensioner(ax, tensioner, way)
     for number, pulley in enumerate(drive.pulleys):
         text = f"{number + 1} {pulley.name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
         write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
@@ -130,24 +132,28 @@ def _draw_belt(ax: Axes, path: Path) -> None:
         ax.add_patch(_arrow([start + 0.7 * (end - start), start + 0.8 * (end - start)], _BELT, 14))
 
 
-def _draw_tensioner(ax: Axes, tensioner: AnyTensioner, path: Path, pulley: int, position: float) -> None:
+def _ways(drive: Drive, installation: Installation) -> Iterator[tuple[Tensioner, FloatArray]]:
+    """Tensioners, each with the way on which the center of its pulley tensions the belt, shape (n, 2), m."""
+    path, parts = installation.path, np.linspace(0.0, _WAY, _POINTS)
+    radii = np.abs(path.radii)
+    for tensioner in drive.tensioners:
+        if isinstance(tensioner, FixedTensioner):
+            number = drive.carried(tensioner)
+            yield tensioner, path.centers[number] + np.outer(radii[number] * parts, tensioner.direction)
+    for carrier, position in zip(drive.carriers, installation.tensioner_positions.tolist(), strict=True):
+        step = radii[carrier.pulley] / np.linalg.norm(carrier.place(position)[1])
+        yield carrier.tensioner, np.array([carrier.place(position + step * part)[0] for part in parts])
+
+
+def _draw_tensioner(ax: Axes, tensioner: Tensioner, way: FloatArray) -> None:
     """Draw the arm or the line of a tensioner, and an arrow the way in which it tensions the belt."""
-    center, radius = path.centers[pulley], abs(path.radii[pulley])
     line: dict[str, Any] = {"color": _TENSIONER, "linewidth": 2.0, "zorder": 4}
-    if isinstance(tensioner, RotaryTensioner):
-        pivot = np.array(tensioner.pivot)
-        arm = center - pivot
+    center, pivot = way[0], tensioner.anchor
+    if pivot is None:
+        ax.plot(*np.array([2.0 * center - way[-1], center]).T, linestyle=":", **line)
+    else:
         ax.plot(*np.array([pivot, center]).T, **line)
         ax.plot(*pivot, marker="o", markersize=7, markeredgecolor=_TENSIONER, markerfacecolor="white", zorder=4.1)
-        gradient = path.span_directions[pulley - 1] - path.span_directions[pulley]
-        sense = np.sign(arm[0] * gradient[1] - arm[1] * gradient[0])
-        turn = sense * np.linspace(0.0, 1.3 * radius / float(np.linalg.norm(arm)), 20)
-        cosine, sine = np.cos(turn), np.sin(turn)
-        way = pivot + np.column_stack([arm[0] * cosine - arm[1] * sine, arm[0] * sine + arm[1] * cosine])
-    else:
-        direction = np.array(tensioner.direction)
-        way = center + np.outer([0.0, 1.4 * radius], direction)
-        ax.plot(*(center + np.outer([-1.4 * radius, 0.0], direction)).T, linestyle=":", **line)
     ax.add_patch(_arrow(way, _TENSIONER, 9))
 
 

@@ -4,7 +4,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from beltdyn.errors import ModelError
-from beltdyn.model.tensioner import MovingTensioner
 from beltdyn.plot.history import lines
 from beltdyn.plot.registry import figure, over_time
 from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
@@ -107,7 +106,7 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     if "tensioner_position" not in run.dataset:
         raise ModelError("this drive has no tensioner that moves: there is no position to draw. Choose another figure.")
     position = run.dataset["tensioner_position"]
-    rotary = np.array([one.kind == "rotary" for one in run.drive.tensioners if isinstance(one, MovingTensioner)])
+    rotary = np.array([one.turns for one in run.drive.moving_tensioners])
     units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]
     scaled = position * np.where(rotary, np.degrees(1.0), 1e3)
     return lines(scaled.assign_attrs(position.attrs | {"units": ", ".join(units)}), axes_or_new(ax))

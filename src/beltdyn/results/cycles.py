@@ -8,8 +8,8 @@ from math import floor, gcd, lcm
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.machines import Harmonic, Profile, Table
 from beltdyn.model import Drive
-from beltdyn.model.profile import Harmonic, Profile, Table
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.window import Cycle, Window, plain_window
 

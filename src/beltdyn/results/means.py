@@ -173,15 +173,14 @@ def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = No
     tuple of TensionerSummary
         One for each tensioner that moves.
     """
-    moving = [one for one in drive.tensioners if one.kind != "fixed"]
+    moving = drive.moving_tensioners
     if not moving:
         return ()
     window = mean_window(recorded, drive) if window is None else window
     place = np.asarray(recorded["tensioner_position"][window.first :])
     columns = (window.mean(recorded, "tensioner_position"), place.min(axis=0), place.max(axis=0))
     return tuple(
-        TensionerSummary(one.pulley, one.kind == "rotary", *map(float, row))
-        for one, *row in zip(moving, *columns, strict=True)
+        TensionerSummary(one.pulley, one.turns, *map(float, row)) for one, *row in zip(moving, *columns, strict=True)
     )
 
 

@@ -105,7 +105,7 @@ def _sizes(drive: Drive) -> dict[str, int]:
     return {
         "pulley": pulleys,
         "span": pulleys,
-        "tensioner": sum(tensioner.kind != "fixed" for tensioner in drive.tensioners),
+        "tensioner": len(drive.moving_tensioners),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),
         "node": kind.points * (belt.elements + (drive.simulation.joint == "multipliers")),

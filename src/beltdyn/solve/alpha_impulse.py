@@ -8,13 +8,13 @@ acceleration; the rest of the integral of x is added here.
 from math import isnan
 
 from beltdyn.kernel import kernel
+from beltdyn.machines.links.registry import torque_of_kind
+from beltdyn.machines.loads.shaft import load_torque
+from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, profile_value
 from beltdyn.solve.alpha_method import Method
 from beltdyn.solve.march import March, motion_of
 from beltdyn.system.arrays import System
-from beltdyn.system.excitation import after_jump, profile_value
-from beltdyn.system.machine_arrays import FRICTION_CLUTCH, NO_SCHEDULE
 from beltdyn.system.missed_action import missed_impulses
-from beltdyn.system.shaft_torque import load_torque
 
 
 @kernel
@@ -41,18 +41,15 @@ def add_missed_impulses(system: System, method: Method, march: March, length: fl
         body = system.pulleys[p].shaft
         if system.bodies[body].unknown >= 0:
             _push(system, march, body, _lag_of_shaft(system, method, march, p, length), length)
-    for number in range(system.couplings.size):
-        link = system.couplings[number]
-        if link.kind == FRICTION_CLUTCH and link.schedule != NO_SCHEDULE:
-            lag = lag_of(system, method, march, link.schedule, length)
+    for number in range(system.links.size):
+        link = system.links[number]
+        if link.schedule != NO_SCHEDULE:
+            twist = march.position[first + link.front] - march.position[first + link.back]
             rate = march.velocity[first + link.front] - march.velocity[first + link.back]
-            locking, capacity, _ = link.constants
-            if locking * abs(rate) < capacity:
-                lag = 0.0  # it may stick, and then its capacity does not matter
-            elif rate < 0.0:
-                lag = -lag
-            _push(system, march, link.front, -capacity * lag, length)
-            _push(system, march, link.back, capacity * lag, length)
+            full = torque_of_kind(link, 1.0, twist, rate)  # what may stick in full does not feel its schedule
+            impulse = full.by_schedule * lag_of(system, method, march, link.schedule, length)
+            _push(system, march, link.front, -impulse, length)
+            _push(system, march, link.back, impulse, length)
 
 
 @kernel
@@ -86,13 +83,13 @@ def _push(system: System, march: March, body: int, impulse: float, length: float
 @kernel(inline=True)
 def _lag_of_shaft(system: System, method: Method, march: March, pulley: int, length: float) -> float:
     """What the method leaves of the impulses of a shaft's torque and loads, N m s."""
-    torques = system.torques
+    loads = system.shaft_loads
     i = system.first_body + system.pulleys[pulley].shaft
     impulse = lag_of(system, method, march, pulley, length)
-    for load in range(torques.first[pulley], torques.first[pulley + 1]):
-        schedule = torques.table[load].schedule
+    for load in range(loads.first[pulley], loads.first[pulley + 1]):
+        schedule = loads.table[load].schedule
         if schedule != NO_SCHEDULE:
-            torque = load_torque(torques, load, march.position[i], march.velocity[i])[0]
+            torque = load_torque(loads, load, march.position[i], march.velocity[i]).torque
             impulse += torque * lag_of(system, method, march, schedule, length)
     return impulse
 

@@ -19,8 +19,8 @@ from beltdyn.solve.alpha_method import Method
 from beltdyn.solve.march import ITERATIONS, SLOWEST, March, Settings, allowed_error
 from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
-from beltdyn.system.excitation import prescribe
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
+from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 
 _MAX_ITERATIONS: Final = 10

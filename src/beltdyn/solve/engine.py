@@ -15,9 +15,9 @@ from beltdyn.solve import generalized_alpha
 from beltdyn.solve.march import March, Settings, Steps, empty_steps, new_march
 from beltdyn.system.arrays import DRIVER_WORK, System
 from beltdyn.system.assembly import assemble
-from beltdyn.system.excitation import prescribe
 from beltdyn.system.missed_action import jump_work
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
+from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import solve_ring, substitute
 
 ADVANCE: Final = 0

@@ -16,7 +16,7 @@ from beltdyn.solve.alpha_step import Step, new_step, try_step
 from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.system.arrays import ENERGY_WORKS, Loads, Motion, System
-from beltdyn.system.loads import keep_loads
+from beltdyn.system.body_forces import keep_loads
 from beltdyn.system.missed_action import missed_work
 from beltdyn.system.motion import Equations
 from beltdyn.system.numerical_loss import numerical_loss

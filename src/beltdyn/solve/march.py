@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import ENERGY_WORKS, POWERS, Loads, Motion, System
-from beltdyn.system.loads import load_history
+from beltdyn.system.body_forces import load_history
 from beltdyn.system.motion import no_multipliers
 
 STEPS: Final = 0

@@ -127,7 +127,8 @@ def standing(system: System) -> System:
     """
     segments, starts = system.profiles.segment.copy(), system.profiles.table["segment"]
     for pulley in np.flatnonzero(system.bodies["unknown"][system.pulleys.shaft] < 0):
-        segments["coefficients"][starts[pulley] : starts[pulley + 1]] = 0.0
+        for name in ("offset", "slope", "amplitude"):
+            segments[name][starts[pulley] : starts[pulley + 1]] = 0.0
     return system._replace(profiles=system.profiles._replace(segment=segments))
 
 
@@ -211,7 +212,7 @@ class _Search:
     def answer_to_force(self, number: int) -> FloatArray:
         """How far tensioners move by a unit of force on one of them, from where the equations were linearised."""
         tensioners = self._system.tensioners.copy()
-        tensioners["preload"][number] += 1.0
+        tensioners["push"][number] += 1.0
         correct(self._system._replace(tensioners=tensioners), 0.0, *self._motion, self._multipliers, self._ahead)
         return np.asarray((self._here.border_part - self._ahead.border_part)[: tensioners.size])
 

@@ -35,7 +35,7 @@ def resolved_length(system: System, settings: Settings, motion: Motion, wanted: 
         Length of the step, s.
     """
     length = wanted
-    for source in range(system.pulleys.size + system.couplings.size):
+    for source in range(system.pulleys.size + system.links.size):
         length = _resolve(system, settings, source, motion, length)
     return length
 
@@ -61,7 +61,7 @@ def is_resolved(system: System, settings: Settings, source: int, motion: Motion,
     """Whether the ends of a step see enough of what a source does in between."""
     allowed = allowed_error(settings, length)
     if source >= system.pulleys.size:
-        link = system.couplings[source - system.pulleys.size]
+        link = system.links[source - system.pulleys.size]
         front, back = _impulse(system, link.front, allowed, length), _impulse(system, link.back, allowed, length)
         limit = min(front, back)
     else:

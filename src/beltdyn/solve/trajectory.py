@@ -7,7 +7,7 @@ from typing import Protocol, Self
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.model import Drive, Motor, Pulley, install
+from beltdyn.model import Drive, Pulley, install
 from beltdyn.model.instants import SAME, Instants
 from beltdyn.system.arrays import ENERGY_WORKS, Loads, System
 from beltdyn.system.state import State
@@ -252,4 +252,4 @@ def _driven_speed(pulley: Pulley, duration: float) -> float:
     """Largest speed at which a pulley's shaft is driven within a time (s), rad/s; zero where it is not."""
     if pulley.speed is not None:
         return pulley.speed.largest(duration)
-    return max((abs(load.synchronous_speed) for load in pulley.load if isinstance(load, Motor)), default=0.0)
+    return max((abs(load.driven_speed) for load in pulley.load), default=0.0)

@@ -12,9 +12,10 @@ from typing import NamedTuple
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
 from beltdyn.elements import Element
+from beltdyn.machines.loads.shaft import ShaftLoads
+from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import Records, record
-from beltdyn.system.machine_arrays import Profiles, Torques
 
 PULLEY = record(
     center="2f8",  # m; where a tensioner carries the pulley, its place at coordinate zero
@@ -80,9 +81,9 @@ class System(NamedTuple):
     bodies: Records
     """Rows of `BODY`, shape (D,)."""
     profiles: Profiles
-    torques: Torques
-    couplings: Records
-    """Rows of `COUPLING`, shape (L,)."""
+    shaft_loads: ShaftLoads
+    links: Records
+    """Rows of `LINK`, shape (L,)."""
     tensioners: Records
     """Rows of `TENSIONER`, shape (K,)."""
     supports: Supports

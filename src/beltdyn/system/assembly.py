@@ -16,9 +16,9 @@ from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import Loads, RingMatrix, System
-from beltdyn.system.carriage import carriage_of, couple_carriage, drift_record, keep_drift
+from beltdyn.system.body_forces import add_contact, add_machines, clear_loads
+from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
 from beltdyn.system.discretization import element_kind
-from beltdyn.system.loads import add_contact, add_machines, clear_loads
 from beltdyn.system.pulley_state import law_of, pulley_state
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
@@ -67,7 +67,7 @@ def assemble(
     system
         Belt, pulleys, supports.
     time
-        s; prescribed bodies must already have their motion in the state (`excitation.prescribe`).
+        s; prescribed bodies must already have their motion in the state (`prescribed.prescribe`).
     position, velocity, acceleration : ndarray, shape (6 N + D,)
         State: nodal coordinates, then coordinates of bodies, and their rates.
     multipliers : ndarray, shape (6,)
@@ -204,8 +204,8 @@ def _contact(
         pulley = pulley_state(system, p, position, velocity)
         if out_of_reach(work.control, pulley):
             continue
-        carriage = carriage_of(system, p, position, velocity)
-        rounds = 2 if carriage.unknown >= 0 and by_position != 0.0 and carriage.turning else 1
+        center = moving_center(system, p, position, velocity)
+        rounds = 2 if center.unknown >= 0 and by_position != 0.0 and center.turning else 1
         for last in range(2 - rounds, 2):
             totals = contact_force(
                 piece,
@@ -217,20 +217,20 @@ def _contact(
                 work.contact,
             )
             if last == 0:
-                keep_drift(system, carriage, work.contact, work.drift)
+                keep_drift(system, center, work.contact, work.drift)
         _take_contact(system, wanted, work)
         add_contact(loads, p, totals)
         if bodies[p].unknown >= 0 and wanted:
             matrix.corner[bodies[p].unknown, bodies[p].unknown] -= by_velocity * totals.moment_by_speed
             _couple(system, element, node_j, bodies[p].unknown, by_velocity, work.contact, matrix)
-        if carriage.unknown >= 0 and wanted:
+        if center.unknown >= 0 and wanted:
             drifting = by_position if rounds == 2 else 0.0
-            couple_carriage(
+            couple_center(
                 system,
                 element,
                 node_j,
                 bodies[p].unknown,
-                carriage,
+                center,
                 by_velocity,
                 drifting,
                 work.contact,

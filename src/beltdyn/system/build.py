@@ -9,10 +9,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import LAWS
 from beltdyn.contact.law import ContactLaw
 from beltdyn.errors import ModelError
+from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.layout import radii as effective_radii
 from beltdyn.model.pulley import friction_on
-from beltdyn.model.tensioner import AnyTensioner
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import Records, records
 from beltdyn.system.arrays import BODY, PULLEY, Supports, System
@@ -21,6 +21,7 @@ from beltdyn.system.build_machines import (
     machine_arrays,
     shaft_bodies,
     tensioner_inertias,
+    tensioner_reaches,
 )
 from beltdyn.system.discretization import discretize
 from beltdyn.system.weight import weight_forces
@@ -59,7 +60,7 @@ def belt_system(
     contact: Contact | None = None,
     closure: Closure = "open",
     *,
-    tensioners: Sequence[AnyTensioner] = (),
+    tensioners: Sequence[Tensioner] = (),
     path: Path | None = None,
     gravity: tuple[float, float] = (0.0, 0.0),
     fixed: Sequence[tuple[int, int]] = (),
@@ -131,7 +132,7 @@ def belt_system(
         law=_contact_law(contact),
         contact=contact_points(contact),
         pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
-        bodies=_bodies(pulleys, radii, tensioners, machines.tensioners),
+        bodies=_bodies(pulleys, radii, tensioners),
         **machines._asdict(),
         supports=supports._replace(force=supports.force + weight_forces(mesh, nodes, gravity)),
     )
@@ -192,20 +193,18 @@ def _pulley_arrays(
 def _bodies(
     pulleys: Sequence[Pulley],
     radii: FloatArray,
-    carriers: Sequence[AnyTensioner],
-    tensioners: Records,
+    tensioners: Sequence[Tensioner],
 ) -> Records:
     """Inertia and unknowns of rims, hub chains and tensioners."""
-    inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, carriers)])
+    inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, tensioners)])
     free = np.ones(inertia.size, dtype=bool)
     free[[shaft for shaft, pulley in zip(shaft_bodies(pulleys), pulleys, strict=True) if pulley.prescribed]] = False
     chains = [radius for radius, pulley in zip(radii, pulleys, strict=True) for _ in pulley.hub]
-    arms = np.where(tensioners.rotary, tensioners.arm, 1.0)
     return records(
         BODY,
         inertia=inertia,
         unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
-        reach=np.concatenate([radii, chains, arms]),
+        reach=np.concatenate([radii, chains, tensioner_reaches(pulleys, tensioners)]),
     )
 
 

@@ -7,10 +7,10 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.system.arrays import DRIVER_WORK, POWERS, Loads, RingMatrix, System
 from beltdyn.system.assembly import assemble
-from beltdyn.system.excitation import prescribe
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
 from beltdyn.system.missed_action import jump_work
 from beltdyn.system.motion import new_equations, no_multipliers
+from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
 from beltdyn.system.state_loads import loads_at

@@ -12,11 +12,10 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.loads.shaft import load_bend, shaft_torque
+from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, prescribed_motion, profile_bend, profile_value
 from beltdyn.system.arrays import Motion, System
-from beltdyn.system.coupling import coupling_torque
-from beltdyn.system.excitation import after_jump, prescribed_motion, profile_bend, profile_value
-from beltdyn.system.machine_arrays import NO_SCHEDULE, TABLE
-from beltdyn.system.shaft_torque import shaft_torque
 
 _PARTS: Final = 4
 """A step that holds a wave is seen in so many parts at least,"""
@@ -35,7 +34,7 @@ def missed_action(system: System, source: int, motion: Motion, length: float, li
     system
         The system.
     source
-        A pulley, whose shaft has a prescribed speed or torques; or the number of pulleys and that of a coupling.
+        A pulley, whose shaft has a prescribed speed or torques; or the number of pulleys and that of a link.
     motion
         Beginning of the step.
     length
@@ -83,7 +82,7 @@ def missed_impulses(system: System, motion: Motion, length: float, impulse: Floa
     length
         Length of the step, s.
     impulse : ndarray, shape (2, 6 N + D)
-        Overwritten by those of torques on the shafts, and those of couplings, in the places of the bodies, N m s.
+        Overwritten by those of torques on the shafts, and those of links, in the places of the bodies, N m s.
     """
     impulse[:] = 0.0
     first = system.first_body
@@ -91,10 +90,10 @@ def missed_impulses(system: System, motion: Motion, length: float, impulse: Floa
         body = system.pulleys[p].shaft
         if system.bodies[body].unknown >= 0:
             impulse[0, first + body] += missed_action(system, p, motion, length, np.inf)[1]
-    for number in range(system.couplings.size):
+    for number in range(system.links.size):
         whole = missed_action(system, system.pulleys.size + number, motion, length, np.inf)[1]
-        impulse[1, first + system.couplings[number].front] -= whole
-        impulse[1, first + system.couplings[number].back] += whole
+        impulse[1, first + system.links[number].front] -= whole
+        impulse[1, first + system.links[number].back] += whole
 
 
 @kernel
@@ -168,10 +167,10 @@ def action_at(system: System, source: int, motion: Motion, time: float) -> float
     first = system.first_body
     if source >= system.pulleys.size:
         number = source - system.pulleys.size
-        front, back = first + system.couplings[number].front, first + system.couplings[number].back
+        front, back = first + system.links[number].front, first + system.links[number].back
         twist = motion.position[front] - motion.position[back]
         rate = motion.velocity[front] - motion.velocity[back]
-        return coupling_torque(system.profiles, system.couplings, number, time, twist, rate)[0]
+        return link_torque(system.profiles, system.links[number], time, twist, rate).torque
     if system.bodies[system.pulleys[source].shaft].unknown < 0:
         return prescribed_motion(system.profiles, source, time)[1]
     return extrapolated_torque(system, source, motion, time)
@@ -183,7 +182,7 @@ def extrapolated_torque(system: System, pulley: int, motion: Motion, time: float
     i, since = system.first_body + system.pulleys[pulley].shaft, time - motion.time
     speed = motion.velocity[i] + since * motion.acceleration[i]
     angle = motion.position[i] + 0.5 * since * (motion.velocity[i] + speed)
-    return shaft_torque(system.profiles, system.torques, pulley, time, angle, speed)[0]
+    return shaft_torque(system.profiles, system.shaft_loads, pulley, time, angle, speed).torque
 
 
 @kernel
@@ -191,7 +190,7 @@ def next_instant(system: System, source: int, motion: Motion, time: float, lengt
     """Next instant at which an action must be looked at: a kink, a part of a wave, or the end of the step."""
     profiles, end = system.profiles, motion.time + length
     if source >= system.pulleys.size:
-        schedule = system.couplings[source - system.pulleys.size].schedule
+        schedule = system.links[source - system.pulleys.size].schedule
         kink, frequency = profile_bend(profiles, schedule, time) if schedule != NO_SCHEDULE else (end, 0.0)
     else:
         kink, frequency = profile_bend(profiles, source, time)
@@ -204,35 +203,9 @@ def next_instant(system: System, source: int, motion: Motion, time: float, lengt
             i = system.first_body + body
             rate = motion.acceleration[i]
             speed = motion.velocity[i] + (time - motion.time) * rate
-            for load in range(system.torques.first[source], system.torques.first[source + 1]):
-                at, wave = _load_bend(system, load, time, speed, rate)
+            for load in range(system.shaft_loads.first[source], system.shaft_loads.first[source + 1]):
+                at, wave = load_bend(profiles, system.shaft_loads, load, time, speed, rate)
                 kink, frequency = min(kink, at), max(frequency, wave)
     if frequency > 0.0:
         kink = min(kink, time + min(length / _PARTS, _PHASE / frequency))
     return min(end, max(kink, time + _FINEST * length))
-
-
-@kernel(inline=True)
-def _load_bend(system: System, load: int, time: float, speed: float, rate: float) -> tuple[float, float]:
-    """Next instant at which a load has a kink, s, and the angular frequency of its waves, rad/s."""
-    torques = system.torques
-    kink, frequency = np.inf, 0.0
-    if torques.table[load].schedule != NO_SCHEDULE:
-        kink, frequency = profile_bend(system.profiles, torques.table[load].schedule, time)
-    for h in range(torques.table[load].harmonic, torques.table[load + 1].harmonic):
-        frequency = max(frequency, torques.harmonic[h].order * abs(speed))
-    if torques.table[load].kind == TABLE and rate != 0.0:
-        first, last = torques.table[load].point, torques.table[load + 1].point
-        while first < last:  # the first point above the speed
-            middle = (first + last) // 2
-            if torques.point[middle].speed > speed:
-                last = middle
-            else:
-                first = middle + 1
-        if rate < 0.0:
-            last -= 1
-            if last >= torques.table[load].point and torques.point[last].speed >= speed:
-                last -= 1
-        if torques.table[load].point <= last < torques.table[load + 1].point:
-            kink = min(kink, time + (torques.point[last].speed - speed) / rate)
-    return kink, frequency

@@ -8,7 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Loads, RingMatrix, System
 from beltdyn.system.assembly import assembly_workspace, border_size
-from beltdyn.system.loads import new_loads
+from beltdyn.system.body_forces import new_loads
 from beltdyn.system.ring_matrix import ring_matrix
 
 

@@ -12,12 +12,12 @@ from beltdyn.contact.penetration import approach, slip_velocity
 from beltdyn.contact.point_force import point_force
 from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
+from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import fill_control, gather
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import law_of, pulley_state, tensioner_coordinate
 from beltdyn.system.state_loads import loads_at
-from beltdyn.system.tensioner import tensioner_place
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
@@ -284,9 +284,8 @@ def _observe_bodies(system: System, position: FloatArray, result: Observations, 
         x, y = system.pulleys[p].center
         carrier = system.pulleys[p].carrier
         if carrier >= 0:
-            x, y, _, _, _, _ = tensioner_place(
-                system.tensioners, carrier, position[tensioner_coordinate(system, carrier)]
-            )
+            center = tensioner_center(system.tensioners[carrier], position[tensioner_coordinate(system, carrier)])
+            x, y = center.x, center.y
             weight = system.tensioners[carrier].weight
             result.potential_energy[k] -= weight[0] * x + weight[1] * y
         result.pulley_center[k, p, 0], result.pulley_center[k, p, 1] = x, y

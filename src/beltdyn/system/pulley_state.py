@@ -3,8 +3,8 @@
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.kernel import kernel
+from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import System
-from beltdyn.system.tensioner import tensioner_place
 
 
 @kernel
@@ -32,8 +32,8 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     if carrier < 0:
         return PulleyState(item.center[0], item.center[1], item.radius, speed, 0.0, 0.0)
     at = tensioner_coordinate(system, carrier)
-    x, y, dx, dy, _, _ = tensioner_place(system.tensioners, carrier, position[at])
-    return PulleyState(x, y, item.radius, speed, velocity[at] * dx, velocity[at] * dy)
+    center = tensioner_center(system.tensioners[carrier], position[at])
+    return PulleyState(center.x, center.y, item.radius, speed, velocity[at] * center.dx, velocity[at] * center.dy)
 
 
 @kernel

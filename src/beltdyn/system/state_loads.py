@@ -13,8 +13,8 @@ from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Loads, Motion, System
 from beltdyn.system.assembly import assembly_workspace, fill_control, gather
-from beltdyn.system.excitation import prescribe
-from beltdyn.system.loads import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
+from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
+from beltdyn.system.prescribed import prescribe
 from beltdyn.system.pulley_state import law_of, pulley_state
 
 

@@ -195,13 +195,12 @@ def test_gross_slip_that_has_passed_is_said(make_run: MakeRun) -> None:
     ],
 )
 def test_tensioner_on_its_stop_is_said(run: Run, position: np.ndarray, said: list[str]) -> None:
-    """One that is fixed has no place; the drive is as much of one as the check asks for."""
+    """The drive is as much of one as the check asks for."""
     tensioners = [
-        SimpleNamespace(kind="fixed", pulley="driver"),
-        SimpleNamespace(kind="rotary", pulley="driven", stops=(-0.5, 0.5)),
-        SimpleNamespace(kind="sliding", pulley="idler", stops=None),
+        SimpleNamespace(pulley="driven", stops=(-0.5, 0.5)),
+        SimpleNamespace(pulley="idler", stops=None),
     ]
     dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": np.stack([position, 9.0 + position], axis=1)}
-    evidence = Evidence(dataset, SimpleNamespace(tensioners=tensioners), None)  # type: ignore[arg-type]
+    evidence = Evidence(dataset, SimpleNamespace(moving_tensioners=tensioners), None)  # type: ignore[arg-type]
     found = map(str, stopped_tensioners(evidence))
     assert [text.split(" on its ")[1].split(". ")[0] for text in found] == said

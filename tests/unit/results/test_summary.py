@@ -81,9 +81,9 @@ def test_closure_is_the_largest_over_time(make_run: Callable[..., Run]) -> None:
 
 
 def test_tensioners_that_move() -> None:
-    """Over the given part of the time; one that is fixed has no place."""
-    kinds = [("fixed", "driver"), ("rotary", "idler"), ("sliding", "driven")]
-    drive = SimpleNamespace(tensioners=[SimpleNamespace(kind=kind, pulley=pulley) for kind, pulley in kinds])
+    """Over the given part of the time."""
+    moving = [SimpleNamespace(turns=True, pulley="idler"), SimpleNamespace(turns=False, pulley="driven")]
+    drive = SimpleNamespace(moving_tensioners=moving)
     position = np.zeros((11, 2))
     position[-2:] = [[0.1, 0.004], [0.3, 0.002]]
     dataset = {"time": np.linspace(0.0, 1.0, 11), "tensioner_position": position}
@@ -92,7 +92,7 @@ def test_tensioners_that_move() -> None:
     assert (arm.name, arm.rotary, slide.name, slide.rotary) == ("idler", True, "driven", False)
     assert (arm.position, arm.lowest, arm.highest) == pytest.approx((0.2, 0.1, 0.3))
     assert (slide.position, slide.lowest, slide.highest) == pytest.approx((0.003, 0.002, 0.004))
-    assert tensioner_means(dataset, SimpleNamespace(tensioners=[])) == ()  # type: ignore[arg-type]
+    assert tensioner_means(dataset, SimpleNamespace(moving_tensioners=[])) == ()  # type: ignore[arg-type]
 
 
 def test_single_output_at_rest(make_run: Callable[..., Run]) -> None:

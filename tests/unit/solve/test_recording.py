@@ -12,8 +12,8 @@ from beltdyn.results import open_run
 from beltdyn.solve.recording import Recording, result_layout
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, System
+from beltdyn.system.body_forces import load_history
 from beltdyn.system.build import drive_system
-from beltdyn.system.loads import load_history
 from beltdyn.system.state import laid
 
 Change = Callable[..., Drive]

@@ -10,8 +10,8 @@ from beltdyn.model import Drive
 from beltdyn.model.instants import Instants
 from beltdyn.solve.trajectory import Chunk, Statistics, Task, drive_task, velocity_scale
 from beltdyn.system.arrays import ENERGY_WORKS
+from beltdyn.system.body_forces import load_history
 from beltdyn.system.build import drive_system
-from beltdyn.system.loads import load_history
 from beltdyn.system.state import laid
 
 Change = Callable[..., Drive]

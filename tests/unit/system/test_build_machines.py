@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
+from beltdyn.machines.links.registry import KINDS as LINKS
+from beltdyn.machines.loads.registry import KINDS as LOADS
+from beltdyn.machines.profiles.functions import NO_SCHEDULE, profile_value
 from beltdyn.model import Belt, FixedTensioner, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.layout import lay_path
 from beltdyn.system.build_machines import (
@@ -12,16 +15,6 @@ from beltdyn.system.build_machines import (
     machine_arrays,
     shaft_bodies,
     tensioner_inertias,
-)
-from beltdyn.system.excitation import profile_value
-from beltdyn.system.machine_arrays import (
-    FRICTION_CLUTCH,
-    ISOLATOR,
-    KLOSS,
-    NO_SCHEDULE,
-    ONE_WAY_CLUTCH,
-    POLYNOMIAL,
-    TABLE,
 )
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
@@ -60,37 +53,40 @@ FIXED = FixedTensioner(kind="fixed", pulley="crank", direction=(0, 2))
 def test_bodies_are_the_rims_and_then_the_chains() -> None:
     np.testing.assert_array_equal(shaft_bodies(PULLEYS), [0, 4, 5])
     np.testing.assert_array_equal(body_inertias(PULLEYS), [0.0, 1.0, 2.0, 0.1, 0.2, 0.3])
-    couplings = machine_arrays(PULLEYS).couplings
-    np.testing.assert_array_equal(couplings.front, [1, 3, 2])
-    np.testing.assert_array_equal(couplings.back, [3, 4, 5])
-    np.testing.assert_array_equal(couplings.kind, [ISOLATOR, ONE_WAY_CLUTCH, FRICTION_CLUTCH])
-    np.testing.assert_array_equal(couplings.constants, [[30.0, 0.4, 0.0], [5.0, 0.2, 1.0], [5.0, 2.0, 0.0]])
+    links = machine_arrays(PULLEYS).links
+    np.testing.assert_array_equal(links.front, [1, 3, 2])
+    np.testing.assert_array_equal(links.back, [3, 4, 5])
+    assert [list(LINKS)[kind] for kind in links.kind] == ["isolator", "one_way_clutch", "friction_clutch"]
+    assert links.isolator.tolist() == [(30.0, 0.4), (0.0, 0.0), (0.0, 0.0)]
+    assert links.one_way_clutch.tolist() == [(0.0, 0.0, 0.0), (5.0, 0.2, 1.0), (0.0, 0.0, 0.0)]
+    assert links.friction_clutch.tolist() == [(0.0, 0.0), (0.0, 0.0), (5.0, 2.0)]
 
 
 def test_schedules_follow_the_profiles_of_the_pulleys() -> None:
     machines = machine_arrays(PULLEYS)
-    np.testing.assert_array_equal(machines.torques.table.schedule[:-1], [NO_SCHEDULE, 3, NO_SCHEDULE])
-    np.testing.assert_array_equal(machines.couplings.schedule, [NO_SCHEDULE, NO_SCHEDULE, 4])
+    np.testing.assert_array_equal(machines.shaft_loads.table.schedule[:-1], [NO_SCHEDULE, 3, NO_SCHEDULE])
+    np.testing.assert_array_equal(machines.links.schedule, [NO_SCHEDULE, NO_SCHEDULE, 4])
     assert [profile_value(machines.profiles, k, 0.0)[0] for k in range(5)] == [7.0, 0.0, 0.0, 0.25, 0.5]
 
 
 def test_loads_are_sorted_by_pulley() -> None:
-    torques = machine_arrays(PULLEYS).torques
-    np.testing.assert_array_equal(torques.first, [0, 0, 2, 3])
-    np.testing.assert_array_equal(torques.table.kind[:-1], [TABLE, POLYNOMIAL, KLOSS])
-    np.testing.assert_array_equal(torques.table.point, [0, 2, 2, 2])
-    np.testing.assert_array_equal(torques.point.tolist(), [(0.0, 0.0), (10.0, -1.0)])
-    np.testing.assert_array_equal(torques.table.harmonic, [0, 1, 1, 1])
-    np.testing.assert_array_equal(torques.harmonic.tolist(), [(3.0, 0.1, 0.0)])
+    loads = machine_arrays(PULLEYS).shaft_loads
+    np.testing.assert_array_equal(loads.first, [0, 0, 2, 3])
+    assert [list(LOADS)[kind] for kind in loads.table.kind[:-1]] == ["table", "resistance", "motor"]
+    np.testing.assert_array_equal(loads.table.point, [0, 2, 2, 2])
+    np.testing.assert_array_equal(loads.point, [[0.0, 0.0], [10.0, -1.0]])
+    np.testing.assert_array_equal(loads.table.harmonic, [0, 1, 1, 1])
+    np.testing.assert_array_equal(loads.harmonic.tolist(), [(3.0, 0.1, 0.0)])
 
 
 def test_moving_tensioners_keep_their_order_and_fixed_ones_leave_no_trace() -> None:
     tensioners = machine_arrays(PULLEYS, (FIXED, ARM, SLIDE), lay_path(PULLEYS, BELT)).tensioners
     np.testing.assert_array_equal(tensioners.pulley, [2, 1])
-    np.testing.assert_array_equal(tensioners.rotary, [True, False])
-    np.testing.assert_allclose(tensioners.origin, [[0.1, 0.1], [1.0, 0.0]])
-    np.testing.assert_allclose(tensioners.direction, [[0.6, 0.8], [1.0, 0.0]])
-    np.testing.assert_allclose(tensioners.arm, [0.5, 0.0])
+    np.testing.assert_allclose(tensioners.rotary.pivot, [[0.1, 0.1], [0.0, 0.0]])
+    np.testing.assert_allclose(tensioners.rotary.direction, [[0.6, 0.8], [0.0, 0.0]])
+    np.testing.assert_allclose(tensioners.rotary.length, [0.5, 0.0])
+    np.testing.assert_allclose(tensioners.sliding.center, [[0.0, 0.0], [1.0, 0.0]])
+    np.testing.assert_allclose(tensioners.sliding.direction, [[0.0, 0.0], [1.0, 0.0]])
 
 
 def test_inertia_and_weight_of_tensioners() -> None:
@@ -102,9 +98,8 @@ def test_inertia_and_weight_of_tensioners() -> None:
 
 def test_a_drive_without_machines() -> None:
     machines = machine_arrays(())
-    assert [len(machines.torques.table) - 1, len(machines.couplings.kind), len(machines.tensioners.pulley)] == [0, 0, 0]
-    assert [len(item) for item in (machines.profiles.table, machines.torques.first)] == [1, 1]
-    assert machines.tensioners.origin.shape == (0, 2)
+    assert [len(machines.shaft_loads.table) - 1, len(machines.links), len(machines.tensioners.pulley)] == [0, 0, 0]
+    assert [len(item) for item in (machines.profiles.table, machines.shaft_loads.first)] == [1, 1]
 
 
 def test_tensioners_need_a_path() -> None:

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive, Path
+from beltdyn.model import Drive, Path, RotaryTensioner, SlidingTensioner
 from beltdyn.solve import equilibrium
 
 Make = Callable[..., Drive]
@@ -49,9 +49,9 @@ def center(drive: Drive, q: float) -> FloatArray:
     """Where the pulley of the tensioner stands: on its line, or on the circle about its pivot."""
     given = drive.tensioners[0]
     nominal = np.array(drive.pulleys[drive.carried(given)].center)
-    if given.kind == "sliding":
+    if isinstance(given, SlidingTensioner):
         return np.asarray(nominal + q * np.array(given.direction))
-    assert given.kind == "rotary"
+    assert isinstance(given, RotaryTensioner)
     pivot = np.array(given.pivot)
     x, y = nominal - pivot
 

@@ -59,8 +59,7 @@ def drive(make: Make) -> Callable[..., Drive]:
 def stiffness(drive: Drive, q: float) -> float:
     """k about the place q, by differences over 1e-4 m or rad."""
     (carrier,) = carriers_of(drive.tensioners, [pulley.name for pulley in drive.pulleys], drive.path)
-    h, tensioner = 1e-4, drive.tensioners[0]
-    assert tensioner.kind != "fixed"
+    h, tensioner = 1e-4, drive.moving_tensioners[0]
     before, here, after = (moved(drive.path, [carrier], np.array([q + step])).length for step in (-h, 0.0, h))
     tensions = [tension(drive, carrier, q + step) for step in (-h, 0.0, h)]
     slope, bend = (after - before) / (2 * h), (after - 2 * here + before) / h**2

@@ -23,7 +23,7 @@ from scipy.optimize import brentq
 
 from beltdyn import Belt, Contact, Drive, Pulley, Run, Simulation, simulate
 from beltdyn.arrays import FloatArray
-from beltdyn.model.profile import CosineRamp
+from beltdyn.machines import CosineRamp
 from beltdyn.results import derived
 from beltdyn.theory.stretch import stretch
 

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterator
 
-from beltdyn.model import Motor
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks.finding import Evidence, Finding
 from beltdyn.results.recorded import attribute
@@ -72,7 +71,7 @@ def _spoiled(balance: Balance, power: float) -> str:
 def driving_loads(evidence: Evidence) -> Iterator[Finding]:
     """Torques and loads that drive, in a drive with a motor or a prescribed speed."""
     drive = evidence.drive
-    motors = [pulley.prescribed or any(isinstance(one, Motor) for one in pulley.load) for pulley in drive.pulleys]
+    motors = [pulley.prescribed or any(one.driven_speed for one in pulley.load) for pulley in drive.pulleys]
     most = max(abs(one.power) for one in evidence.pulleys)
     for pulley, motor, means in zip(drive.pulleys, motors, evidence.pulleys, strict=True):
         if any(motors) and not motor and means.power > _GIVES * most:

@@ -18,8 +18,7 @@ def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
     """Tensioners that lay on a stop at any time: from when to when, or since when at the end."""
-    moving = [tensioner for tensioner in evidence.drive.tensioners if tensioner.kind != "fixed"]
-    for number, tensioner in enumerate(moving):
+    for number, tensioner in enumerate(evidence.drive.moving_tensioners):
         if tensioner.stops is None:
             continue
         position = np.asarray(evidence.recorded["tensioner_position"])[:, number]

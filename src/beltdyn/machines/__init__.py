@@ -1,0 +1,40 @@
+"""The machines around a belt: what drives and loads shafts, couples them with pulleys, and tensions the belt.
+
+A kind of machine is a file: the class that a user's keys make, a record of its constants, and kernels that give its
+force with exact derivatives.  Each family has a module `kinds`, which imports its kinds, one a line; all else that
+knows the kinds is made from it.
+"""
+
+from beltdyn.machines.links.kinds import FrictionClutch, Isolator, OneWayClutch
+from beltdyn.machines.links.link import HubLink
+from beltdyn.machines.loads.kinds import LoadTable, Motor, Resistance
+from beltdyn.machines.loads.load import Load
+from beltdyn.machines.profiles.harmonic import Harmonic
+from beltdyn.machines.profiles.kinds import Constant, CosineRamp, CosineRampPublished, Ramp, Step, Table
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.tensioners.kinds import FixedTensioner, RotaryTensioner, SlidingTensioner
+from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
+
+__all__ = [
+    "Constant",
+    "CosineRamp",
+    "CosineRampPublished",
+    "FixedTensioner",
+    "FrictionClutch",
+    "Harmonic",
+    "HubLink",
+    "Isolator",
+    "Load",
+    "LoadTable",
+    "Motor",
+    "MovingTensioner",
+    "OneWayClutch",
+    "Profile",
+    "Ramp",
+    "Resistance",
+    "RotaryTensioner",
+    "SlidingTensioner",
+    "Step",
+    "Table",
+    "Tensioner",
+]

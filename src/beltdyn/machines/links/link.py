@@ -1,0 +1,57 @@
+"""What a link of a hub chain provides: its keys, its constants, and its torque with exact derivatives."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+from pydantic import Field
+
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Inertia
+
+
+class LinkTorque(NamedTuple):
+    """Torque from the front body of a link on the back one, counter-clockwise, and as much against the front one."""
+
+    torque: float
+    """N m."""
+    by_twist: float
+    """N m/rad."""
+    by_rate: float
+    """N m s/rad."""
+    by_schedule: float
+    """Derivative with respect to the factor of its schedule, N m; zero where it does not act, as while a clutch
+    sticks."""
+    energy: float
+    """Stored, J."""
+    loss: float
+    """Power lost, W."""
+
+
+class HubLink(Part):
+    """A coupling, and the body behind it.
+
+    A kind of link is a class with a field `kind`, and says as class attributes what kernels need. It may have a field
+    `schedule`.
+    """
+
+    constants: ClassVar[np.dtype[np.void]]
+    """Record of its constants; by default these are the fields of the same names."""
+    torque_at: ClassVar[Callable[[np.record, float, float, float], LinkTorque]]
+    """Kernel: the torque from constants, the factor of its schedule (1 without), twist and its rate: angle of the front
+    body less that of the back one, rad and rad/s."""
+
+    if TYPE_CHECKING:
+        kind: str
+
+    inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia of the body behind the link, in kg*m^2")
+
+    def values(self, _turning: int) -> Mapping[str, Any]:
+        """Values of its constants on a pulley that an advancing belt turns counter-clockwise (1) or clockwise (-1)."""
+        return {name: getattr(self, name) for name in self.constants.names or ()}
+
+    @property
+    def factor(self) -> Profile | None:
+        """Its schedule, if it has one."""
+        return getattr(self, "schedule", None)

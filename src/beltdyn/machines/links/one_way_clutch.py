@@ -1,0 +1,58 @@
+"""An overrunning clutch: sense max(c x, -drag), x = sense rate.
+
+The front body drives the back one where it is faster in the sense of driving, x > 0, with a torque c x that lets it
+creep, as the friction of the belt does (Eq. 20); where it is slower the clutch overruns and only drags.
+Zhu and Parker (J. Sound Vib. 279, 2005) put a stiff spring in the place of c x.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from beltdyn.kernel import kernel
+from beltdyn.machines.links.link import HubLink, LinkTorque
+from beltdyn.parts.quantity import Torque, TorsionalDamping
+from beltdyn.records import record
+
+ONE_WAY_CLUTCH = record(
+    locking_damping="f8",  # c, N m s/rad
+    drag_torque="f8",  # largest torque while it overruns, N m
+    sense="f8",  # +1 if the front body drives counter-clockwise, -1 if clockwise
+)
+
+
+@kernel
+def one_way_clutch(constants: np.record, _scale: float, _twist: float, rate: float) -> LinkTorque:
+    """Torque of the clutch; arguments as for `HubLink.torque_at`, constants a row of `ONE_WAY_CLUTCH`."""
+    torque, slope = constants.locking_damping * constants.sense * rate, constants.locking_damping
+    if torque < -constants.drag_torque:
+        torque, slope = -constants.drag_torque, 0.0
+    torque *= constants.sense
+    return LinkTorque(torque, 0.0, slope, 0.0, 0.0, torque * rate)
+
+
+class OneWayClutch(HubLink):
+    """An overrunning clutch: it drives the body behind it in one sense only, and lets it run ahead.
+
+    It creeps while it drives: the torque is `locking_damping` times the slip speed.
+    """
+
+    constants = ONE_WAY_CLUTCH
+    torque_at = one_way_clutch
+
+    kind: Literal["one_way_clutch"] = Field(description="the kind of link")
+    locking_damping: TorsionalDamping = Field(
+        gt=0, description="the torque over the slip speed while it drives, in N m s/rad"
+    )
+    drag_torque: Torque = Field(0.0, ge=0, description="the largest torque while it overruns, in N*m")
+    drives: Literal["forward", "backward"] = Field(
+        "forward",
+        description="the sense in which the rim drives: forward is that in which an advancing belt turns the pulley",
+    )
+
+    def values(self, turning: int) -> Mapping[str, Any]:
+        """Its constants, with the sense in which it drives."""
+        sense = turning if self.drives == "forward" else -turning
+        return {"locking_damping": self.locking_damping, "drag_torque": self.drag_torque, "sense": sense}

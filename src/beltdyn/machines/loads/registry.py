@@ -1,0 +1,28 @@
+"""Loads of any kind: the type of a field that takes them, and the kernels that evaluate them."""
+
+from typing import TYPE_CHECKING
+
+from beltdyn.kernel import choice
+from beltdyn.machines.family import any_of, constants_of, kinds_in
+from beltdyn.machines.loads import kinds
+from beltdyn.machines.loads.load import Load
+from beltdyn.records import record
+
+KINDS = kinds_in(kinds)
+
+if TYPE_CHECKING:
+    AnyLoad = Load
+else:
+    AnyLoad = any_of(KINDS)
+
+SHAFT_LOAD = record(
+    schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`
+    point="i8",  # its first point; the last is that before the first of the next row
+    harmonic="i8",  # its first harmonic over the shaft angle, alike
+    kind="i8",  # place among `KINDS`
+    **constants_of(KINDS),
+)
+"""A load on a shaft, with the constants of its kind; those of the others are zero."""
+
+torque_of_kind = choice("torque_of_kind", {k: v.torque_at for k, v in KINDS.items()}, ["points", "angle", "speed"])
+kink_of_kind = choice("kink_of_kind", {k: v.next_kink for k, v in KINDS.items()}, ["points", "speed", "rising"])

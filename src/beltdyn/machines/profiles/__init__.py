@@ -1,0 +1,1 @@
+"""Prescribed speeds, torques and schedules over time, and harmonics over the angle of a shaft."""

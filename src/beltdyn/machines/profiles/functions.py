@@ -1,0 +1,193 @@
+"""Profiles as kernels see them: value, rate, integral and next kink at an instant (Eqs. 28 and 29)."""
+
+from collections.abc import Sequence
+from math import sin
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.kernel import interpreted, kernel
+from beltdyn.machines.profiles.harmonic import Harmonic, harmonic_factor, harmonic_rows
+from beltdyn.machines.profiles.profile import SEGMENT, Profile, segment_integral, segment_value
+from beltdyn.records import Records, offsets, record, records
+
+NO_SCHEDULE = -1
+"""Stands for the number of a profile where there is none."""
+
+PROFILE = record(
+    segment="i8",  # its first segment; the last is that before the first of the next row
+    harmonic="i8",  # its first harmonic, alike
+)
+"""A function of time."""
+
+
+class Profiles(NamedTuple):
+    """Functions of time: one of each pulley (speed if prescribed, torque if free, zero if none), then schedules."""
+
+    table: Records
+    """Rows of `PROFILE`, one more than there are profiles."""
+    segment: Records
+    """Rows of `SEGMENT`."""
+    harmonic: Records
+    """Rows of `HARMONIC`."""
+
+
+def profile_rows(profiles: Sequence[Profile | None], harmonics: Sequence[Sequence[Harmonic]]) -> Profiles:
+    """Profiles laid end to end.
+
+    Parameters
+    ----------
+    profiles
+        The profiles; None is zero.
+    harmonics
+        Those of each profile.
+    """
+    pieces = [_segments(profile) for profile in profiles]
+    first, waves = harmonic_rows(harmonics)
+    return Profiles(
+        table=records(PROFILE, segment=offsets(map(len, pieces)), harmonic=first),
+        segment=np.concatenate([records(SEGMENT, start=[]), *pieces]).view(np.recarray),
+        harmonic=waves,
+    )
+
+
+def _segments(profile: Profile | None) -> Records:
+    """Segments of a profile, with their integrals."""
+    if profile is None:
+        return records(SEGMENT, start=[-np.inf])
+    segments, integral = profile.segments(), interpreted(segment_integral)
+    begins = np.concatenate([[0.0], segments.start[1:]]).tolist()
+    areas = [
+        integral(segment, begin, end)
+        for segment, begin, end in zip(segments[:-1], begins[:-1], begins[1:], strict=True)
+    ]
+    segments.integral[1:] = np.cumsum(areas)
+    zero = max(int(np.searchsorted(segments.start, 0.0, side="left")) - 1, 0)
+    segments.integral -= segments.integral[zero] + integral(segments[zero], begins[zero], 0.0)
+    return segments
+
+
+@kernel
+def profile_value(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
+    """Value of a profile and its rate, without harmonics.
+
+    Parameters
+    ----------
+    profiles
+        The profiles.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    value, rate : float
+        Speed and angular acceleration (rad/s, rad/s^2), torque and its rate (N m, N m/s), or factor and rate (1/s).
+    """
+    segment = profiles.segment[_segment(profiles, number, time)]
+    since = time - segment.start if segment.slope != 0.0 else 0.0
+    wave_rate = segment.amplitude * segment.frequency * sin(segment.frequency * time + segment.phase)
+    return segment_value(segment, since, time), segment.slope - wave_rate
+
+
+@kernel(inline=True)
+def schedule_value(profiles: Profiles, number: int, time: float) -> float:
+    """Factor of a schedule at an instant (s), or 1 for `NO_SCHEDULE`."""
+    return profile_value(profiles, number, time)[0] if number >= 0 else 1.0
+
+
+@kernel
+def after_jump(time: float) -> float:
+    """The next number after an instant (s): there a profile that jumps at the instant has jumped."""
+    return float(np.nextafter(time, np.inf))
+
+
+@kernel
+def profile_integral(profiles: Profiles, number: int, time: float) -> float:
+    """Integral of a profile from time zero, without harmonics: the angle of a mean speed.
+
+    Parameters
+    ----------
+    profiles
+        The profiles.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    float
+        rad, where the profile is a speed.
+    """
+    k = _segment(profiles, number, time)
+    begin = profiles.segment[k].start if k > profiles.table[number].segment else 0.0
+    return float(profiles.segment[k].integral + segment_integral(profiles.segment[k], begin, time))
+
+
+@kernel
+def profile_bend(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
+    """Where a profile bends: its next kink, and the angular frequency of the wave that it is until then.
+
+    Parameters
+    ----------
+    profiles
+        The profiles; harmonics are left out.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    kink, frequency : float
+        s, infinite after the last kink; rad/s, zero where the profile is straight.
+    """
+    k = _segment(profiles, number, after_jump(time))
+    last = k + 1 == profiles.table[number + 1].segment
+    segment = profiles.segment[k]
+    frequency = abs(segment.frequency) if segment.amplitude != 0.0 else 0.0
+    return np.inf if last else profiles.segment[k + 1].start, frequency
+
+
+@kernel
+def prescribed_motion(profiles: Profiles, number: int, time: float) -> tuple[float, float, float]:
+    """Prescribed speed with its harmonics: omega = m (1 + sum a_k cos(k theta + phi_k)), theta the integral of m.
+
+    Parameters
+    ----------
+    profiles
+        The profiles; the value is the mean speed m.
+    number
+        Which one.
+    time
+        s.
+
+    Returns
+    -------
+    angle, speed, acceleration : float
+        rad since time zero, rad/s, rad/s^2.
+    """
+    mean, rate = profile_value(profiles, number, time)
+    angle = profile_integral(profiles, number, time)
+    first, end = profiles.table[number].harmonic, profiles.table[number + 1].harmonic
+    turned = angle
+    for h in range(first, end):
+        wave = profiles.harmonic[h]
+        turned += wave.amplitude / wave.order * (sin(wave.order * angle + wave.phase) - sin(wave.phase))
+    factor, change = harmonic_factor(profiles.harmonic, first, end, angle)
+    return turned, mean * factor, rate * factor + mean * mean * change
+
+
+@kernel(inline=True)
+def _segment(profiles: Profiles, number: int, time: float) -> int:
+    """Segment that holds at an instant."""
+    first, last = profiles.table[number].segment, profiles.table[number + 1].segment - 1
+    while first < last:
+        middle = (first + last + 1) // 2
+        if profiles.segment[middle].start < time:
+            first = middle
+        else:
+            last = middle - 1
+    return int(first)

@@ -1,0 +1,119 @@
+"""A prescribed value over time, its rate and its integral, in closed form piece by piece (Eqs. 28 and 29)."""
+
+from abc import abstractmethod
+from math import sin
+from typing import Any, ClassVar, Generic
+
+import numpy as np
+from numpy.typing import ArrayLike
+from typing_extensions import TypeVar
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted, kernel
+from beltdyn.parts.part import Part
+from beltdyn.records import Records, record
+
+Value = TypeVar("Value", bound=float, default=float)
+
+SEGMENT = record(
+    start="f8",  # instant after which the segment holds, s; minus infinity of the first, whose slope is zero
+    offset="f8",  # value at the start, without the wave
+    slope="f8",  # change of it in a second
+    amplitude="f8",  # of the wave
+    frequency="f8",  # angular frequency of the wave, rad/s
+    phase="f8",  # of the wave at time zero, rad
+    integral="f8",  # of the profile from time zero to the start (of the first: to time zero as if it held there)
+)
+"""A piece of a profile: offset + slope (t - start) + amplitude cos(frequency t + phase) for start < t <= next start."""
+
+
+class Profile(Part, Generic[Value]):
+    """A value over time: rad/s for a speed, N m for a torque, 1 for a factor; times are in s."""
+
+    multiplies: ClassVar[bool] = True
+    """Whether it may be a schedule."""
+
+    @classmethod
+    def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
+        """Name a profile of any quantity by its kind alone."""
+        return cls.__name__
+
+    @abstractmethod
+    def segments(self) -> Records:
+        """Give the closed form of the profile, piece by piece.
+
+        Returns
+        -------
+        recarray, shape (m,)
+            Rows of `SEGMENT` without their integrals, in the order of their starts.
+        """
+
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants of kinks and jumps that a time integrator must step onto, s: none unless a kind says so."""
+        return ()
+
+    def at(self, times: ArrayLike) -> FloatArray:
+        """Evaluate the profile.
+
+        Parameters
+        ----------
+        times : array_like
+            Instants, s.
+
+        Returns
+        -------
+        ndarray, shape of `times`
+            The values, rad/s or N m.
+        """
+        t, segments = np.asarray(times, dtype=float), self.segments()
+        k = np.maximum(np.searchsorted(segments.start, t, side="left") - 1, 0)
+        since = np.where(k == 0, 0.0, t - segments.start[k])
+        return np.asarray(interpreted(segment_value)(segments[k], since, t))
+
+    def largest(self, duration: float) -> float:
+        """Largest absolute value from time zero to a time, s.
+
+        It is at an end, or at the start of a piece, before or after a jump: within a piece all kinds are monotonic.
+        """
+        starts = self.segments().start
+        ends = np.concatenate([[0.0, duration], starts[(starts > 0.0) & (starts < duration)]])
+        after = np.nextafter(ends, np.inf)
+        return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= duration]])))))
+
+
+@kernel(inline=True)
+def segment_value(segment: Any, since: Any, time: Any) -> Any:
+    """Value of a profile at an instant.
+
+    Parameters
+    ----------
+    segment
+        The row of `SEGMENT` that holds there.
+    since
+        Time since its start, s; zero in the first.
+    time
+        s.
+    """
+    wave = segment.amplitude * np.cos(segment.frequency * time + segment.phase)
+    return segment.offset + segment.slope * since + wave
+
+
+@kernel(inline=True)
+def segment_integral(segment: np.record, begin: float, end: float) -> float:
+    """Integral of a profile over a part of a segment that starts where the segment does, or at time zero in the first.
+
+    (t - s) (offset + slope (t - s) / 2 + amplitude cos(omega (s + t) / 2 + phase) sin(x) / x), x = omega (t - s) / 2,
+    from s to t.
+
+    Parameters
+    ----------
+    segment
+        A row of `SEGMENT`.
+    begin, end
+        s and t, s.
+    """
+    since = end - begin
+    half = 0.5 * segment.frequency * since
+    wave = sin(half) / half if half != 0.0 else 1.0
+    middle = np.cos(0.5 * segment.frequency * (begin + end) + segment.phase)
+    return float((segment.offset + 0.5 * segment.slope * since + segment.amplitude * wave * middle) * since)

@@ -1,0 +1,1 @@
+"""Tensioners: what presses a pulley against the belt."""

@@ -1,0 +1,17 @@
+"""A tensioner that is set before the drive runs."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from beltdyn.machines.tensioners.direction import Direction
+from beltdyn.machines.tensioners.tensioner import Tensioner
+from beltdyn.parts.quantity import Coordinate
+
+
+class FixedTensioner(Tensioner):
+    """A pulley that is moved along a line before the drive runs, and held there."""
+
+    kind: Literal["fixed"] = Field(description="the kind of tensioner")
+    direction: Direction = Field(description="the direction in which the take-up moves the pulley, as [x, y]")
+    take_up: Coordinate = Field(0.0, description="the distance by which the pulley is moved from its center, in m")

@@ -1,0 +1,117 @@
+"""A tensioner on an arm about a pivot: center p + a (cos phi u + sin phi n), phi = sense q, n the left normal of u."""
+
+from collections.abc import Mapping
+from math import cos, sin
+from typing import Annotated, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.machines.tensioners.spring import SPRING
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, Center, MovingTensioner
+from beltdyn.parts.quantity import (
+    Angle,
+    AngularSpeed,
+    Coordinate,
+    Inertia,
+    Mass,
+    Ratio,
+    Torque,
+    TorsionalDamping,
+    TorsionalStiffness,
+)
+from beltdyn.records import record
+
+ArmAngle = Annotated[Angle, Field(ge=-np.pi, le=np.pi)]
+
+ARM = record(
+    pivot="2f8",  # p, m
+    direction="2f8",  # u, unit vector from the pivot to the nominal center of the pulley
+    length="f8",  # a, m
+    sense="f8",  # +1 where turning the arm counter-clockwise lengthens the path, -1 where it shortens it
+    spring=SPRING,
+)
+
+
+@kernel
+def rotary_center(constants: np.record, q: float) -> Center:
+    """Center of the pulley on the arm; constants are a row of `ARM`, q in rad."""
+    x, y = constants.pivot
+    ux, uy = constants.direction
+    sense = constants.sense
+    cosine, sine = constants.length * cos(q), constants.length * sense * sin(q)
+    ax, ay = cosine * ux - sine * uy, cosine * uy + sine * ux
+    return Center(x + ax, y + ay, -sense * ay, sense * ax, -ax, -ay)
+
+
+class RotaryTensioner(MovingTensioner):
+    """A pulley on an arm, pressed against the belt by a torsional spring about the pivot of the arm."""
+
+    turns: ClassVar[bool] = True
+    constants = ARM
+    center_at = rotary_center
+
+    kind: Literal["rotary"] = Field(description="the kind of tensioner")
+    pivot: tuple[Coordinate, Coordinate] = Field(description="the pivot of the arm as [x, y], in m")
+    inertia: Inertia = Field(
+        0.0, ge=0, description="the moment of inertia of the arm about the pivot, without the pulley, in kg*m^2"
+    )
+    mass: Mass = Field(0.0, ge=0, description="the mass of the arm, without the pulley, for its weight, in kg")
+    center_of_mass: Ratio = Field(
+        0.5, description="the place of the arm's center of mass, from 0 at the pivot to 1 at the pulley's center"
+    )
+    preload: Torque = Field(description="the moment of the spring at the pulley's center, in N*m")
+    rate: TorsionalStiffness = Field(0.0, ge=0, description="the rate of the spring, in N*m/rad")
+    damping: TorsionalDamping = Field(0.0, ge=0, description="the viscous damping, in N m s/rad")
+    tensioning_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path gets longer, in N*m")
+    yielding_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path gets shorter, in N*m")
+    creep_speed: AngularSpeed = Field(
+        0.01, gt=0, description="the speed at which dry friction has reached 76 %, in rad/s"
+    )
+    stops: tuple[ArmAngle, ArmAngle] | None = Field(
+        None, description="the lower and the upper stop, from the pulley's center the way the path gets longer, in rad"
+    )
+    stop_stiffness: TorsionalStiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N*m/rad")
+    stop_damping: TorsionalDamping = Field(0.0, ge=0, description="the damping of the stops, in N m s/rad")
+
+    @property
+    def anchor(self) -> tuple[float, float]:
+        """Pivot of the arm, m."""
+        return self.pivot
+
+    def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
+        """As in the base, along the arc of the center, counter-clockwise."""
+        arm = center - np.array(self.pivot)
+        length = self.reach(center)
+        if length == 0:
+            raise ValueError(
+                f'the pivot of the tensioner of "{self.pulley}" is the center of the pulley. Move one of them'
+            )
+        found = float(gradient @ np.array([-arm[1], arm[0]])) / length
+        if abs(found) < LEAST_LEVERAGE:
+            raise ValueError(
+                f'the arm of the tensioner of "{self.pulley}" cannot tension the belt: turning it hardly changes the '
+                "length of the path. Move its pivot"
+            )
+        return found
+
+    def values(self, center: FloatArray, gradient: FloatArray) -> Mapping[str, Any]:
+        """As in the base."""
+        pivot, length = np.array(self.pivot), self.reach(center)
+        sense = np.sign(self.leverage(center, gradient))
+        direction = (center - pivot) / length
+        return {"pivot": pivot, "direction": direction, "length": length, "sense": sense, "spring": self.spring}
+
+    def moved_inertia(self, center: FloatArray, mass: float) -> float:
+        """As in the base, kg m^2."""
+        return self.inertia + mass * self.reach(center) ** 2
+
+    def weighing_mass(self, mass: float) -> float:
+        """As in the base: an arm with its center of mass at the part c of its length weighs as c times its mass."""
+        return mass + self.mass * self.center_of_mass
+
+    def reach(self, center: FloatArray) -> float:
+        """Length of the arm, m."""
+        return float(np.linalg.norm(center - np.array(self.pivot)))

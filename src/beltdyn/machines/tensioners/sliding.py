@@ -1,0 +1,78 @@
+"""A tensioner that slides along a line: center c + q u."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.machines.tensioners.direction import Direction
+from beltdyn.machines.tensioners.spring import SPRING
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE, Center, MovingTensioner
+from beltdyn.parts.quantity import Coordinate, Damping, Force, Mass, Speed, Stiffness
+from beltdyn.records import record
+
+SLIDE = record(
+    center="2f8",  # c, the nominal center of the pulley, m
+    direction="2f8",  # u, unit vector
+    spring=SPRING,
+)
+
+
+@kernel
+def sliding_center(constants: np.record, q: float) -> Center:
+    """Center of the pulley on the line; constants are a row of `SLIDE`, q in m."""
+    x, y = constants.center
+    ux, uy = constants.direction
+    return Center(x + q * ux, y + q * uy, ux, uy, 0.0, 0.0)
+
+
+class SlidingTensioner(MovingTensioner):
+    """A pulley that slides along a line, pressed by a spring in `direction`."""
+
+    constants = SLIDE
+    center_at = sliding_center
+
+    kind: Literal["sliding"] = Field(description="the kind of tensioner")
+    direction: Direction = Field(description="the direction in which the spring presses the pulley, as [x, y]")
+    mass: Mass = Field(0.0, ge=0, description="the mass that slides with the pulley, without it, in kg")
+    preload: Force = Field(description="the force of the spring at the pulley's center, in N")
+    rate: Stiffness = Field(0.0, ge=0, description="the rate of the spring, in N/m")
+    damping: Damping = Field(0.0, ge=0, description="the viscous damping, in N*s/m")
+    tensioning_friction: Force = Field(0.0, ge=0, description="the dry friction while the path gets longer, in N")
+    yielding_friction: Force = Field(0.0, ge=0, description="the dry friction while the path gets shorter, in N")
+    creep_speed: Speed = Field(1e-3, gt=0, description="the speed at which dry friction has reached 76 %, in m/s")
+    stops: tuple[Coordinate, Coordinate] | None = Field(
+        None, description="the lower and the upper stop, from the pulley's center along the direction, in m"
+    )
+    stop_stiffness: Stiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N/m")
+    stop_damping: Damping = Field(0.0, ge=0, description="the damping of the stops, in N*s/m")
+
+    def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
+        """As in the base, along `direction`."""
+        found = float(gradient @ np.array(self.direction))
+        if found < LEAST_LEVERAGE:
+            raise ValueError(
+                f'the tensioner of "{self.pulley}" cannot tension the belt: a metre along its direction lengthens the '
+                f"path by {found:.3g} m. Choose a direction in which the path gets longer"
+            )
+        return found
+
+    def values(self, center: FloatArray, gradient: FloatArray) -> Mapping[str, Any]:
+        """As in the base."""
+        self.leverage(center, gradient)
+        return {"center": center, "direction": self.direction, "spring": self.spring}
+
+    def moved_inertia(self, center: FloatArray, mass: float) -> float:
+        """As in the base, kg."""
+        return self.mass + mass
+
+    def weighing_mass(self, mass: float) -> float:
+        """As in the base."""
+        return mass + self.mass
+
+    def reach(self, center: FloatArray) -> float:
+        """One metre a metre."""
+        return 1.0

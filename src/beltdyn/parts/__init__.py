@@ -1,0 +1,1 @@
+"""What every part of a drive is made of: validated fields in SI units, error messages, text and table files."""

@@ -1,0 +1,96 @@
+"""The way from the location of an error to the key that a user wrote."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+from pydantic import BaseModel
+
+_LONGEST_NAME = 60
+
+
+def shorten(text: object, longest: int = _LONGEST_NAME) -> str:
+    """Write what a user wrote, and only its beginning if it is long."""
+    words = str(text)
+    return words if len(words) <= longest else f"{words[: longest - 3]}..."
+
+
+class ErrorLocation:
+    """Follows the location of an error through the JSON schema of a model, and through the user's data.
+
+    Parameters
+    ----------
+    model : type
+        The model that was validated.
+    data : mapping
+        What it was validated from.
+    """
+
+    def __init__(self, model: type[BaseModel], data: Mapping[str, Any]) -> None:
+        self._schema = _schema_of(model)
+        self._data = data
+        self._prefix = "" if "belt" in model.model_fields else model.__name__.lower()
+
+    def locate(self, location: tuple[int | str, ...]) -> tuple[str, dict[str, Any]]:
+        """Find the path as a user writes it, ``pulley[driven].radius``, and the schema of the key there.
+
+        Parameters
+        ----------
+        location : tuple
+            Keys, positions in lists and, after a profile, its kind.
+
+        Returns
+        -------
+        path : str
+        schema : dict
+        """
+        path, data = self._prefix, self._data
+        schema = self._resolve(self._schema) | {"description": ""}
+        for step in location:
+            if isinstance(step, str) and step in schema.get("discriminator", {}).get("mapping", {}):
+                schema = self._resolve({"$ref": schema["discriminator"]["mapping"][step]})
+                continue
+            data = _item(data, step)
+            if isinstance(step, int):
+                path += f"[{_name(data) or step + 1}]"
+                entries = schema.get("prefixItems") or [schema.get("items", {})]
+                schema = {"description": schema.get("description", "")} | self._resolve(entries[0])
+            else:
+                path += f".{shorten(step)}" if path else shorten(step)
+                schema = self._resolve(schema.get("properties", {}).get(step, {}))
+        return path, schema
+
+    def keys(self, location: tuple[int | str, ...]) -> list[str]:
+        """List the keys that are known at a location."""
+        return list(self.locate(location)[1].get("properties", {}))
+
+    def kinds(self, location: tuple[int | str, ...]) -> list[str]:
+        """List the kinds of what may stand at a location."""
+        return list(self.locate(location)[1].get("discriminator", {}).get("mapping", {}))
+
+    def _resolve(self, schema: dict[str, Any]) -> dict[str, Any]:
+        """Replace a reference by what it refers to, and an optional value by the value."""
+        if "$ref" in schema:
+            return self._resolve(self._schema["$defs"][schema["$ref"].split("/")[-1]]) | schema
+        given = [option for option in schema.get("anyOf", []) if option.get("type") != "null"]
+        if len(given) == 1:
+            return {"description": schema.get("description", "")} | self._resolve(given[0])
+        return schema
+
+
+@cache
+def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
+    """The JSON schema of a model, which takes longer to make than a drive to be read."""
+    return model.model_json_schema(by_alias=True)
+
+
+def _item(data: Any, step: int | str) -> Any:
+    try:
+        return data[step]
+    except (TypeError, LookupError):
+        return None
+
+
+def _name(data: Any) -> str:
+    name = _item(data, "name")
+    return shorten(name) if isinstance(name, str) else ""

@@ -1,0 +1,145 @@
+"""Validation errors as sentences: the key path, the value, the rule and the remedy."""
+
+import difflib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from beltdyn.parts.error_location import ErrorLocation, shorten
+
+_LONGEST_VALUE = 60
+_LONGEST_SENTENCE = 1000
+_MOST_ERRORS = 20
+_RULES = {
+    "greater_than": "must be greater than {gt:g}",
+    "greater_than_equal": "must be at least {ge:g}",
+    "less_than": "must be less than {lt:g}",
+    "less_than_equal": "must be at most {le:g}",
+    "finite_number": "must be a finite number",
+    "float_type": "must be a number",
+    "float_parsing": "must be a number",
+    "int_type": "must be a whole number",
+    "int_parsing_size": "is too large",
+    "bool_type": "must be true or false, without quotation marks",
+    "string_type": "must be text in quotation marks",
+    "string_too_long": "is longer than {max_length} characters",
+    "string_pattern_mismatch": "may hold letters, digits, spaces, dots and dashes, and starts with a letter or digit",
+    "tuple_type": "must be a list [...]",
+    "too_short": "needs at least {min_length} entries",
+    "too_long": "has more than {max_length} entries",
+    "model_type": "must be a group of keys, such as {{ key = value }}",
+}
+
+
+def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> str:
+    """Say what is wrong with a drive or a part of it.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic found.
+    model : type
+        The model that was validated.
+    data : mapping
+        What it was validated from.
+
+    Returns
+    -------
+    str
+        One line for each error.
+    """
+    locations = ErrorLocation(model, data)
+    details = error.errors(include_url=False)[:_MOST_ERRORS]
+    told = [detail for detail in details if not _follows_from_another(detail, details, locations)]
+    sentences = dict.fromkeys(shorten(_sentence(detail, locations).rstrip(". "), _LONGEST_SENTENCE) for detail in told)
+    more = error.error_count() - len(details)
+    if more > 0:
+        sentences[f"There are {more} more errors, which are not shown"] = None
+    return "\n".join(sentence if sentence.endswith("?") else f"{sentence}." for sentence in sentences)
+
+
+def _follows_from_another(detail: ErrorDetails, details: list[ErrorDetails], locations: ErrorLocation) -> bool:
+    """Tell whether an error is only the shadow of another: of a misspelled key, or of a wrong entry in a list."""
+    *parent, last = detail["loc"] or ("",)
+    if detail["type"] == "missing":
+        return any(
+            other["type"] == "extra_forbidden"
+            and other["loc"][:-1] == tuple(parent)
+            and _nearest(str(other["loc"][-1]), locations.keys(tuple(parent))) == last
+            for other in details
+        )
+    depth = len(detail["loc"])
+    return detail["type"] == "too_short" and any(
+        other["loc"][:depth] == detail["loc"] for other in details if len(other["loc"]) > depth
+    )
+
+
+def _sentence(detail: ErrorDetails, locations: ErrorLocation) -> str:
+    kind, location, context = detail["type"], detail["loc"], detail.get("ctx", {})
+    path, schema = locations.locate(location)
+    value = show(detail["input"])
+    if kind == "missing":
+        return f"{path} is missing. {_remedy(schema)}".strip()
+    if kind == "extra_forbidden":
+        return f"{path} is not a known key. {_suggest(str(location[-1]), locations.keys(location[:-1]))}"
+    if kind == "value_error":
+        return _own_sentence(path, value, str(context["error"]), detail["input"], schema)
+    if kind in ("literal_error", "union_tag_invalid"):
+        return _choice_sentence(path, detail)
+    if kind in ("union_tag_not_found", "model_attributes_type"):
+        kinds = ", ".join(locations.kinds(location))
+        return f'{path} = {value} has no kind. Write {{ kind = "...", ... }} with one of {kinds}'
+    rule = _RULES.get(kind)
+    reason = rule.format(**context) if rule else detail["msg"]
+    return f"{path} = {value} {reason}. {_remedy(schema)}".strip()
+
+
+def _own_sentence(path: str, value: str, message: str, given: object, schema: dict[str, Any]) -> str:
+    """Sentence for an error raised by our own validators: about a value, or about a group of keys."""
+    if not isinstance(given, Mapping | BaseModel):
+        return f"{path} = {value} {message}. {_remedy(schema)}".strip()
+    joint = " " if message.startswith("has ") else ": "
+    return f"{path}{joint}{message}" if path else message
+
+
+def _choice_sentence(path: str, detail: ErrorDetails) -> str:
+    given, context = detail["input"], detail["ctx"]
+    expected = context.get("expected") or context["expected_tags"]
+    choices = [choice.strip(" '\"") for choice in expected.replace(" or ", ",").split(",")]
+    if detail["type"] == "union_tag_invalid":
+        path, given = f"{path}.kind", context["tag"]
+    return f"{path} = {show(given)} is not a choice here. {_suggest(str(given), choices)}"
+
+
+def _suggest(given: str, known: list[str]) -> str:
+    near = _nearest(given, known)
+    return f'Did you mean "{near}"?' if near else f"Known here: {', '.join(known)}"
+
+
+def _nearest(given: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(given.lower(), known, n=1, cutoff=0.6)
+    return near[0] if near else ""
+
+
+def _remedy(schema: dict[str, Any]) -> str:
+    description = schema.get("description", "")
+    return (
+        f"Give {description}" if description.startswith(("the ", "how ", "where ", "when ", "Poisson", "Young")) else ""
+    )
+
+
+def reason(error: Exception) -> str:
+    """Say why a file cannot be used, in the words of the operating system."""
+    return (getattr(error, "strerror", None) or str(error)).lower()
+
+
+def show(value: object) -> str:
+    """Write a value as it would stand in a drive file, shortened."""
+    try:
+        text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
+    except (TypeError, ValueError, RecursionError):
+        text = str(value)
+    return shorten(text, _LONGEST_VALUE)

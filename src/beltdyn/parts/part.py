@@ -1,0 +1,103 @@
+"""The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
+
+from collections.abc import Mapping
+from typing import Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
+
+from beltdyn.errors import ModelError
+from beltdyn.parts.documentation import document, signature
+from beltdyn.parts.messages import explain
+
+
+def computed(**constraints: Any) -> Any:
+    """Field that a user may leave open where something else is given: None until a drive computes it.
+
+    Parameters
+    ----------
+    **constraints
+        Arguments of pydantic's ``Field``.
+
+    Returns
+    -------
+    Any
+        The field, without a default in the JSON schema.
+    """
+    return Field(None, json_schema_extra=_without_default, **constraints)
+
+
+def _without_default(schema: dict[str, Any]) -> None:
+    schema.pop("default", None)
+
+
+class Part(BaseModel):
+    """A validated, immutable piece of a drive; its constructor's arguments are the keys of the file."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True, defer_build=True
+    )
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise ModelError(explain(error, type(self), data)) from None
+
+    @classmethod
+    def alternatives(cls) -> Mapping[str, FieldInfo]:
+        """Arguments that the constructor takes in place of fields, by their names."""
+        return {}
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **_: Any) -> None:
+        """Tell of each argument in the docstring and in the signature."""
+        cls.__doc__ = document(cls, cls.alternatives())
+        cls.__signature__ = signature(cls, cls.alternatives())
+
+    @classmethod
+    def __pydantic_on_complete__(cls) -> None:
+        """Keep the signature, which pydantic makes anew when it builds the part for its first use."""
+        cls.__signature__ = signature(cls, cls.alternatives())
+
+    # Tells pydantic that parts inside parts need not go through this constructor, so that it reports
+    # all errors of a drive at once, each with its path.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Part) and type(self) is type(other) and self.arguments == other.arguments
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """The constructor's arguments that make this part, without those that are left open."""
+        values = {name: getattr(self, name) for name in type(self).model_fields}
+        return {
+            field.alias or name: values[name]
+            for name, field in type(self).model_fields.items()
+            if not (values[name] is None and field.default is None)
+        }
+
+    def replace(self, **changes: Any) -> Self:
+        """Make a copy with some values changed, and validate it.
+
+        Parameters
+        ----------
+        **changes
+            The constructor's arguments that differ.
+
+        Returns
+        -------
+        Part
+            A part of the same kind.
+
+        Raises
+        ------
+        ModelError
+            If the changed part is not valid.
+
+        Examples
+        --------
+        >>> drive.belt.replace(elements=30).elements
+        30
+        """
+        return type(self)(**self.arguments | changes)

@@ -1,0 +1,146 @@
+"""Numbers in SI units, which a user may also write as text with a unit: ``"25 mm"``."""
+
+import math
+import re
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import BeforeValidator, Strict, StringConstraints
+
+if TYPE_CHECKING:
+    import pint
+
+# A number, then a unit made of names with one-digit exponents, so that no text makes the unit parser compute.
+_NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*", re.DOTALL)
+_UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
+_LONGEST_TEXT = 60
+_LARGEST = 1e15
+
+
+@lru_cache(maxsize=1)
+def _registry() -> "pint.UnitRegistry[float]":
+    import pint  # takes 0.4 s, and most files hold plain numbers
+
+    return pint.UnitRegistry()
+
+
+def to_si(text: str, unit: str) -> float:
+    """Convert a text such as ``"25 mm"`` into a number in `unit`.
+
+    Parameters
+    ----------
+    text : str
+        A number and a unit.
+    unit : str
+        The SI unit to convert into; the empty string for a dimensionless number.
+
+    Returns
+    -------
+    float
+        The number in `unit`.
+
+    Raises
+    ------
+    ValueError
+        If the text has no number, no unit, an unknown unit, or a unit of another dimension.
+    """
+    match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
+    if match is None:
+        raise ValueError(f"must be a number{f' in {unit}' if unit else ''}")
+    number, given = float(match["number"]), match["unit"]
+    if not unit:
+        raise ValueError("is a plain number without a unit: leave the quotation marks away")
+    if not given:
+        raise ValueError(f'has no unit. Write {number:g} (in {unit}), or for example "{number:g} {unit}"')
+    if not _UNIT.fullmatch(given):
+        raise ValueError(f'has a unit that cannot be read. Write for example "{number:g} {unit}"')
+    return _convert(number, given, unit)
+
+
+def _convert(number: float, given: str, unit: str) -> float:
+    try:
+        parsed = _registry().parse_units(given)
+        same = parsed.is_compatible_with(unit)
+        value = float(_registry().convert(number, parsed, unit)) if same else 0.0
+    except Exception as error:  # the parser raises many unrelated types, down to those of Python's tokenizer
+        raise ValueError(f'has an unknown unit "{given}". Write for example "{number:g} {unit}"') from error
+    if not same:
+        raise ValueError(f'must be in units of {unit}, not "{given}"')
+    if unit == "rad/s" and "hertz" in str(parsed):
+        raise ValueError(f'is ambiguous, as Hz could mean turns or radians. Write "{60 * value:g} rpm" or rad/s')
+    return value
+
+
+def _reader(unit: str, smallest: float) -> Callable[[object], object]:
+    def read(value: object) -> object:
+        if isinstance(value, bool):
+            raise ValueError(f"must be a number{f' in {unit}' if unit else ''}")
+        number = to_si(value, unit) if isinstance(value, str) else value
+        if isinstance(number, int | float):
+            _check_size(number, smallest)
+        return number
+
+    return read
+
+
+def _check_size(number: float, smallest: float) -> None:
+    """Refuse numbers that no drive has, and with which the arithmetic would overflow."""
+    if _LARGEST < abs(number) < math.inf:
+        raise ValueError(f"is too large: the limit is {_LARGEST:g}")
+    if 0 < abs(number) < smallest:
+        raise ValueError(f"is too small: the limit is {smallest:g}")
+
+
+def _read_count(value: object) -> object:
+    if isinstance(value, bool | float | str):
+        raise ValueError("must be a whole number")
+    return value
+
+
+def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
+    """Let a field take a number in `unit`, or text with any unit of the same dimension.
+
+    Parameters
+    ----------
+    unit : str
+        The SI unit; the empty string for a dimensionless number, which takes no text.
+    smallest : float
+        The smallest magnitude beside zero.
+
+    Returns
+    -------
+    BeforeValidator
+        What goes into the annotation of the field.
+    """
+    return BeforeValidator(_reader(unit, smallest), json_schema_input_type=float | str if unit else float)
+
+
+Coordinate = Annotated[float, quantity("m", smallest=0)]
+Length = Annotated[float, quantity("m")]
+Time = Annotated[float, quantity("s")]
+Speed = Annotated[float, quantity("m/s")]
+AngularSpeed = Annotated[float, quantity("rad/s", smallest=0)]
+Acceleration = Annotated[float, quantity("m/s^2", smallest=0)]
+Angle = Annotated[float, quantity("rad", smallest=0)]
+Torque = Annotated[float, quantity("N*m", smallest=0)]
+TorsionalStiffness = Annotated[float, quantity("N*m/rad")]
+TorsionalDamping = Annotated[float, quantity("N*m*s/rad")]
+QuadraticDamping = Annotated[float, quantity("N*m*s^2/rad^2")]
+Force = Annotated[float, quantity("N", smallest=0)]
+Stiffness = Annotated[float, quantity("N/m")]
+Damping = Annotated[float, quantity("N*s/m")]
+Mass = Annotated[float, quantity("kg")]
+Inertia = Annotated[float, quantity("kg*m^2")]
+Density = Annotated[float, quantity("kg/m^3")]
+Stress = Annotated[float, quantity("Pa")]
+AxialStiffness = Annotated[float, quantity("N")]
+BendingStiffness = Annotated[float, quantity("N*m^2")]
+MassPerLength = Annotated[float, quantity("kg/m")]
+LineStiffness = Annotated[float, quantity("N/m^2")]
+LineDamping = Annotated[float, quantity("N*s/m^2")]
+CreepRate = Annotated[float, quantity("kg/(m*s)")]
+Ratio = Annotated[float, quantity("")]
+Count = Annotated[int, BeforeValidator(_read_count, json_schema_input_type=int)]
+Flag = Annotated[bool, Strict()]
+Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]

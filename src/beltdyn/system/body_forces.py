@@ -1,0 +1,203 @@
+"""What the bodies feel at one state: contact summed over the belt, machines, and the powers of the energy account."""
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.contact_force import ContactTotals
+from beltdyn.kernel import kernel
+from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.loads.shaft import shaft_torque
+from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
+from beltdyn.system.arrays import POWERS, Loads, System
+from beltdyn.system.pulley_state import tensioner_coordinate
+
+
+def new_loads(system: System) -> Loads:
+    """Make zero loads for a system."""
+    pulleys, bodies = system.pulleys.size, system.bodies.size
+    return Loads(
+        np.zeros(pulleys),
+        np.zeros((pulleys, 2)),
+        np.zeros(pulleys),
+        np.zeros(pulleys),
+        np.zeros(pulleys),
+        np.zeros(bodies),
+        np.zeros(len(POWERS)),
+        np.zeros(2),
+    )
+
+
+def load_history(system: System, count: int) -> Loads:
+    """Make room for the loads of a number of states, one row for each."""
+    return Loads(*(np.zeros((count, *array.shape)) for array in new_loads(system)))
+
+
+@kernel
+def keep_loads(loads: Loads, history: Loads, k: int) -> None:
+    """Write the loads of a state into row k of a history."""
+    for p in range(loads.moment.size):
+        history.moment[k, p], history.shaft[k, p] = loads.moment[p], loads.shaft[p]
+        history.hub[k, p, 0], history.hub[k, p, 1] = loads.hub[p, 0], loads.hub[p, 1]
+        history.friction[k, p], history.damping[k, p] = loads.friction[p], loads.damping[p]
+    for body in range(loads.force.size):
+        history.force[k, body] = loads.force[body]
+    for number in range(loads.power.size):
+        history.power[k, number] = loads.power[number]
+    for number in range(loads.stored.size):
+        history.stored[k, number] = loads.stored[number]
+
+
+@kernel
+def clear_loads(loads: Loads) -> None:
+    """Set everything to zero but the torques on the shafts, which are overwritten later."""
+    loads.moment[:] = 0.0
+    loads.hub[:] = 0.0
+    loads.friction[:] = 0.0
+    loads.damping[:] = 0.0
+    loads.force[:] = 0.0
+    loads.power[:] = 0.0
+    loads.stored[:] = 0.0
+
+
+@kernel
+def add_contact(loads: Loads, pulley: int, totals: ContactTotals) -> None:
+    """Add the contact of a curve of the belt with a pulley."""
+    loads.moment[pulley] += totals.moment
+    loads.hub[pulley, 0] += totals.hub_x
+    loads.hub[pulley, 1] += totals.hub_y
+    loads.friction[pulley] += totals.friction_power
+    loads.damping[pulley] += totals.damping_power
+    loads.stored[0] += totals.penalty_energy
+
+
+@kernel
+def add_machines(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Forces on the bodies and their powers, when all contact is summed, and what they add to the tangent.
+
+    Parameters
+    ----------
+    system
+        The system.
+    time
+        s.
+    position, velocity, acceleration : ndarray, shape (6 N + D,)
+        State and rates.
+    by_position, by_velocity
+        Factors of the derivatives in the tangent; with both zero there is none.
+    corner : ndarray, shape (m, m)
+        Tangent of the bodies' equations, changed in place.
+    loads
+        Contact is there already.  The torque on a free shaft is that applied to it; that on a prescribed one is the
+        reaction of its driver (Eq. 23).
+    """
+    wanted = by_position != 0.0 or by_velocity != 0.0
+    for p in range(system.pulleys.size):
+        loads.force[p] += loads.moment[p]
+        loads.power[2] += loads.friction[p]
+        loads.power[3] += loads.damping[p]
+    _add_tensioners(system, position, velocity, by_position, by_velocity, wanted, corner, loads)
+    _add_links(system, time, position, velocity, by_position, by_velocity, wanted, corner, loads)
+    _take_shafts(system, time, position, velocity, acceleration, by_position, by_velocity, wanted, corner, loads)
+
+
+@kernel(inline=True)
+def _add_tensioners(
+    system: System,
+    position: FloatArray,
+    velocity: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    wanted: bool,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
+    tensioners, first = system.tensioners, system.first_body
+    for k in range(tensioners.size):
+        at = tensioner_coordinate(system, k)
+        center = tensioner_center(tensioners[k], position[at])
+        own = tensioner_force(tensioners[k], position[at], velocity[at])
+        hub, weight = loads.hub[tensioners[k].pulley], tensioners[k].weight
+        x, y = hub[0] + weight[0], hub[1] + weight[1]
+        loads.force[at - first] += own.force + tensioners[k].push + x * center.dx + y * center.dy
+        loads.power[5] += own.loss
+        loads.stored[1] += own.energy
+        unknown = system.bodies[at - first].unknown
+        if wanted and unknown >= 0:
+            by_place = own.by_position + x * center.ddx + y * center.ddy
+            corner[unknown, unknown] -= by_position * by_place + by_velocity * own.by_velocity
+
+
+@kernel(inline=True)
+def _add_links(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    wanted: bool,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Torques between the bodies of hub chains."""
+    links, first = system.links, system.first_body
+    for number in range(links.size):
+        front, back = links[number].front, links[number].back
+        twist = position[first + front] - position[first + back]
+        rate = velocity[first + front] - velocity[first + back]
+        link = link_torque(system.profiles, links[number], time, twist, rate)
+        loads.force[front] -= link.torque
+        loads.force[back] += link.torque
+        loads.power[6] += link.loss
+        loads.stored[1] += link.energy
+        if wanted:
+            slope = by_position * link.by_twist + by_velocity * link.by_rate
+            i, j = system.bodies[front].unknown, system.bodies[back].unknown
+            if i >= 0:
+                corner[i, i] += slope
+            if j >= 0:
+                corner[j, j] += slope
+            if i >= 0 and j >= 0:
+                corner[i, j] -= slope
+                corner[j, i] -= slope
+
+
+@kernel(inline=True)
+def _take_shafts(
+    system: System,
+    time: float,
+    position: FloatArray,
+    velocity: FloatArray,
+    acceleration: FloatArray,
+    by_position: float,
+    by_velocity: float,
+    wanted: bool,
+    corner: FloatArray,
+    loads: Loads,
+) -> None:
+    """Torques on the shafts from outside, and their powers."""
+    first = system.first_body
+    for p in range(system.pulleys.size):
+        body = system.pulleys[p].shaft
+        unknown, speed = system.bodies[body].unknown, velocity[first + body]
+        if unknown < 0:
+            loads.shaft[p] = system.bodies[body].inertia * acceleration[first + body] - loads.force[body]
+            loads.power[0] += loads.shaft[p] * speed
+            continue
+        load = shaft_torque(system.profiles, system.shaft_loads, p, time, position[first + body], speed)
+        loads.shaft[p] = load.torque
+        loads.force[body] += load.torque
+        loads.power[1] += load.torque * speed
+        if wanted:
+            corner[unknown, unknown] -= by_position * load.by_angle + by_velocity * load.by_speed

@@ -1,0 +1,143 @@
+"""Contact with a pulley that a tensioner carries: what the motion of its centre adds to the tangent.
+
+Contact depends on where the belt is and how it moves against the centre.  With the centre c(q), a change of the
+tensioner's coordinate acts like the opposite shift of the whole curve by c' dq, and like a change of its velocity by
+-(c' dq/dt + c'' dq/dt dq).  With T the tangent of the forces F on the vectors, w what a shift does to these
+vectors, and hub force -sum_a w_a F_a:
+
+    dF_a/dq = -sum_b T_ab w_b c' - D_a,    D_a = sum_b dF_a/dv_b w_b c'' dq/dt.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.machines.tensioners.registry import tensioner_center
+from beltdyn.records import record
+from beltdyn.system.arrays import RingMatrix, System
+from beltdyn.system.pulley_state import tensioner_coordinate
+
+
+class MovingCenter(NamedTuple):
+    """How the centre of a pulley moves with the coordinate of the tensioner that carries it."""
+
+    unknown: int
+    """Place of the coordinate in the border, -1 where the centre is fixed."""
+    x: float
+    """c', derivative of the centre."""
+    y: float
+    drift_x: float
+    """c'' dq/dt, rate of c'."""
+    drift_y: float
+    turning: bool
+    """Whether c' changes."""
+
+
+def drift_record(vectors: int) -> np.dtype[np.void]:
+    """Kind of what a drift of the centre's velocity does: forces on the vectors (N) and moment on the pulley (N m)."""
+    return record(force=f"({vectors},2)f8", moment="f8")
+
+
+@kernel
+def moving_center(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> MovingCenter:
+    """The motion of a pulley's centre at a state of shape (6 N + D,)."""
+    carrier = system.pulleys[pulley].carrier
+    if carrier < 0:
+        return MovingCenter(-1, 0.0, 0.0, 0.0, 0.0, False)
+    at = tensioner_coordinate(system, carrier)
+    center = tensioner_center(system.tensioners[carrier], position[at])
+    drift_x, drift_y = center.ddx * velocity[at], center.ddy * velocity[at]
+    unknown = system.bodies[at - system.first_body].unknown
+    return MovingCenter(unknown, center.dx, center.dy, drift_x, drift_y, drift_x != 0.0 or drift_y != 0.0)
+
+
+@kernel
+def keep_drift(system: System, center: MovingCenter, contact: np.record, drift: np.record) -> None:
+    """Overwrite drift by D and by its counterpart for the moment on the pulley.
+
+    Parameters
+    ----------
+    system, center
+        The system, and how the centre moves.
+    contact
+        With the derivatives of force and moment with respect to the velocity.
+    drift
+        A row of the kind `drift_record`.
+    """
+    x, y = center.drift_x, center.drift_y
+    drift.moment = 0.0
+    for a in range(len(system.shift)):
+        drift.force[a, 0], drift.force[a, 1] = _along(system, contact, a, x, y)
+        drift.moment += system.shift[a] * (contact.moment[a, 0] * x + contact.moment[a, 1] * y)
+
+
+@kernel(inline=True)
+def _along(system: System, contact: np.record, a: int, x: float, y: float) -> tuple[float, float]:
+    """Sum over b of T_ab w_b (x, y): what a shift of the curve does to the force on a vector."""
+    fx = fy = 0.0
+    for b in range(len(system.shift)):
+        weight = system.shift[b]
+        fx += weight * (contact.xx[a, b] * x + contact.xy[a, b] * y)
+        fy += weight * (contact.yx[a, b] * x + contact.yy[a, b] * y)
+    return fx, fy
+
+
+@kernel
+def couple_center(
+    system: System,
+    node_i: int,
+    node_j: int,
+    rim: int,
+    center: MovingCenter,
+    by_velocity: float,
+    drifting: float,
+    contact: np.record,
+    drift: np.record,
+    matrix: RingMatrix,
+) -> None:
+    """Couple the tensioner's coordinate to the nodes of a curve and to the rim that they touch.
+
+    Parameters
+    ----------
+    system
+        The system.
+    node_i, node_j
+        The nodes of the element.
+    rim
+        Place of the rim's angle in the border, -1 where it is prescribed.
+    center
+        How the centre moves.
+    by_velocity
+        Factor of the derivative with respect to velocity in the tangent.
+    drifting
+        Factor of the drift: that of the derivative with respect to position, zero where there is none.
+    contact
+        Forces with the tangent.
+    drift
+        From `keep_drift`.
+    matrix
+        Changed in place.
+    """
+    dof = len(system.scale)
+    own, x, y = center.unknown, center.x, center.y
+    for a in range(len(system.vectors)):
+        first, weight = system.vectors[a], system.shift[a]
+        node, c = (node_i, first) if first < dof else (node_j, first - dof)
+        fx, fy = _along(system, contact, a, x, y)
+        if drifting != 0.0:
+            fx, fy = fx + drifting * drift.force[a, 0], fy + drifting * drift.force[a, 1]
+        matrix.column[node, c, own] += fx
+        matrix.column[node, c + 1, own] += fy
+        matrix.corner[own, own] -= weight * (fx * x + fy * y)
+        for b in range(len(system.shift)):
+            if system.shift[b] != 0.0:
+                matrix.row[node, own, c] += system.shift[b] * (contact.xx[b, a] * x + contact.yx[b, a] * y)
+                matrix.row[node, own, c + 1] += system.shift[b] * (contact.xy[b, a] * x + contact.yy[b, a] * y)
+        if rim >= 0:
+            push = x * contact.by_speed[a, 0] + y * contact.by_speed[a, 1]
+            matrix.corner[own, rim] += by_velocity * weight * push
+            matrix.corner[rim, own] += weight * (x * contact.moment[a, 0] + y * contact.moment[a, 1])
+    if rim >= 0 and drifting != 0.0:
+        matrix.corner[rim, own] += drifting * drift.moment

@@ -1,0 +1,59 @@
+"""Loads and motors: units, and what is refused."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.machines import Load
+from beltdyn.model import LoadTable, Motor, Resistance
+
+MOTOR = {"kind": "motor", "breakdown_torque": "12 N m", "breakdown_slip": 0.2, "synchronous_speed": "1500 rpm"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "sentence"),
+    [
+        (Resistance, {"kind": "resistance"}, "has no resistance. Give constant, linear or quadratic"),
+        (Resistance, {"kind": "resistance", "linear": -1.0}, "must be at least 0"),
+        (Resistance, {"kind": "resistance", "constant": 1.0, "creep_speed": 0.0}, "must be greater than 0"),
+        (LoadTable, {"kind": "table", "speeds": [0.0, 1.0], "torques": [1.0]}, "needs at least 2 entries"),
+        (
+            LoadTable,
+            {"kind": "table", "speeds": [0.0, 1.0, 2.0], "torques": [1.0, 2.0]},
+            "speeds has 3 numbers and torques has 2: each speed needs one torque",
+        ),
+        (
+            LoadTable,
+            {"kind": "table", "speeds": [1.0, 1.0], "torques": [1.0, 2.0]},
+            "speeds must increase, but 1 follows 1. Sort the points by speed",
+        ),
+        (LoadTable, {"kind": "table", "file": "x.csv", "speeds": [0, 1]}, "file excludes speeds and torques"),
+        (LoadTable, {"kind": "table", "file": "nowhere.csv"}, "cannot be read"),
+        (Motor, MOTOR | {"synchronous_speed": 0.0}, "synchronous_speed = 0 leaves the slip undefined"),
+        (Motor, MOTOR | {"breakdown_slip": 1.2}, "must be at most 1"),
+        (Motor, MOTOR | {"breakdown_torque": 0.0}, "must be greater than 0"),
+        (Motor, MOTOR | {"schedule": {"kind": "constant", "value": 1.5}}, "must be at most 1"),
+        (Motor, MOTOR | {"schedule": {"kind": "constant", "value": "1 s"}}, "plain number without a unit"),
+        (Motor, MOTOR | {"schedule": {"kind": "cosine_ramp_published"}}, "is not a choice here"),
+    ],
+)
+def test_errors(kind: type[Load], given: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        kind(**given)
+    assert sentence in str(caught.value)
+
+
+def test_units() -> None:
+    motor = Motor(**MOTOR)
+    assert motor.synchronous_speed == pytest.approx(157.0796, rel=1e-6)
+    fan = Resistance(kind="resistance", quadratic="2e-3 N m s^2/rad^2", linear="1e-3 N m s", creep_speed="1 rpm")
+    assert (fan.quadratic, fan.linear) == (2e-3, 1e-3)
+
+
+def test_a_table_from_a_file(tmp_path: Path) -> None:
+    file = tmp_path / "pump.csv"
+    file.write_text("speed,torque\n0,0\n100, -3.5\n")
+    table = LoadTable.model_validate({"kind": "table", "file": file})
+    assert (table.speeds, table.torques) == ((0.0, 100.0), (0.0, -3.5))

@@ -1,0 +1,140 @@
+"""Loads and motors: exact derivatives, signs, the breakdown point of a motor, schedules and harmonics."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.machines.loads.load import LoadTorque
+from beltdyn.machines.loads.motor import MOTOR as MOTOR_CONSTANTS
+from beltdyn.machines.loads.motor import kloss as kloss_torque
+from beltdyn.machines.loads.resistance import RESISTANCE as RESISTANCE_CONSTANTS
+from beltdyn.machines.loads.resistance import resistance as resistance_torque
+from beltdyn.machines.loads.shaft import ShaftLoads, load_bend, shaft_torque
+from beltdyn.machines.profiles.functions import Profiles
+from beltdyn.model import Pulley
+from beltdyn.records import row
+from beltdyn.system.build_machines import machine_arrays
+
+Machines = tuple[Profiles, ShaftLoads]
+
+HARMONICS = [{"order": 2, "amplitude": 0.4, "phase": 0.3}, {"order": 0.5, "amplitude": 0.2}]
+RESISTANCE: dict[str, Any] = {
+    "kind": "resistance",
+    "constant": 1.5,
+    "creep_speed": 2.0,
+    "linear": 0.1,
+    "quadratic": 0.01,
+}
+TABLE: dict[str, Any] = {"kind": "table", "speeds": [-5.0, 1.0, 4.0, 20.0], "torques": [2.0, 0.0, -3.0, -2.0]}
+MOTOR: dict[str, Any] = {"kind": "motor", "breakdown_torque": 10.0, "breakdown_slip": 0.2, "synchronous_speed": 150.0}
+LOADS: dict[str, dict[str, Any]] = {"resistance": RESISTANCE, "table": TABLE, "motor": MOTOR}
+FLOOR = 1e-9  # of central differences of numbers of order one: eps to the power 2/3, some digits lost
+STEP = 1e-5
+NO_POINTS = np.zeros((0, 2))
+
+
+def kloss(speed: float, torque: float, slip: float, synchronous: float) -> LoadTorque:
+    motor = row(MOTOR_CONSTANTS, breakdown_torque=torque, breakdown_slip=slip, synchronous_speed=synchronous)
+    return kloss_torque(motor, NO_POINTS, 0.0, speed)
+
+
+def machines(*loads: dict[str, Any], **pulley: Any) -> Machines:
+    """Arrays of a drive whose second pulley carries the loads; the first has one that must not be counted."""
+    other = Pulley(name="other", center=(0, 0), radius=1, inertia=1, load=[RESISTANCE | {"harmonics": HARMONICS}])
+    loaded = Pulley(name="loaded", center=(3, 0), radius=1, inertia=1, load=loads, **pulley)
+    found = machine_arrays([other, loaded])
+    return found.profiles, found.shaft_loads
+
+
+@pytest.mark.parametrize("kind", LOADS)
+@pytest.mark.parametrize("speed", [-30.0, -4.0, -0.3, 0.4, 3.0, 12.0, 149.0, 200.0])
+@pytest.mark.parametrize("harmonics", [[], HARMONICS], ids=["plain", "wavy"])
+def test_derivatives(kind: str, speed: float, harmonics: list[dict[str, float]]) -> None:
+    found = machines(LOADS[kind] | {"harmonics": harmonics}, torque={"kind": "constant", "value": 2.0})
+    torque, by_angle, by_speed = shaft_torque(*found, 1, 0.0, 0.7, speed)
+    around = [[shaft_torque(*found, 1, 0.0, 0.7 + a, speed + b)[0] for a, b in ((h, 0), (0, h))] for h in (-STEP, STEP)]
+    numeric = np.diff(around, axis=0)[0] / (2 * STEP)
+    assert (by_angle, by_speed) == pytest.approx(numeric, abs=FLOOR * (1 + abs(torque)))
+
+
+@pytest.mark.parametrize("speed", [-7.0, -0.01, 0.0, 0.01, 7.0])
+def test_resistance_opposes_the_motion(speed: float) -> None:
+    given = row(RESISTANCE_CONSTANTS, constant=1.5, creep_speed=0.1, linear=0.2, quadratic=0.03)
+    torque, _, slope = resistance_torque(given, NO_POINTS, 0.0, speed)
+    assert torque * speed <= 0.0
+    assert slope < 0.0
+    if abs(speed) > 1.0:  # tanh is 1 to the last digit
+        assert abs(torque) == pytest.approx(1.5 + 0.2 * abs(speed) + 0.03 * speed**2, rel=1e-15)
+
+
+def test_motor_has_its_largest_torque_at_the_breakdown_slip() -> None:
+    top = 150.0 * (1 - 0.2)
+    assert kloss(top, 10.0, 0.2, 150.0) == pytest.approx((10.0, 0.0, 0.0), abs=1e-14)
+    torques = [kloss(speed, 10.0, 0.2, 150.0)[0] for speed in np.linspace(-300, 149, 500)]
+    assert min(torques) > 0.0
+    assert max(torques) <= 10.0
+
+
+@pytest.mark.parametrize("slip", [-1.0, -0.05, 0.01, 0.2, 0.6, 1.0])
+def test_motor_is_kloss_formula(slip: float) -> None:
+    expected = 2 * 10.0 / (slip / 0.2 + 0.2 / slip)
+    assert kloss(150.0 * (1 - slip), 10.0, 0.2, 150.0)[0] == pytest.approx(expected, rel=1e-12)
+
+
+def test_motor_drives_below_and_brakes_above_its_synchronous_speed() -> None:
+    assert [np.sign(kloss(speed, 10.0, 0.2, 150.0)[0]) for speed in (0.0, 149.0, 150.0, 151.0)] == [1, 1, 0, -1]
+
+
+@pytest.mark.parametrize("speed", [-10.0, 0.0, 40.0, 170.0])
+def test_a_clockwise_motor_is_the_mirror_image(speed: float) -> None:
+    torque, _, slope = kloss(speed, 10.0, 0.2, 150.0)
+    assert kloss(-speed, 10.0, 0.2, -150.0) == (-torque, 0.0, slope)
+
+
+@pytest.mark.parametrize("speed", [-9.0, -5.0, -2.0, 1.0, 2.0, 4.0, 11.0, 20.0, 50.0])
+def test_table_is_linear_between_its_points(speed: float) -> None:
+    expected = float(np.interp(speed, [-5.0, 1.0, 4.0, 20.0], [2.0, 0.0, -3.0, -2.0]))
+    assert shaft_torque(*machines(TABLE), 1, 0.0, 0.0, speed)[0] == pytest.approx(expected, abs=1e-15)
+
+
+def test_loads_add_up_with_the_torque_of_the_pulley() -> None:
+    torque = {"kind": "ramp", "start": 0.0, "end": 1.0, "value": 4.0}
+    alone = [np.array(shaft_torque(*machines(load), 1, 0.5, 0.7, 3.0)) for load in LOADS.values()]
+    together = shaft_torque(*machines(*LOADS.values(), torque=torque), 1, 0.5, 0.7, 3.0)
+    assert together == pytest.approx(np.sum(alone, axis=0) + np.array([2.0, 0.0, 0.0]), rel=1e-14)
+
+
+def test_a_schedule_switches_its_load_only() -> None:
+    switched = MOTOR | {"schedule": {"kind": "step", "time": 0.5, "before": 0.25, "value": 1.0}}
+    found = machines(RESISTANCE, switched, TABLE | {"schedule": {"kind": "constant", "value": 0.5}})
+    resist, table, motor = (np.array(shaft_torque(*machines(load), 1, 0.0, 0.7, 3.0)) for load in LOADS.values())
+    for time, factor in ((0.5, 0.25), (0.6, 1.0)):
+        expected = resist + factor * motor + 0.5 * table
+        assert shaft_torque(*found, 1, time, 0.7, 3.0) == pytest.approx(expected, rel=1e-14)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4, 9.0])
+def test_harmonics_multiply_the_torque(angle: float) -> None:
+    factor = 1 + 0.4 * np.cos(2 * angle + 0.3) + 0.2 * np.cos(0.5 * angle)
+    plain, _, slope = shaft_torque(*machines(RESISTANCE), 1, 0.0, angle, 3.0)
+    wavy, _, wavy_slope = shaft_torque(*machines(RESISTANCE | {"harmonics": HARMONICS}), 1, 0.0, angle, 3.0)
+    assert (wavy, wavy_slope) == pytest.approx((plain * factor, slope * factor), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("speed", "rate", "kink"),
+    [(0.0, 2.0, 1.0), (0.0, -2.0, -5.0), (1.0, 1.0, 4.0), (1.0, -1.0, -5.0), (30.0, -1.0, 20.0), (-6.0, 3.0, -5.0)],
+)
+def test_a_table_bends_next_at_the_point_that_its_speed_reaches_first(speed: float, rate: float, kink: float) -> None:
+    assert load_bend(*machines(TABLE), 1, 0.5, speed, rate)[0] == pytest.approx(0.5 + (kink - speed) / rate)
+
+
+@pytest.mark.parametrize(("speed", "rate"), [(20.0, 1.0), (-5.0, -1.0), (0.0, 0.0)])
+def test_a_table_whose_speed_reaches_no_point_does_not_bend(speed: float, rate: float) -> None:
+    assert load_bend(*machines(TABLE), 1, 0.5, speed, rate)[0] == np.inf
+
+
+def test_a_smooth_load_bends_with_its_schedule_and_waves_with_its_harmonics() -> None:
+    switched = MOTOR | {"schedule": {"kind": "step", "time": 0.7, "value": 1.0}, "harmonics": HARMONICS}
+    assert load_bend(*machines(switched), 1, 0.5, -3.0, 1.0) == (0.7, 6.0)

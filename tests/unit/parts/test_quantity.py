@@ -1,0 +1,37 @@
+import contextlib
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from beltdyn.parts.quantity import to_si
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("25 mm", "m", 0.025),
+        ("81.25mm", "m", 0.08125),
+        (" +1.5e1 cm ", "m", 0.15),
+        ("720 rpm", "rad/s", 75.39822368615503),
+        ("12 rad/s", "rad/s", 12.0),
+        ("100 MPa", "Pa", 1e8),
+        ("1.036 g/cm^3", "kg/m^3", 1036.0),
+        ("1.036 g/cm³", "kg/m^3", 1036.0),
+        ("10 N mm", "N*m", 0.01),
+        ("10 N·mm", "N*m", 0.01),
+        ("1e5 kg m^-1 s^-1", "kg/(m*s)", 1e5),
+        ("1e5 kg/(m s)", "kg/(m*s)", 1e5),
+        ("1 ms", "s", 1e-3),
+        ("10 kN/m**2", "N/m^2", 1e4),
+        ("-.5 m", "m", -0.5),
+    ],
+)
+def test_units(text: str, unit: str, value: float) -> None:
+    assert to_si(text, unit) == pytest.approx(value, rel=1e-14)
+
+
+@given(st.text() | st.from_regex(r"[0-9]{1,3} ?[a-zA-Z*/^() 0-9.-]{1,20}", fullmatch=True))
+def test_any_other_text_is_a_value_error(text: str) -> None:
+    with contextlib.suppress(ValueError):
+        to_si(text, "m")
