@@ -17,8 +17,8 @@ from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import Loads, RingMatrix, System
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads
-from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
 from beltdyn.system.discretization import element_kind
+from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
 from beltdyn.system.pulley_state import law_of, pulley_state
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
