@@ -128,7 +128,7 @@ def clutched(drive: Drive) -> tuple[System, Motion]:
     """A rim at 3 rad/s behind a clutch that slips at 2 N m times the table; the hub stands."""
     clutch = {"kind": "friction_clutch", "locking_damping": 1e6, "capacity": 2.0, "inertia": 0.1, "schedule": SCHEDULE}
     system, motion = turning(drive, free(hub=[clutch]), 0.0, 0.0)
-    motion.velocity[system.first_body + system.couplings[0].front] = 3.0
+    motion.velocity[system.first_body + system.links[0].front] = 3.0
     return system, motion
 
 
@@ -140,7 +140,7 @@ def test_impulses_of_a_clutch_are_opposite_on_its_bodies(clutched: tuple[System,
     impulse = np.full((2, motion.position.size), 7.0)
     missed_impulses(system, motion, LENGTH, impulse)
     expected = deviation_integral(torque, times)[-1]
-    front, back = (system.first_body + body for body in (system.couplings[0].front, system.couplings[0].back))
+    front, back = (system.first_body + body for body in (system.links[0].front, system.links[0].back))
     assert (impulse[1, front], impulse[1, back]) == pytest.approx((-expected, expected))
     assert np.count_nonzero(impulse) == 2
 
@@ -179,11 +179,11 @@ def test_what_a_slipping_clutch_loses(clutched: tuple[System, Motion]) -> None:
     """Its missed impulse times the mean of its rates of slip, 3 and 2 rad/s, is lost; no driver or torque gives it."""
     system, motion = clutched
     end = after_step(system, motion, 0.0, 0.0)
-    end.velocity[system.first_body + system.couplings[0].front] = 2.0
+    end.velocity[system.first_body + system.links[0].front] = 2.0
     impulse, work = np.zeros((2, motion.position.size)), np.zeros(len(POWERS))
     missed_impulses(system, motion, LENGTH, impulse)
     missed_work(system, motion, end, impulse, work)
-    lost = 2.5 * impulse[1, system.first_body + system.couplings[0].back]
+    lost = 2.5 * impulse[1, system.first_body + system.links[0].back]
     assert work[POWERS.index("coupling_loss")] == pytest.approx(lost)
     assert np.count_nonzero(work) == 1
 
