@@ -21,22 +21,13 @@ from functools import partial
 from importlib import import_module
 from itertools import accumulate
 from pathlib import Path
+from types import CodeType
 
 import pytest
 from hypothesis import Phase, settings
 from tools.mutation.mutants import Mutant, mutants_of
-from tools.mutation.trial import (
-    ROOT,
-    SOURCE,
-    Trace,
-    attempt,
-    attempt_at_import,
-    fork,
-    functions_of,
-    in_session,
-    read_traces,
-    traces,
-)
+from tools.mutation.traces import Trace, read_traces, traces
+from tools.mutation.trial import ROOT, SOURCE, attempt, attempt_at_import, compiled, fork, functions_of, in_session
 
 LIBRARIES = ["matplotlib.pyplot", "numba", "scipy.integrate", "scipy.optimize", "scipy.signal", "scipy.sparse.linalg"]
 LIBRARIES += ["pydantic", "xarray", "h5py"]
@@ -79,8 +70,8 @@ def _try_in_functions(items: list[pytest.Item], asked: argparse.Namespace, answe
     print(f"{len(mutants)} mutants, {len(known)} of {len(items)} tests", flush=True)
     by_id = {item.nodeid: item for item in items}
 
-    def work(mutant: Mutant, tests: list[str]) -> Callable[[], bool]:
-        return partial(attempt, mutant, functions[mutant.file], [by_id[test] for test in tests])
+    def work(mutant: Mutant, code: CodeType, tests: list[str]) -> Callable[[], bool]:
+        return partial(attempt, code, functions[mutant.file], [by_id[test] for test in tests])
 
     lines: defaultdict[tuple[str, int], list[str]] = defaultdict(list)
     for test, trace in known.items():
@@ -103,7 +94,7 @@ def _try_at_import(mutants: list[Mutant], asked: argparse.Namespace, kept: Path)
     _try(
         outside,
         lambda mutant: users[mutant.file],
-        lambda mutant, tests: partial(attempt_at_import, mutant, tests),
+        lambda mutant, code, tests: partial(attempt_at_import, mutant, code, tests),
         known,
         asked,
     )
@@ -112,7 +103,7 @@ def _try_at_import(mutants: list[Mutant], asked: argparse.Namespace, kept: Path)
 def _try(
     mutants: list[Mutant],
     tests_of: Callable[[Mutant], list[str]],
-    work: Callable[[Mutant, list[str]], Callable[[], bool]],
+    work: Callable[[Mutant, CodeType, list[str]], Callable[[], bool]],
     known: dict[str, Trace],
     asked: argparse.Namespace,
 ) -> None:
@@ -126,7 +117,7 @@ def _try(
         if not status:
             print(mutant, flush=True)
 
-    for mutant in mutants:
+    for mutant, code in compiled(mutants):
         tests, time = _within_budget(tests_of(mutant), known, asked.budget)
         if not tests:
             mutant.outcome = "untested"
@@ -134,7 +125,7 @@ def _try(
             continue
         if len(running) == asked.jobs:
             wait()
-        running[fork(work(mutant, tests), PATIENCE * (STARTING + time))] = mutant
+        running[fork(work(mutant, code, tests), PATIENCE * (STARTING + time))] = mutant
     while running:
         wait()
 

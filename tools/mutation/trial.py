@@ -1,24 +1,17 @@
 """Runs tests in forked copies of one pytest session, so that a test costs its own time and nothing else."""
 
-import ast
 import gc
-import hashlib
 import importlib.machinery
-import json
 import math
 import os
 import resource
 import signal
-import tempfile
-import time
 import traceback
-import warnings
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
 from importlib import import_module
+from itertools import groupby
 from pathlib import Path
 from types import CodeType, FunctionType
-from typing import Any
 
 import coverage
 import pytest
@@ -37,26 +30,12 @@ OPTIONS = [
     "-o",
     "tmp_path_retention_policy=none",
 ]
-
-
-@dataclass
-class Trace:
-    """What a test does.
-
-    Attributes
-    ----------
-    duration : float
-        Processor time, s.
-    lines : dict[str, list[int]]
-        Lines that it executes, by file.
-    """
-
-    duration: float
-    lines: dict[str, list[int]]
+SETUP = "set up"
+"""Context of lines that fixtures execute."""
 
 
 class _Loop:
-    """Replaces pytest's loop over the collected tests."""
+    """Replaces pytest's loop over the collected tests; tells when fixtures are set up."""
 
     def __init__(self, loop: Callable[[list[pytest.Item]], None]) -> None:
         self.loop = loop
@@ -65,6 +44,15 @@ class _Loop:
         session.config._tmp_path_factory.getbasetemp()  # type: ignore[attr-defined]  # one for all copies
         self.loop(session.items)
         return True
+
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_setup(self, item: pytest.Item) -> Iterator[None]:
+        tool = coverage.Coverage.current()
+        if tool:
+            tool.switch_context(SETUP)
+        yield
+        if tool:
+            tool.switch_context(item.nodeid)
 
 
 def in_session(tests: Iterable[str], loop: Callable[[list[pytest.Item]], None]) -> None:
@@ -110,7 +98,10 @@ def fork(work: Callable[[], bool], seconds: float) -> int:
         good = False
         try:
             if math.isfinite(seconds):
-                _limit(math.ceil(seconds))
+                limit = math.ceil(seconds)
+                resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+                signal.alarm(10 * limit)
+                silence()
             good = work()
         except Exception:
             traceback.print_exc()
@@ -119,77 +110,11 @@ def fork(work: Callable[[], bool], seconds: float) -> int:
     return process
 
 
-def _limit(seconds: int) -> None:
-    """Bound the time of this process and silence it."""
-    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    signal.alarm(10 * seconds)
-    silence = os.open(os.devnull, os.O_RDWR)
+def silence() -> None:
+    """Send what this process writes nowhere."""
+    nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in range(3):
-        os.dup2(silence, stream)
-
-
-def traces(items: list[pytest.Item], folders: list[str], seconds: float, kept: Path) -> dict[str, Trace]:
-    """Find out what each test executes, unless it is known.
-
-    Parameters
-    ----------
-    items : list[pytest.Item]
-        The tests.
-    folders : list[str]
-        Folders below the package whose lines are wanted.
-    seconds : float
-        Processor time after which a test is given up.
-    kept : Path
-        File with what is known, which is brought up to date.
-
-    Returns
-    -------
-    dict[str, Trace]
-        By the id of a test; without those that fail or take too long.
-    """
-    common = _digest(*sorted(SOURCE.rglob("*.py")), *sorted((ROOT / "tests").rglob("conftest.py"))) + str(folders)
-    known = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
-    digests = {path: common + _digest(path) for path in {item.path for item in items}}
-    found: dict[str, Any] = {}
-    for item in items:
-        digest = digests[item.path]
-        before = known.get(item.nodeid, {"digest": ""})
-        found[item.nodeid] = before if before["digest"] == digest else {"digest": digest, "trace": None}
-        if before["digest"] != digest:
-            trace = _trace(item, folders, seconds)
-            found[item.nodeid]["trace"] = asdict(trace) if trace else None
-    kept.write_text(json.dumps(found), encoding="utf-8")
-    return read_traces(kept)
-
-
-def read_traces(kept: Path) -> dict[str, Trace]:
-    """What is known of tests, by their ids, from a file of `traces`."""
-    known = json.loads(kept.read_text(encoding="utf-8"))
-    return {test: Trace(**each["trace"]) for test, each in known.items() if each["trace"]}
-
-
-def _trace(item: pytest.Item, folders: list[str], seconds: float) -> Trace | None:
-    with tempfile.NamedTemporaryFile("r", encoding="utf-8") as answer:
-
-        def work() -> bool:
-            tool = coverage.Coverage(
-                data_file=None, config_file=False, include=[f"{SOURCE / folder}/*" for folder in folders]
-            )
-            tool.start()
-            good = passes([item])
-            tool.stop()
-            warnings.simplefilter("ignore")  # a test may execute nothing of the folders
-            data = tool.get_data()
-            lines = {Path(file).relative_to(ROOT).as_posix(): data.lines(file) for file in data.measured_files()}
-            Path(answer.name).write_text(json.dumps({"duration": time.process_time(), "lines": lines}), "utf-8")
-            return good
-
-        _, status = os.waitpid(fork(work, seconds), 0)
-        return Trace(**json.load(answer)) if status == 0 else None
-
-
-def _digest(*paths: Path) -> str:
-    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
+        os.dup2(nowhere, stream)
 
 
 def functions_of(files: Iterable[str]) -> dict[str, list[FunctionType]]:
@@ -218,13 +143,13 @@ def functions_of(files: Iterable[str]) -> dict[str, list[FunctionType]]:
     return functions
 
 
-def attempt(mutant: Mutant, functions: list[FunctionType], items: list[pytest.Item]) -> bool:
+def attempt(code: CodeType, functions: list[FunctionType], items: list[pytest.Item]) -> bool:
     """Put a change into the functions of an imported module and run tests.
 
     Parameters
     ----------
-    mutant : Mutant
-        A change inside a function.
+    code : CodeType
+        The changed module.
     functions : list[FunctionType]
         All functions of the file.
     items : list[pytest.Item]
@@ -235,19 +160,21 @@ def attempt(mutant: Mutant, functions: list[FunctionType], items: list[pytest.It
     bool
         Whether all of them pass.
     """
-    changed = {(code.co_qualname, code.co_firstlineno): code for code in _codes(_compiled(mutant))}
+    changed = {(each.co_qualname, each.co_firstlineno): each for each in _codes(code)}
     for function in functions:
         function.__code__ = changed[function.__code__.co_qualname, function.__code__.co_firstlineno]
     return passes(items)
 
 
-def attempt_at_import(mutant: Mutant, tests: list[str]) -> bool:
+def attempt_at_import(mutant: Mutant, code: CodeType, tests: list[str]) -> bool:
     """Import the package with a changed module and run tests.
 
     Parameters
     ----------
     mutant : Mutant
         The change.
+    code : CodeType
+        The changed module.
     tests : list[str]
         Ids of the tests.
 
@@ -256,7 +183,7 @@ def attempt_at_import(mutant: Mutant, tests: list[str]) -> bool:
     bool
         Whether all of them pass.
     """
-    path, code = str(ROOT / mutant.file), _compiled(mutant)
+    path = str(ROOT / mutant.file)
     original = importlib.machinery.SourceFileLoader.get_code
 
     def get_code(loader: importlib.machinery.SourceFileLoader, fullname: str) -> CodeType | None:
@@ -268,9 +195,13 @@ def attempt_at_import(mutant: Mutant, tests: list[str]) -> bool:
     return outcome == [True]
 
 
-def _compiled(mutant: Mutant) -> CodeType:
-    tree: ast.Module = next(tree for each, tree in mutants_of(ROOT / mutant.file, ROOT) if each.number == mutant.number)
-    return compile(tree, str(ROOT / mutant.file), "exec")
+def compiled(mutants: list[Mutant]) -> Iterator[tuple[Mutant, CodeType]]:
+    """Mutants in their order, which is that of their files, each with its changed module."""
+    for file, group in groupby(mutants, lambda mutant: mutant.file):
+        wanted = {mutant.number: mutant for mutant in group}
+        for each, tree in mutants_of(ROOT / file, ROOT):
+            if each.number in wanted:
+                yield wanted[each.number], compile(tree, str(ROOT / file), "exec")
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:

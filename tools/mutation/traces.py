@@ -1,0 +1,138 @@
+"""What each test executes, and how long it takes."""
+
+import hashlib
+import json
+import math
+import os
+import resource
+import signal
+import tempfile
+import time
+import warnings
+from collections import defaultdict
+from dataclasses import dataclass
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import coverage
+import pytest
+from tools.mutation.trial import ROOT, SETUP, SOURCE, fork, silence
+
+
+@dataclass
+class Trace:
+    """What a test does.
+
+    Attributes
+    ----------
+    duration : float
+        Processor time, s.
+    lines : dict[str, list[int]]
+        Lines that it executes, by file.
+    """
+
+    duration: float
+    lines: dict[str, list[int]]
+
+
+def traces(items: list[pytest.Item], folders: list[str], seconds: float, kept: Path) -> dict[str, Trace]:
+    """Find out what each test executes, unless it is known.
+
+    Parameters
+    ----------
+    items : list[pytest.Item]
+        The tests.
+    folders : list[str]
+        Folders below the package whose lines are wanted.
+    seconds : float
+        Processor time after which a test is given up.
+    kept : Path
+        File with what is known, which is brought up to date.
+
+    Returns
+    -------
+    dict[str, Trace]
+        By the id of a test; without those that fail or take too long.
+    """
+    common = _digest(*sorted(SOURCE.rglob("*.py")), *sorted((ROOT / "tests").rglob("conftest.py"))) + str(folders)
+    known = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    found: dict[str, Any] = {}
+    for path, group in groupby(items, lambda item: item.path):
+        tests, digest = list(group), common + _digest(path)
+        same = {item.nodeid: known[item.nodeid] for item in tests if item.nodeid in known}
+        if len(same) < len(tests) or any(each["digest"] != digest for each in same.values()):
+            same = {test: {"digest": digest, "trace": trace} for test, trace in _trace(tests, folders, seconds).items()}
+        found |= same
+    kept.write_text(json.dumps(found), encoding="utf-8")
+    return read_traces(kept)
+
+
+def read_traces(kept: Path) -> dict[str, Trace]:
+    """What is known of tests, by their ids, from a file of `traces`."""
+    known = json.loads(kept.read_text(encoding="utf-8"))
+    return {test: Trace(**each["trace"]) for test, each in known.items() if each["trace"]}
+
+
+def _trace(items: list[pytest.Item], folders: list[str], seconds: float) -> dict[str, Any]:
+    """Traces of the tests of a file, each as a dictionary, or None of those that fail or take too long.
+
+    A fixture may serve several tests: what the fixtures of the file execute counts for each of its tests.
+    """
+    with tempfile.NamedTemporaryFile("r", encoding="utf-8") as answer:
+
+        def work() -> bool:
+            silence()
+            wanted = [f"{SOURCE / folder}{below}" for folder in folders for below in ("", "/*", "/**/*")]
+            tool = coverage.Coverage(data_file=None, config_file=False, include=wanted)
+            tool.start()
+            durations = _durations(items, seconds)
+            tool.stop()
+            warnings.simplefilter("ignore")  # a file may execute nothing of the folders
+            lines = _lines(tool.get_data())
+            found = {
+                test: {"duration": duration, "lines": _joined(lines[SETUP], lines[test])}
+                if duration is not None
+                else None
+                for test, duration in durations.items()
+            }
+            Path(answer.name).write_text(json.dumps(found), "utf-8")
+            return True
+
+        os.waitpid(fork(work, math.inf), 0)
+        return dict(json.load(answer))
+
+
+def _durations(items: list[pytest.Item], seconds: float) -> dict[str, float | None]:
+    """Run tests; give the processor time of each, None where it fails or needs more than that many seconds."""
+
+    def stop(*_: object) -> None:
+        raise TimeoutError
+
+    signal.signal(signal.SIGXCPU, stop)
+    found: dict[str, float | None] = {}
+    for item, following in zip(items, [*items[1:], None], strict=True):
+        begun, failed = time.process_time(), item.session.testsfailed
+        resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(begun + seconds), resource.RLIM_INFINITY))
+        item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+        found[item.nodeid] = time.process_time() - begun if item.session.testsfailed == failed else None
+    return found
+
+
+def _lines(data: coverage.CoverageData) -> defaultdict[str, dict[str, list[int]]]:
+    """Executed lines by context and file."""
+    found: defaultdict[str, dict[str, list[int]]] = defaultdict(dict)
+    for path in data.measured_files():
+        file = Path(path).relative_to(ROOT).as_posix()
+        for line, contexts in data.contexts_by_lineno(path).items():
+            for context in contexts:
+                found[context].setdefault(file, []).append(line)
+    return found
+
+
+def _joined(one: dict[str, list[int]], other: dict[str, list[int]]) -> dict[str, list[int]]:
+    return {file: sorted({*one.get(file, []), *other.get(file, [])}) for file in one | other}
+
+
+def _digest(*paths: Path) -> str:
+    return hashlib.sha256(b"".join(path.read_bytes() for path in paths)).hexdigest()[:16]
