@@ -116,33 +116,40 @@ def test_forces_on_the_vectors_add_up_to_that_on_the_pulley(pulley: PulleyState,
     assert totals.friction_power > 0.0
 
 
+@pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
 @pytest.mark.parametrize("arm_to_rim", [False, True], ids=["point", "rim"])
 @pytest.mark.parametrize("speed", [90.0, -90.0])
 def test_sums_along_a_chord_are_the_integrals_of_its_laws(
-    pulley: PulleyState, law: ContactLaw, speed: float, arm_to_rim: bool
+    pulley: PulleyState, law: ContactLaw, speed: float, arm_to_rim: bool, follow_zone: bool
 ) -> None:
     """A straight belt, 3 mm deep, that is pressed in at 0.5 m/s while the rim slides on it at 9 m/s: friction mu f_n.
 
-    Lengths count in the unstretched belt, here of 80 % of what lies there.
+    Lengths count in the unstretched belt, here 80 % of what lies there.  The published rule takes those of its points
+    over the whole element that touch.
     """
-    pulley, law = pulley._replace(speed=speed), law._replace(arm_to_rim=arm_to_rim)
+    pulley, law = pulley._replace(speed=speed), law._replace(arm_to_rim=arm_to_rim, follow_zone=follow_zone)
     height, ends, velocity = 0.097, np.array([-0.05, 0.06]), np.array([0.1, -0.5])
     work = contact_workspace(2, 2)
     control = np.stack([pulley.center_x + ends, np.full(2, pulley.center_y + height)], axis=1)
     curve = Curve(control, np.tile(velocity, (2, 1)), np.eye(2), 0.8 * float(np.ptp(ends)))
-    totals = contact_force(curve, pulley, law, gauss_points(12), 0.0, 0.0, work)
+    rule = gauss_points(12)
+    totals = contact_force(curve, pulley, law, rule, 0.0, 0.0, work)
 
     half = np.sqrt(pulley.radius**2 - height**2)
-    places, weights = np.polynomial.legendre.leggauss(40)
-    s, share = half * places, 0.8 * half * weights
+    if follow_zone:
+        places, weights = np.polynomial.legendre.leggauss(40)
+        s, share = half * places, 0.8 * half * weights
+    else:
+        s, share = ends[0] + np.ptp(ends) * rule.points, curve.length * rule.weights
+        s, share = s[np.abs(s) < half], share[np.abs(s) < half]
     distance = np.hypot(s, height)
-    normal = np.stack([s, np.full(40, height)], axis=1) / distance[:, None]
+    normal = np.stack([s, np.full(s.size, height)], axis=1) / distance[:, None]
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     depth, sinking = pulley.radius - distance, -normal @ velocity
     pressure = law.stiffness * depth + law.damping * sinking
     friction = np.sign(speed) * law.friction * pressure
     force = pressure[:, None] * normal + friction[:, None] * tangent
-    arm = np.full(40, pulley.radius) if arm_to_rim else distance
+    arm = np.full(s.size, pulley.radius) if arm_to_rim else distance
     toward_end = (s - ends[0]) / np.ptp(ends)
     expected = ContactTotals(
         moment=-share @ (arm * friction),
@@ -195,3 +202,42 @@ def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw) -> None:
     assert again == first
     for name in ("force", "by_speed", "moment", *BLOCKS):
         np.testing.assert_array_equal(work[name], kept[name])
+
+
+def test_an_element_that_touches_all_along_is_its_own_zone(pulley: PulleyState, law: ContactLaw) -> None:
+    vectors, rates = sunk(pulley, 3)
+    out = vectors - [pulley.center_x, pulley.center_y]
+    vectors = vectors - 0.1 * out  # 9 mm deeper
+    zone, whole = (
+        act(vectors, rates, np.eye(4), pulley, law._replace(follow_zone=follow), 1.0, 300.0) for follow in (True, False)
+    )
+    assert zone[1] == whole[1]
+    assert whole[1].penalty_energy > 0.0
+    for name in ("force", "by_speed", "moment", *BLOCKS):
+        np.testing.assert_array_equal(zone[0][name], whole[0][name])
+
+
+@pytest.mark.parametrize(
+    "depths", [(-4.0, 6.0), (6.0, -4.0), (6.0, 6.0), (-4.0, -4.0)], ids=["in", "out", "all", "dip"]
+)
+@pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (1.0, 300.0)])
+def test_tangent_along_a_direction_where_either_end_is_inside(
+    pulley: PulleyState, law: ContactLaw, depths: tuple[float, float], by_position: float, by_velocity: float
+) -> None:
+    """Ends of an element that belong to its zone stay where they are; those of the zone within the element move."""
+    vectors, rates = sunk(pulley, 3)
+    out = vectors - [pulley.center_x, pulley.center_y]
+    vectors = vectors - np.linspace(*depths, 4)[:, None] * 1e-3 * out / pulley.radius
+    work, _ = act(vectors, rates, np.eye(4), pulley, law, by_position, by_velocity)
+    ends = work.zone.intervals[0]
+    assert (ends[0] == 0.0, ends[1] == 1.0) == (depths[0] > 0.0, depths[1] > 0.0)
+    direction, step = np.random.default_rng(3).normal(size=(4, 2)), 1e-8
+    there, back = (
+        answer(vectors + s * by_position * direction, rates + s * by_velocity * direction, np.eye(4), pulley, law)
+        for s in (step, -step)
+    )
+    x, y = direction.T
+    forces = np.stack([work.xx @ x + work.xy @ y, work.yx @ x + work.yy @ y], axis=1)
+    expected = np.append(forces.ravel(), np.sum(work.moment * direction))
+    scale = np.append(np.full(8, np.abs(forces).max()), 1e-3 * np.abs(forces).max())
+    np.testing.assert_allclose((there - back) / (2.0 * step) / scale, expected / scale, atol=1e-5)
