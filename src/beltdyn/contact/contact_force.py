@@ -31,9 +31,9 @@ class ContactTotals(NamedTuple):
     """Force on the pulley, N."""
     hub_y: float
     penalty_energy: float
-    """Energy stored in the penalty springs, k_p d^2 / 2 over the touching length, J."""
+    """Energy stored in the penalty springs over the touching length, J; k_p d^2 / 2 a metre of linear ones."""
     damping_power: float
-    """Power lost in the contact dampers, (f_n - k_p d) dd/dt over the touching length, W."""
+    """Power lost in the contact dampers: f_n without its elastic part times dd/dt, over the touching length, W."""
     friction_power: float
     """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - arm omega), W."""
 
@@ -95,7 +95,7 @@ def contact_force(
     pulley
         The pulley.
     law
-        Contact constants; `law.follow_zone` places the points on the touching intervals instead of the whole element.
+        Laws of contact; `law.follow_zone` places the points on the touching intervals instead of the whole element.
     rule
         Points and weights.
     by_position, by_velocity : float
@@ -133,12 +133,12 @@ def contact_force(
             force = point_force(here, pulley, law)
             fill_shape_functions(curve.basis, work.weights, work.functions)
             _add_pairs(work.force, work.functions, weight * force.x, weight * force.y)
-            totals = _add_point(totals, weight, here, force, pulley, law)
+            totals = _add_point(totals, weight, here, force, pulley)
             if wanted:
-                tangent = point_tangent(here, force, law, by_position, by_velocity)
+                tangent = point_tangent(here, force, by_position, by_velocity)
                 _spread(weight, tangent, here, force.by_slip * pulley.radius, work)
             if moving:
-                drift = _drift(xi, curve, here, force, law, work)
+                drift = _drift(xi, curve, here, force, work)
                 _add_end(work, 0, -share, weight * (1.0 - place), force, drift)
                 _add_end(work, 1, share, weight * place, force, drift)
         if moving and start > 0.0:
@@ -162,17 +162,16 @@ def _clear(work: np.record) -> None:
 
 @kernel(inline=True)
 def _add_point(
-    totals: ContactTotals, weight: float, here: Approach, force: PointForce, pulley: PulleyState, law: ContactLaw
+    totals: ContactTotals, weight: float, here: Approach, force: PointForce, pulley: PulleyState
 ) -> ContactTotals:
     """Sums with those of one more point, which stands for a length of belt."""
-    spring = law.stiffness * here.penetration
     return ContactTotals(
         totals.moment + weight * pulley_moment(force.arm, force.friction),
         totals.moment_by_speed + weight * pulley_moment(force.arm, -force.by_slip * pulley.radius),
         totals.hub_x - weight * force.x,
         totals.hub_y - weight * force.y,
-        totals.penalty_energy + 0.5 * weight * spring * here.penetration,
-        totals.damping_power - weight * (force.normal - spring) * here.radial,
+        totals.penalty_energy + weight * force.normal.energy,
+        totals.damping_power - weight * (force.normal.force - force.normal.elastic) * here.radial,
         totals.friction_power - weight * force.friction * (here.circumferential - force.arm * pulley.speed),
     )
 
@@ -206,16 +205,14 @@ def _add_block(block: FloatArray, shape: FloatArray, factor: float) -> None:
 
 
 @kernel(inline=True)
-def _drift(
-    xi: float, curve: Curve, here: Approach, force: PointForce, law: ContactLaw, work: np.record
-) -> tuple[float, float, float]:
+def _drift(xi: float, curve: Curve, here: Approach, force: PointForce, work: np.record) -> tuple[float, float, float]:
     """Change of force and moment along the curve; the shape functions' own goes to `work.function_rates`."""
     fill_bernstein_rates(xi, work.rates)
     fill_shape_functions(curve.basis, work.rates, work.function_rates)
     rx, ry = combine(curve.control, work.rates)
     sx, sy = combine(curve.velocity, work.rates)
-    place = point_tangent(here, force, law, 1.0, 0.0)
-    motion = point_tangent(here, force, law, 0.0, 1.0)
+    place = point_tangent(here, force, 1.0, 0.0)
+    motion = point_tangent(here, force, 0.0, 1.0)
     return (
         place.xx * rx + place.xy * ry + motion.xx * sx + motion.xy * sy,
         place.yx * rx + place.yy * ry + motion.yx * sx + motion.yy * sy,

@@ -1,23 +1,18 @@
-"""Constants of the contact between belt and pulleys, and the state of one pulley as contact sees it."""
+"""Laws of the contact between belt and pulleys, and the state of one pulley as contact sees it."""
 
 from typing import NamedTuple
 
+from beltdyn.contact.friction import FrictionParameters
+from beltdyn.contact.normal import NormalParameters
+
 
 class ContactLaw(NamedTuple):
-    """Penalty and friction constants."""
+    """Laws of normal force and friction with their parameters, and how contact is integrated."""
 
-    stiffness: float
-    """k_p, N/m per m of belt, that is N/m^2."""
-    damping: float
-    """c_p, N s/m per m of belt."""
-    friction: float
-    """Coulomb coefficient mu."""
-    friction_law: int
-    """Number of the friction law in `beltdyn.contact.friction.LAWS`."""
-    creep: float
-    """Parameter of the friction law: nu_s in kg/(m s), or the creep velocity in m/s."""
-    may_pull: bool
-    """Whether f_n may become negative, as Eq. 17 is printed."""
+    normal: NormalParameters
+    """Parameters of the law of the normal force; their type says which law it is."""
+    friction: FrictionParameters
+    """Parameters of the friction law, alike."""
     follow_zone: bool
     """Integrate over the touching part of an element only; False is the published rule, over the whole element."""
     arm_to_rim: bool = False
@@ -35,6 +30,8 @@ class PulleyState(NamedTuple):
     """R, m."""
     speed: float
     """Angular speed omega, rad/s, counter-clockwise positive."""
+    friction: float
+    """Coulomb coefficient mu."""
     velocity_x: float = 0.0
     """Velocity of its centre, m/s."""
     velocity_y: float = 0.0

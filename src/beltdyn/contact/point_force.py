@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from beltdyn.contact.friction import friction_force
 from beltdyn.contact.law import ContactLaw, PulleyState
-from beltdyn.contact.normal_force import normal_force
+from beltdyn.contact.normal import NormalForce, normal_force
 from beltdyn.contact.penetration import Approach, slip_velocity
 from beltdyn.contact.pulley_moment import moment_arm
 from beltdyn.kernel import kernel
@@ -22,15 +22,13 @@ from beltdyn.kernel import kernel
 class PointForce(NamedTuple):
     """Contact force at a point, N per m of reference length, and the slopes of its laws."""
 
-    normal: float
+    normal: NormalForce
     """f_n along n (Eq. 17)."""
     friction: float
     """f_t along t (Eq. 20)."""
     x: float
     """The force f_n n + f_t t on the belt."""
     y: float
-    active: float
-    """1 where the normal force acts, 0 where the belt leaves so fast that it does not."""
     by_slip: float
     """df_t / d(slip velocity), N s/m^2."""
     by_normal: float
@@ -63,17 +61,17 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
     pulley
         The pulley.
     law
-        Contact constants.
+        Laws of contact.
     """
-    normal, active = normal_force(here.penetration, -here.radial, law)
-    friction, by_slip, by_normal = friction_force(slip_velocity(here, pulley), normal, law)
+    normal = normal_force(law.normal, here.penetration, -here.radial)
+    slip = slip_velocity(here, pulley)
+    friction, by_slip, by_normal = friction_force(law.friction, slip, normal.force, pulley.friction)
     arm, arm_slope = moment_arm(here, pulley, law)
     return PointForce(
         normal,
         friction,
-        normal * here.normal_x - friction * here.normal_y,
-        normal * here.normal_y + friction * here.normal_x,
-        active,
+        normal.force * here.normal_x - friction * here.normal_y,
+        normal.force * here.normal_y + friction * here.normal_x,
         by_slip,
         by_normal,
         arm,
@@ -82,28 +80,26 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
 
 
 @kernel
-def point_tangent(
-    here: Approach, force: PointForce, law: ContactLaw, by_position: float, by_velocity: float
-) -> PointTangent:
+def point_tangent(here: Approach, force: PointForce, by_position: float, by_velocity: float) -> PointTangent:
     """Derivative of force and moment: by_position d/d(position) + by_velocity d/d(velocity).
 
     Parameters
     ----------
-    here, law
-        As for `point_force`.
+    here
+        How the point stands and moves.
     force
-        Its result.
+        Result of `point_force`.
     by_position, by_velocity
         Factors of the two derivatives.
     """
     curvature = 1.0 / here.distance
-    sink = -force.active * (by_position * law.stiffness + by_velocity * law.damping)
-    sweep = -force.active * by_position * law.damping * here.circumferential * curvature
+    sink = -(by_position * force.normal.by_penetration + by_velocity * force.normal.by_rate)
+    sweep = -by_position * force.normal.by_rate * here.circumferential * curvature
     drag = by_velocity - by_position * here.radial * curvature
     friction_n = force.by_normal * sink
     friction_t = force.by_normal * sweep + force.by_slip * drag
     nn, nt = sink, sweep - by_position * force.friction * curvature
-    tn, tt = friction_n, friction_t + by_position * force.normal * curvature
+    tn, tt = friction_n, friction_t + by_position * force.normal.force * curvature
     moment_n = -by_position * force.arm_slope * force.friction - force.arm * friction_n
     moment_t = -force.arm * friction_t
     nx, ny = here.normal_x, here.normal_y

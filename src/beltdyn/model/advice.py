@@ -153,8 +153,8 @@ def _penetration_warnings(drive: Drive, installation: Installation) -> list[str]
 
 def _creep_warnings(drive: Drive, installation: Installation) -> list[str]:
     """Compare the slip velocity at which friction is fully used with one that time steps can follow."""
-    law, pressures = drive.contact.law, installation.tension / drive.radii
-    fastest = float(np.max(law.saturation(pressures, drive.frictions, drive.contact.creep)))
+    law, pressures = drive.contact.friction_parameters, installation.tension / drive.radii
+    fastest = float(np.max(law.saturation(pressures, drive.frictions)))
     if not 0 < fastest < _SLOWEST_CREEP:
         return []
     remedy = law.softened(float(np.max(drive.frictions * pressures)), _SLOWEST_CREEP)

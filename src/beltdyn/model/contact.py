@@ -1,23 +1,21 @@
 """The contact between belt and pulleys: penalty normal force and creep-rate friction."""
 
-from typing import Literal, Self
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, create_model, model_validator
 
-from beltdyn.contact.friction import LAWS, FrictionLaw
+from beltdyn.contact.friction import LAWS as FRICTION_LAWS
+from beltdyn.contact.friction import FrictionLaw, FrictionParameters
+from beltdyn.contact.normal import LAWS as NORMAL_LAWS
+from beltdyn.contact.normal import NormalLaw, NormalParameters
+from beltdyn.contact.parameter import Parameter
 from beltdyn.parts.part import Part, computed
-from beltdyn.parts.quantity import Count, CreepRate, Length, LineDamping, LineStiffness, Ratio, Speed
-
-_LAWS = {law.name: law for law in LAWS}
+from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness, Ratio, quantity
 
 
-class Contact(Part):
-    """Penalty contact with tri-linear friction, the same on every pulley.
-
-    The friction law ``"force_slope"`` (as published) takes `creep_rate_factor`, the slope of the friction
-    force over the slip velocity; ``"coefficient_slope"`` takes `creep_velocity`, the slip velocity at which
-    the coefficient of friction is reached.
-    """
+class Penalty(Part):
+    """Stiffness and damping of contact, which every law of the normal force has."""
 
     stiffness: LineStiffness = computed(
         gt=0, description="the normal force per metre of belt and metre of penetration, in N/m^2"
@@ -30,17 +28,53 @@ class Contact(Part):
     damping: LineDamping = Field(
         0.0, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
     )
-    normal_law: Literal["no_pull", "published"] = Field(
-        "no_pull", description="the normal force: never pulling, or as published, which may pull where the belt leaves"
-    )
-    friction: Ratio = Field(ge=0, description="the coefficient of friction")
-    friction_law: Literal["force_slope", "coefficient_slope"] = Field("force_slope", description="the friction law")
-    creep_rate_factor: CreepRate | None = Field(
-        None, gt=0, description="the slope of the friction force over the slip velocity, in kg/(m*s)"
-    )
-    creep_velocity: Speed | None = Field(
-        None, gt=0, description="the slip velocity at which friction is fully used, in m/s"
-    )
+
+
+def _choice(laws: Iterable[str], default: str, meaning: str) -> Any:
+    """Field that names one of several laws."""
+    return Literal[tuple(sorted(laws, key=lambda name: (name != default, name)))], Field(default, description=meaning)
+
+
+def _keys(laws: Mapping[str, FrictionLaw] | Mapping[str, NormalLaw]) -> dict[str, Any]:
+    """Fields of the parameters of all laws."""
+    return {parameter.name: _field(parameter) for law in laws.values() for parameter in law.parameters}
+
+
+def _field(parameter: Parameter) -> Any:
+    """Field of a parameter; None where its law is not chosen."""
+    meaning = f"{parameter.meaning}, in {parameter.unit}" if parameter.unit else parameter.meaning
+    number = Annotated[float, quantity(parameter.unit)]
+    return number | None, Field(None, gt=parameter.above, description=meaning)
+
+
+_NORMAL = "the normal force: never pulling, or as published, which may pull where the belt leaves"
+_Laws: Any = create_model(
+    "_Laws",
+    __base__=Penalty,
+    normal_law=_choice(NORMAL_LAWS, "no_pull", _NORMAL),
+    **_keys(NORMAL_LAWS),
+    friction=(Ratio, Field(ge=0, description="the coefficient of friction")),
+    friction_law=_choice(FRICTION_LAWS, "force_slope", "the friction law"),
+    **_keys(FRICTION_LAWS),
+)
+
+
+class Contact(_Laws, Penalty):
+    """Penalty contact with friction, the same on every pulley.
+
+    The laws of normal force and friction have parameters of their own. The friction law ``"force_slope"`` (as
+    published) takes `creep_rate_factor`, the slope of the friction force over the slip velocity;
+    ``"coefficient_slope"`` takes `creep_velocity`, the slip velocity at which the coefficient of friction is reached.
+    """
+
+    if TYPE_CHECKING:  # the fields that the laws make
+        normal_law: str
+        friction: float
+        friction_law: str
+
+        def __init__(self, **keys: Any) -> None: ...
+        def __getattr__(self, parameter: str) -> Any: ...
+
     moment_arm: Literal["point", "rim"] = Field(
         "point",
         description="the arm of friction about the shaft: to the belt's point, as published, or the effective radius, "
@@ -67,24 +101,32 @@ class Contact(Part):
         return self
 
     @model_validator(mode="after")
-    def _has_the_slope_of_its_law(self) -> Self:
-        for law, key in ((law.name, law.parameter) for law in LAWS):
-            given = getattr(self, key) is not None
-            if law == self.friction_law and not given:
-                raise ValueError(f'{key} is missing: the friction law "{law}" needs it. Give {key}')
-            if law != self.friction_law and given:
-                raise ValueError(
-                    f'{key} belongs to the friction law "{law}", not to "{self.friction_law}". '
-                    f'Remove it, or set friction_law = "{law}"'
-                )
+    def _has_the_parameters_of_its_laws(self) -> Self:
+        for kind, laws in (("normal", NORMAL_LAWS), ("friction", FRICTION_LAWS)):
+            chosen = getattr(self, f"{kind}_law")
+            needed = [parameter.name for parameter in laws[chosen].parameters]
+            for law, key in ((law.name, parameter.name) for law in laws.values() for parameter in law.parameters):
+                if key not in needed and getattr(self, key) is not None:
+                    raise ValueError(
+                        f'{key} belongs to the {kind} law "{law}", not to "{chosen}". '
+                        f'Remove it, or set {kind}_law = "{law}"'
+                    )
+            for key in needed:
+                if getattr(self, key) is None:
+                    raise ValueError(f'{key} is missing: the {kind} law "{chosen}" needs it. Give {key}')
         return self
 
     @property
-    def law(self) -> FrictionLaw:
-        """The friction law."""
-        return _LAWS[self.friction_law]
+    def normal_parameters(self) -> NormalParameters:
+        """Parameters of the law of the normal force, whose type says which law it is."""
+        law = NORMAL_LAWS[self.normal_law]
+        own = (getattr(self, key.name) for key in law.parameters)
+        parameters: NormalParameters = law.record(self.stiffness, self.damping, *own)
+        return parameters
 
     @property
-    def creep(self) -> float:
-        """Parameter of the friction law: `creep_rate_factor` in kg/(m s), or `creep_velocity` in m/s."""
-        return float(getattr(self, self.law.parameter))
+    def friction_parameters(self) -> FrictionParameters:
+        """Parameters of the friction law, whose type says which law it is, and which know where it saturates."""
+        law = FRICTION_LAWS[self.friction_law]
+        parameters: FrictionParameters = law.record(*(getattr(self, key.name) for key in law.parameters))
+        return parameters

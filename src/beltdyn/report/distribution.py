@@ -73,7 +73,7 @@ def distribution(run: Run, pulley: int) -> Distribution:
         place=angle / drive.path.wrap_angles[pulley],
         normal=normal,
         friction=friction,
-        gliding=sliding(run).values[wrap.points],
+        gliding=sliding(run)[wrap.points],
     )
 
 

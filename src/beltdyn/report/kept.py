@@ -20,11 +20,8 @@ CURVES = (
 )
 """Variables that are kept at all outputs."""
 
-AT_END = ("normal_force", "friction_force", "contact_pulley", "contact_position")
+AT_END = ("normal_force", "friction_force", "slip_velocity", "contact_pulley", "contact_position")
 """Variables along the belt that are kept at their last instant."""
-
-COULOMB = 0.999
-"""Part of Coulomb's limit from which on a point counts as sliding."""
 
 _FREE = -1
 
@@ -112,16 +109,18 @@ def _mean_where(values: FloatArray, chosen: BoolArray) -> FloatArray:
     return np.where(counts, (values * chosen).sum(axis=1) / np.maximum(counts, 1), np.nan)
 
 
-def sliding(run: Run) -> xr.DataArray:
-    """Where friction is what Coulomb's law allows: true of points that slide, and of those that do not touch.
+def sliding(run: Run) -> BoolArray:
+    """Where the friction law saturates; of points that do not touch it says nothing.
 
     Parameters
     ----------
     run : Run
         A run, or what was kept of it.
     """
-    friction, normal = (abs(run.dataset[f"{kind}_force"]) for kind in ("friction", "normal"))
-    return friction >= COULOMB * run.drive.contact.friction * normal
+    data, drive = run.dataset, run.drive
+    friction = drive.frictions[data["contact_pulley"].values]
+    creep = drive.contact.friction_parameters.saturation(data["normal_force"].values, friction)
+    return np.asarray(np.abs(data["slip_velocity"].values) >= creep)
 
 
 def mixed_elements(run: Run) -> IntArray:
@@ -132,7 +131,7 @@ def mixed_elements(run: Run) -> IntArray:
     run : Run
         A run, or what was kept of it.
     """
-    touches, slides = run.dataset["contact_pulley"].values != _FREE, sliding(run).values
+    touches, slides = run.dataset["contact_pulley"].values != _FREE, sliding(run)
     elements = (*slides.shape[:-1], -1, contact_points(run.drive.contact).points.size)
     some_slide, some_stick = (which.reshape(elements).any(axis=-1) for which in (touches & slides, touches & ~slides))
     return np.asarray((some_slide & some_stick).sum(axis=-1))

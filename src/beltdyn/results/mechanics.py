@@ -117,7 +117,7 @@ def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: Int
     drive : Drive
         Friction.
     """
-    creep = drive.contact.law.saturation(normal, drive.frictions[touched], drive.contact.creep)
+    creep = drive.contact.friction_parameters.saturation(normal, drive.frictions[touched])
     beyond = np.sign(slip_velocity) * np.maximum(np.abs(slip_velocity) - creep, 0.0)
     return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.contact.friction import LAWS
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import System
 
@@ -58,7 +57,7 @@ class FlutterWatch:
     """
 
     def __init__(self, system: System) -> None:
-        angular_frequency = sqrt(system.law.stiffness / system.element.section.mass)
+        angular_frequency = sqrt(system.law.normal.stiffness / system.element.section.mass)
         self._system = system
         self._memory = _PERIODS * 2.0 * np.pi / angular_frequency
         self._shift = _SHIFT * angular_frequency
@@ -113,7 +112,7 @@ class FlutterWatch:
         """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""
         system = self._system
         normal, friction = seen["normal_force"], system.pulleys.friction[seen["contact_pulley"]]
-        saturation = LAWS[system.law.friction_law].saturation(normal, friction, system.law.creep)
+        saturation = system.law.friction.saturation(normal, friction)
         points = (normal > 0.0) & (friction > 0.0) & (np.abs(seen["slip_velocity"]) >= saturation)
         result = np.zeros(len(points))
         needed = _ELEMENTS * system.control.shape[1] * system.contact.points.size

@@ -164,7 +164,8 @@ def _at_rest(drive: Drive) -> Rest:
         state = _lying(drive, system, installation, way[0])
         try:
             for factor in way:
-                law = system.law._replace(stiffness=factor * system.law.stiffness)
+                normal = system.law.normal
+                law = system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness))
                 state = find_equilibrium(system._replace(law=law), state).state
             return _looked_at(drive, system, state)
         except ConvergenceError as error:

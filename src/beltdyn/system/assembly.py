@@ -19,7 +19,7 @@ from beltdyn.system.arrays import Loads, RingMatrix, System
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads
 from beltdyn.system.discretization import element_kind
 from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
-from beltdyn.system.pulley_state import law_of, pulley_state
+from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
 
@@ -210,7 +210,7 @@ def _contact(
             totals = contact_force(
                 piece,
                 pulley,
-                law_of(system, p),
+                system.law,
                 system.contact,
                 by_position if last == 1 else 0.0,
                 by_velocity if last == 1 else 1.0,

@@ -6,8 +6,9 @@ from typing import Literal
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction import LAWS
+from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw
+from beltdyn.contact.normal import NoPull
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
@@ -159,16 +160,12 @@ def contact_points(contact: Contact | None) -> Quadrature:
 
 
 def _contact_law(contact: Contact | None) -> ContactLaw:
-    """Constants of contact; a law that is never used where there is none."""
+    """Laws of contact; some that are never used where there is none."""
     if contact is None:
-        return ContactLaw(1.0, 0.0, 0.0, 0, 1.0, False, True, False)
+        return ContactLaw(NoPull(1.0, 0.0), ForceSlope(1.0), True)
     return ContactLaw(
-        stiffness=contact.stiffness,
-        damping=contact.damping,
-        friction=contact.friction,
-        friction_law=LAWS.index(contact.law),
-        creep=contact.creep,
-        may_pull=contact.normal_law == "published",
+        normal=contact.normal_parameters,
+        friction=contact.friction_parameters,
         follow_zone=contact.sampling == "distributed" and contact.integration == "zone",
         arm_to_rim=contact.moment_arm == "rim",
     )

@@ -16,7 +16,7 @@ from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import Loads, System
 from beltdyn.system.assembly import fill_control, gather
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
-from beltdyn.system.pulley_state import law_of, pulley_state, tensioner_coordinate
+from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
 from beltdyn.system.state_loads import loads_at
 
 
@@ -198,9 +198,9 @@ def _touch_points(
         x, y = result.contact_position[k, row, 0], result.contact_position[k, row, 1]
         here = approach(x, y, vx, vy, pulley)
         if here.penetration >= 0.0:
-            force = point_force(here, pulley, law)
+            force = point_force(here, pulley, system.law)
             result.contact_pulley[k, row] = number
-            result.normal_force[k, row] = force.normal
+            result.normal_force[k, row] = force.normal.force
             result.friction_force[k, row] = force.friction
             result.slip_velocity[k, row] = slip_velocity(here, pulley)
 

@@ -1,7 +1,7 @@
 """Pulleys as contact meets them at a state: turning, and moving where a tensioner carries them."""
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.law import PulleyState
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import System
@@ -30,23 +30,8 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     carrier = item.carrier
     speed = velocity[system.first_body + pulley]
     if carrier < 0:
-        return PulleyState(item.center[0], item.center[1], item.radius, speed, 0.0, 0.0)
+        return PulleyState(item.center[0], item.center[1], item.radius, speed, item.friction, 0.0, 0.0)
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
-    return PulleyState(center.x, center.y, item.radius, speed, velocity[at] * center.dx, velocity[at] * center.dy)
-
-
-@kernel
-def law_of(system: System, pulley: int) -> ContactLaw:
-    """Contact constants on a pulley."""
-    law = system.law
-    return ContactLaw(
-        law.stiffness,
-        law.damping,
-        system.pulleys[pulley].friction,
-        law.friction_law,
-        law.creep,
-        law.may_pull,
-        law.follow_zone,
-        law.arm_to_rim,
-    )
+    vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
+    return PulleyState(center.x, center.y, item.radius, speed, item.friction, vx, vy)

@@ -7,19 +7,31 @@ import pytest
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction import LAWS
+from beltdyn.contact.friction import LAWS, CoefficientSlope, ForceSlope, FrictionParameters
 from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.normal import NoPull
 
 
 @pytest.fixture(scope="session")
 def pulley() -> PulleyState:
-    return PulleyState(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0)
+    return PulleyState(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0, friction=0.5)
 
 
-@pytest.fixture(scope="session", params=range(len(LAWS)), ids=[law.name for law in LAWS])
-def law(request: pytest.FixtureRequest) -> ContactLaw:
-    creep = {"creep_rate_factor": 300.0, "creep_velocity": 0.4}[LAWS[request.param].parameter]
-    return ContactLaw(1e6, 40.0, 0.5, request.param, creep, may_pull=False, follow_zone=True, arm_to_rim=False)
+FRICTION: dict[str, FrictionParameters] = {
+    "force_slope": ForceSlope(300.0),
+    "coefficient_slope": CoefficientSlope(0.4),
+}
+
+
+@pytest.fixture(scope="session", params=sorted(LAWS))
+def friction(request: pytest.FixtureRequest) -> FrictionParameters:
+    """Every friction law."""
+    return FRICTION[request.param]
+
+
+@pytest.fixture(scope="session")
+def law(friction: FrictionParameters) -> ContactLaw:
+    return ContactLaw(NoPull(1e6, 40.0), friction, follow_zone=True, arm_to_rim=False)
 
 
 @pytest.fixture(scope="session")

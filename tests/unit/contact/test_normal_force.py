@@ -1,9 +1,27 @@
-"""The penalty force (Eq. 17) by cases, with the departure that a damper never pulls the belt."""
+"""Laws of the normal force (Eq. 17): by cases, energy and derivatives; a damper pulls as published, or never."""
+
+from itertools import product
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from beltdyn.contact.law import ContactLaw
-from beltdyn.contact.normal_force import normal_force
+from beltdyn.contact.normal import LAWS, NoPull, NormalParameters, Published, normal_force
+
+STIFFNESS, DAMPING = 1e6, 40.0
+NO_PULL, PUBLISHED = NoPull(STIFFNESS, DAMPING), Published(STIFFNESS, DAMPING)
+RATES = st.floats(-5.0, 5.0)
+DEPTHS = st.floats(0.0, 1e-3)
+
+
+@pytest.fixture(params=[NO_PULL, PUBLISHED], ids=["no_pull", "published"])
+def law(request: pytest.FixtureRequest) -> NormalParameters:
+    parameters: NormalParameters = request.param
+    return parameters
+
+
+def test_every_law_is_tried() -> None:
+    assert {law.record for law in LAWS.values()} == {NoPull, Published}
 
 
 @pytest.mark.parametrize(
@@ -19,18 +37,34 @@ from beltdyn.contact.normal_force import normal_force
     ],
     ids=["free", "touching", "spring", "approaching", "leaving", "leaving fast", "impact"],
 )
-def test_cases(law: ContactLaw, penetration: float, rate: float, force: float) -> None:
-    assert normal_force(penetration, rate, law) == pytest.approx((force, float(force > 0.0)))
+def test_cases(penetration: float, rate: float, force: float) -> None:
+    assert normal_force(NO_PULL, penetration, rate).force == pytest.approx(force)
 
 
-def test_force_has_no_jump_where_the_damper_lets_go(law: ContactLaw) -> None:
+def test_force_has_no_jump_where_the_damper_lets_go() -> None:
     penetration = 1e-4
-    rate = -law.stiffness * penetration / law.damping
-    assert normal_force(penetration, rate * (1 - 1e-9), law)[0] == pytest.approx(0.0, abs=1e-6)
+    rate = -STIFFNESS * penetration / DAMPING
+    assert normal_force(NO_PULL, penetration, rate * (1 - 1e-9)).force == pytest.approx(0.0, abs=1e-6)
 
 
-def test_the_published_law_pulls_a_belt_that_leaves_fast(law: ContactLaw) -> None:
-    published = law._replace(may_pull=True)
-    assert normal_force(1e-4, -2.6, published) == pytest.approx((-4.0, 1.0))
-    assert normal_force(1e-4, -2.0, published) == normal_force(1e-4, -2.0, law)
-    assert normal_force(-1e-9, -2.6, published) == (0.0, 0.0)
+def test_the_published_law_pulls_a_belt_that_leaves_fast() -> None:
+    assert normal_force(PUBLISHED, 1e-4, -2.6).force == pytest.approx(-4.0)
+    assert normal_force(PUBLISHED, 1e-4, -2.0) == normal_force(NO_PULL, 1e-4, -2.0)
+    assert normal_force(PUBLISHED, -1e-9, -2.6).force == 0.0
+
+
+@pytest.mark.parametrize(("penetration", "rate"), list(product((1e-5, 1e-4), (-3.0, -1.0, 0.0, 2.0))))
+def test_derivatives(law: NormalParameters, penetration: float, rate: float) -> None:
+    force, step = normal_force(law, penetration, rate), 1e-8
+    deeper, less = (normal_force(law, penetration + s, rate) for s in (step, -step))
+    faster, slower = (normal_force(law, penetration, rate + s) for s in (step, -step))
+    rounding = 1e-6  # 1e-14 of 100 N/m over the step
+    assert force.by_penetration == pytest.approx((deeper.force - less.force) / (2 * step), rel=rounding, abs=1.0)
+    assert force.by_rate == pytest.approx((faster.force - slower.force) / (2 * step), abs=1e-5)
+    assert force.elastic == pytest.approx((deeper.energy - less.energy) / (2 * step), rel=rounding)
+
+
+@given(DEPTHS, RATES)
+def test_the_damper_only_takes_energy(penetration: float, rate: float) -> None:
+    force = normal_force(NO_PULL, penetration, rate)
+    assert (force.force - force.elastic) * rate >= 0.0

@@ -119,12 +119,14 @@ def test_without_compilation_kernels_run_as_python(monkeypatch: pytest.MonkeyPat
 
 
 _CALLER = """
+from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.normal import NoPull
 from beltdyn.contact.penetration import Approach
 from beltdyn.contact.point_force import point_force
-law = ContactLaw(1e7, 0.0, friction=1.2, friction_law=0, creep=1e5, may_pull=False, follow_zone=True, arm_to_rim=False)
+law = ContactLaw(NoPull(1e7, 0.0), ForceSlope(1e5), follow_zone=True)
 here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "distance": 0.08})
-print(point_force(here, PulleyState(0.0, 0.0, 0.081, 0.0), law).normal)
+print(point_force(here, PulleyState(0.0, 0.0, 0.081, 0.0, 1.2), law).normal.force)
 """
 
 
@@ -151,7 +153,7 @@ def test_an_edited_law_acts_at_once_in_kernels_that_inline_it(tmp_path: Path) ->
         return float(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
 
     assert force() == force() == 1e4
-    law = copy / "contact" / "normal_force.py"
+    law = copy / "contact" / "normal" / "no_pull.py"
     text = law.read_text(encoding="utf-8")
     law.write_text(text.replace("law.stiffness * penetration", "3.0 * law.stiffness * penetration"), encoding="utf-8")
     assert force() == 3e4

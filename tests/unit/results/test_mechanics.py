@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import LAWS
+from beltdyn.contact.friction import CoefficientSlope, ForceSlope, FrictionParameters
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import (
     across,
@@ -27,15 +27,13 @@ from beltdyn.theory.capstan import tight_tension
 ROUNDING = 1e-9
 
 
-def serpentine(**contact: float | None) -> Any:
+def serpentine(friction: FrictionParameters | None = None) -> Any:
     """Three pulleys of which the belt's back touches the last, with as much of a drive as the formulas ask for."""
-    contact = {"creep_rate_factor": 1e3, "creep_velocity": None} | contact
-    law = next(law for law in LAWS if contact[law.parameter] is not None)
     return SimpleNamespace(
         pulleys=[SimpleNamespace(turning=turning) for turning in (1, 1, -1)],
         radii=np.array([0.1, 0.05, 0.02]),
         frictions=np.array([0.5, 1.0, 0.3]),
-        contact=SimpleNamespace(law=law, creep=contact[law.parameter]),
+        contact=SimpleNamespace(friction_parameters=friction or ForceSlope(1e3)),
         belt=SimpleNamespace(mass_per_length=0.2),
     )
 
@@ -87,15 +85,13 @@ def test_cells_share_out_the_belt(drive: Drive) -> None:
     assert cell[7] == pytest.approx(0.5 * (coordinate[8] - coordinate[6]))
 
 
-@pytest.mark.parametrize(
-    ("contact", "creep"), [({}, 0.5 * 200.0 / 1e3), ({"creep_rate_factor": None, "creep_velocity": 0.02}, 0.02)]
-)
-def test_sliding_is_what_goes_beyond_creep(contact: dict[str, float | None], creep: float) -> None:
+@pytest.mark.parametrize(("friction", "creep"), [(ForceSlope(1e3), 0.5 * 200.0 / 1e3), (CoefficientSlope(0.02), 0.02)])
+def test_sliding_is_what_goes_beyond_creep(friction: FrictionParameters, creep: float) -> None:
     """At mu f_n / nu_s with a slope of the force, at the creep velocity with one of the coefficient."""
     velocity = np.array([[0.5 * creep, creep + 0.3, -creep - 0.2, 5.0, 5.0]])
     normal = np.array([[200.0, 200.0, 200.0, 0.0, 200.0]])
     touched = np.array([[0, 0, 0, 0, -1]])
-    found = sliding_velocity(velocity, normal, touched, serpentine(**contact))
+    found = sliding_velocity(velocity, normal, touched, serpentine(friction))
     np.testing.assert_allclose(found, [[0.0, 0.3, -0.2, 0.0, 0.0]], atol=ROUNDING)
 
 

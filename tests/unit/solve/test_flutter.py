@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from beltdyn.contact.friction import ForceSlope
 from beltdyn.model import Drive
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import flutter, simulate
@@ -56,7 +57,8 @@ def watch(system: System, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Flut
         pulley = np.full((count, points), -1)
         pulley[:, : points // 2] = 0
         normal = np.where(pulley == 0, 300.0, 0.0)
-        saturation = system.pulleys.friction[0] * normal / system.law.creep  # the paper's law
+        assert isinstance(system.law.friction, ForceSlope)
+        saturation = system.pulleys.friction[0] * normal / system.law.friction.creep_rate_factor
         slip = -part * saturation
         slip[np.arange(points) >= np.asarray(pieces)[:, None]] *= 0.9
         seen = {"normal_force": normal, "slip_velocity": slip, "contact_pulley": pulley}

@@ -52,7 +52,7 @@ def sliding(drive: Drive) -> tuple[System, State]:
 
 def frequency_of(system: System) -> float:
     """Angular frequency of the belt on its penalty springs, 1/s."""
-    return float(np.sqrt(system.law.stiffness / system.element.section.mass))
+    return float(np.sqrt(system.law.normal.stiffness / system.element.section.mass))
 
 
 def test_fastest_growing(drive: Drive) -> None:

@@ -1,10 +1,35 @@
-"""Friction laws, a law a file (Eqs. 20 and 22, Fig. 3).
+"""Friction laws, a law a file (Eqs. 20 and 22, Fig. 3): importing one here puts it on the list."""
 
-A law provides the force with its exact derivatives as a kernel, and a `FrictionLaw`, which tells the rest of the
-package its name, its parameter and where it saturates.  `registry` lists the laws.
-"""
+from beltdyn.contact.friction.coefficient_slope import CoefficientSlope as CoefficientSlope
+from beltdyn.contact.friction.force_slope import ForceSlope as ForceSlope
+from beltdyn.contact.friction.law import LAWS as LAWS
+from beltdyn.contact.friction.law import FrictionLaw as FrictionLaw
+from beltdyn.contact.friction.law import FrictionParameters as FrictionParameters
+from beltdyn.kernel import by_type, kernel
 
-from beltdyn.contact.friction.law import FrictionLaw
-from beltdyn.contact.friction.registry import LAWS, friction_force
+_pressed = by_type({law.record: law.force for law in LAWS.values()}, "friction_force")
 
-__all__ = ["LAWS", "FrictionLaw", "friction_force"]
+
+@kernel
+def friction_force(law: FrictionParameters, slip: float, normal: float, friction: float) -> tuple[float, float, float]:
+    """Friction force along the tangent t and its derivatives (Eq. 20).
+
+    Parameters
+    ----------
+    law
+        Parameters of a friction law.
+    slip
+        Slip velocity v_t = t . dr/dt - omega R (Eq. 22), m/s.
+    normal
+        Normal force f_n, N/m; friction depends on its magnitude.
+    friction
+        Coulomb coefficient mu.
+
+    Returns
+    -------
+    tuple of 3 floats
+        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n.
+    """
+    pressure, sign = (normal, 1.0) if normal >= 0.0 else (-normal, -1.0)
+    force, by_slip, by_pressure = _pressed(law, slip, pressure, friction)
+    return force, by_slip, sign * by_pressure

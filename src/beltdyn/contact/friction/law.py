@@ -1,32 +1,69 @@
-"""What a friction law tells of itself beside its force."""
+"""What a friction law provides, and the list of all of them."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
 
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.parameter import Parameter
 
 
-@dataclass(frozen=True)
-class FrictionLaw:
-    """A friction law as models, results and analyses see it.
+class FrictionParameters(Protocol):
+    """Parameters of a friction law: a named tuple of numbers, which knows where the law saturates and gives advice."""
 
-    Attributes
-    ----------
-    name : str
-        Its name in a drive file.
-    parameter : str
-        Key of the number that it takes beside the coefficient of friction.
-    saturation : callable
-        Slip velocity at which friction is fully used, m/s, from the normal force (N/m), the coefficient of friction and
-        the parameter.
-    softened : callable
-        What to change in a drive file so that friction is fully used at a slip velocity (m/s) no smaller than a given
-        one, from the largest friction force (N/m) and that velocity.
-    """
+    def saturation(self, normal: ArrayLike, friction: ArrayLike) -> FloatArray:
+        """Slip velocity at which friction is fully used, m/s.
+
+        Parameters
+        ----------
+        normal
+            Normal force, N/m.
+        friction
+            Coulomb coefficient mu.
+        """
+
+    def softened(self, limit: float, slip: float) -> str:
+        """What to change in a drive file so that friction is fully used at a larger slip velocity.
+
+        Parameters
+        ----------
+        limit
+            Largest friction force, N/m.
+        slip
+            The slip velocity wanted, m/s.
+        """
+
+    def steepened(self, slope: FloatArray, limit: FloatArray) -> str:
+        """What to change in a drive file so that the friction force grows more steeply with the slip velocity.
+
+        Parameters
+        ----------
+        slope
+            Slopes wanted, kg/(m s), one of each pulley.
+        limit
+            Largest friction forces, N/m.
+        """
+
+
+class FrictionLaw(NamedTuple):
+    """A friction law in the list."""
 
     name: str
-    parameter: str
-    saturation: Callable[[ArrayLike, ArrayLike, float], FloatArray]
-    softened: Callable[[float, float], str]
+    """Its name in a drive file."""
+    record: type[Any]
+    """Class of its parameters, a named tuple."""
+    force: Callable[[Any, float, float, float], tuple[float, float, float]]
+    """Kernel: from parameters, slip velocity v_t (m/s), normal force f_n >= 0 (N/m) and coefficient mu the force f_t
+    (N/m) and its derivatives df_t/dv_t (N s/m^2) and df_t/df_n."""
+    parameters: tuple[Parameter, ...]
+    """Its keys in a drive file, in the order of the fields of the record."""
+
+
+LAWS: dict[str, FrictionLaw] = {}
+"""All friction laws by their names."""
+
+
+def register(law: FrictionLaw) -> None:
+    """Add a friction law to the list."""
+    LAWS[law.name] = law

@@ -6,8 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.friction import friction_force
-from beltdyn.contact.law import ContactLaw
+from beltdyn.contact.friction import ForceSlope, friction_force
 from beltdyn.model import Drive
 from beltdyn.plot.style import color, dash, new_figure
 from beltdyn.published import two_pulley
@@ -70,8 +69,8 @@ def _friction_coefficient() -> float:
 
 def _friction(slip: FloatArray, factor: float) -> FloatArray:
     """Friction force of the kernel, N/m."""
-    law = ContactLaw(1e7, 10.0, _friction_coefficient(), 0, factor, True, False, False)
-    return np.array([friction_force(float(value), _NORMAL, law)[0] for value in slip])
+    law, friction = ForceSlope(factor), _friction_coefficient()
+    return np.array([friction_force(law, float(value), _NORMAL, friction)[0] for value in slip])
 
 
 @picture("Friction force on the belt over its slip velocity, for the two creep-rate factors of the paper.")

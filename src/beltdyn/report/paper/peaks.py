@@ -45,8 +45,8 @@ def _rise_by_hand(run: Run) -> float:
     """Largest rise of friction on the driver that the angle between belt and rim can cause, over its level."""
     level = fit_line(distribution(run, PULLEYS.index("driver")), "friction").level
     _, layer = layer_lengths(run.drive, float(settled(run, "span_tension").mean()))
-    factor, radius = run.drive.contact.creep_rate_factor, float(run.drive.radii[0])
-    assert factor is not None
+    radius = float(run.drive.radii[0])
+    factor: float = run.drive.contact.creep_rate_factor
     belt_speed = float(settled(run, "belt_speed").mean())
     return factor * belt_speed * 0.5 * (layer / radius) ** 2 / level
 

@@ -85,7 +85,7 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
 
 def _steeper(evidence: Evidence) -> str:
     """Say which slope makes arcs several layers long; see `theory.creep.layer_length`."""
-    drive, contact, pulleys = evidence.drive, evidence.drive.contact, evidence.pulleys
+    drive, pulleys = evidence.drive, evidence.pulleys
     tension, speed = (
         float(np.mean(evidence.window.mean(evidence.recorded, name))) for name in ("span_tension", "belt_speed")
     )
@@ -93,8 +93,5 @@ def _steeper(evidence: Evidence) -> str:
     loaded = np.array([abs(pulley.power) > _TRANSMITS * most and pulley.wrap_angle > 0.0 for pulley in pulleys])
     arcs = (drive.radii * np.array([pulley.wrap_angle for pulley in pulleys]))[loaded]
     slopes = _LAYERS * drive.belt.axial_stiffness / (abs(speed) * arcs)
-    if contact.creep_velocity is None:
-        return f"raise contact.creep_rate_factor = {contact.creep_rate_factor:g} to {slopes.max():.1e} kg/(m s)"
     pressing = (tension - drive.belt.mass_per_length * speed**2) / drive.radii[loaded]
-    slowest = (drive.frictions[loaded] * pressing / slopes).min()
-    return f"lower contact.creep_velocity = {contact.creep_velocity:g} to {slowest:.1e} m/s"
+    return drive.contact.friction_parameters.steepened(slopes, drive.frictions[loaded] * pressing)

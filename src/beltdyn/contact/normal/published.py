@@ -1,0 +1,35 @@
+"""Penalty force as printed: f_n = k_p d + c_p dd/dt (Eq. 17); a belt that leaves fast is pulled back by the damper."""
+
+from typing import NamedTuple
+
+from beltdyn.contact.normal.law import NormalForce, NormalLaw, register
+from beltdyn.kernel import kernel
+
+
+class Published(NamedTuple):
+    """Parameters of the penalty force as printed."""
+
+    stiffness: float
+    """k_p, N/m per m of belt, that is N/m^2."""
+    damping: float
+    """c_p, N s/m per m of belt."""
+
+
+@kernel
+def published(law: Published, penetration: float, rate: float) -> NormalForce:
+    """Normal force and its derivatives (Eq. 17).
+
+    Parameters
+    ----------
+    law
+        Parameters.
+    penetration
+        d, m, not negative.
+    rate
+        dd/dt, m/s.
+    """
+    elastic = law.stiffness * penetration
+    return NormalForce(elastic + law.damping * rate, law.stiffness, law.damping, elastic, 0.5 * elastic * penetration)
+
+
+register(NormalLaw("published", Published, published, ()))
