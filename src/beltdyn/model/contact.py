@@ -105,11 +105,11 @@ class Contact(_Laws, Penalty):
         for kind, laws in (("normal", NORMAL_LAWS), ("friction", FRICTION_LAWS)):
             chosen = getattr(self, f"{kind}_law")
             needed = [parameter.name for parameter in laws[chosen].parameters]
-            for law, key in ((law.name, parameter.name) for law in laws.values() for parameter in law.parameters):
+            for key, owner in ((key.name, law.name) for law in laws.values() for key in law.parameters):
                 if key not in needed and getattr(self, key) is not None:
                     raise ValueError(
-                        f'{key} belongs to the {kind} law "{law}", not to "{chosen}". '
-                        f'Remove it, or set {kind}_law = "{law}"'
+                        f'{key} belongs to the {kind} law "{owner}", not to "{chosen}". '
+                        f'Remove it, or set {kind}_law = "{owner}"'
                     )
             for key in needed:
                 if getattr(self, key) is None:

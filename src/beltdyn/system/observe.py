@@ -191,7 +191,7 @@ def _touch_points(
     k: int,
 ) -> None:
     """Contact at the sampling points of a curve that touch a pulley."""
-    count, law = system.contact.points.size, law_of(system, number)
+    count = system.contact.points.size
     for point in range(count):
         row = curve * count + point
         vx, vy = samples.velocity[row, 0], samples.velocity[row, 1]

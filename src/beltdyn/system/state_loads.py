@@ -15,7 +15,7 @@ from beltdyn.system.arrays import Loads, Motion, System
 from beltdyn.system.assembly import assembly_workspace, fill_control, gather
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
 from beltdyn.system.prescribed import prescribe
-from beltdyn.system.pulley_state import law_of, pulley_state
+from beltdyn.system.pulley_state import pulley_state
 
 
 class LoadsScratch(NamedTuple):
@@ -108,8 +108,7 @@ def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArr
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
                 if not out_of_reach(work.control, pulley):
-                    law = law_of(system, p)
-                    totals = contact_force(piece, pulley, law, system.contact, 0.0, 0.0, work.contact)
+                    totals = contact_force(piece, pulley, system.law, system.contact, 0.0, 0.0, work.contact)
                     add_contact(loads, p, totals)
     time, position, velocity, acceleration = motion.time, motion.position, motion.velocity, motion.acceleration
     add_machines(system, time, position, velocity, acceleration, 0.0, 0.0, corner, loads)

@@ -146,8 +146,8 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
     normal = np.stack([s, np.full(s.size, height)], axis=1) / distance[:, None]
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
     depth, sinking = pulley.radius - distance, -normal @ velocity
-    pressure = law.stiffness * depth + law.damping * sinking
-    friction = np.sign(speed) * law.friction * pressure
+    pressure = law.normal.stiffness * depth + law.normal.damping * sinking
+    friction = np.sign(speed) * pulley.friction * pressure
     force = pressure[:, None] * normal + friction[:, None] * tangent
     arm = np.full(s.size, pulley.radius) if arm_to_rim else distance
     toward_end = (s - ends[0]) / np.ptp(ends)
@@ -156,8 +156,8 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
         moment_by_speed=0.0,
         hub_x=-share @ force[:, 0],
         hub_y=-share @ force[:, 1],
-        penalty_energy=share @ (0.5 * law.stiffness * depth**2),
-        damping_power=share @ (law.damping * sinking**2),
+        penalty_energy=share @ (0.5 * law.normal.stiffness * depth**2),
+        damping_power=share @ (law.normal.damping * sinking**2),
         friction_power=share @ (friction * (arm * speed - tangent @ velocity)),
     )
     np.testing.assert_allclose(totals, expected, rtol=1e-9)
