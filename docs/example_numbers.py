@@ -98,7 +98,7 @@ def washing_machine(run: Run) -> Iterator[Number]:
     """Motor and drum as one body, with the belt's mass, against the run."""
     (motor, drum), summary = run.drive.pulleys, summarize(run)
     (table,), (load,) = motor.load, drum.load
-    small, large = map(float, run.drive.radii)
+    small, large = map(float, run.drive.rolling_radii)
     ratio = small / large
     belt = run.drive.belt
     inertia = motor.inertia + drum.inertia * ratio**2 + belt.mass_per_length * belt.length * small**2
@@ -131,9 +131,9 @@ def slip_on_a_small_pulley(run: Run, _: Path) -> Iterator[str]:
     ended = run.dataset["friction_power"].sel(time=slice(summarize(run).start, None)).mean("time")
     yield f"friction loses {' and '.join(f'{float(power):.2g} W' for power in ended)}"
     yield f"slip at full speed: {creep(run):.2%} by hand, {summarize(run).pulleys[1].slip:.2%} in the run"
-    bending = run.drive.belt.bending_stiffness / run.drive.belt.axial_stiffness / float(run.drive.radii[0]) ** 2
-    yield f"EI / EA R^2 on the motor: {bending:.2%}"
-    for elements, depth in ((200, 50e-6), (400, 20e-6)):
+    rolls = float(run.drive.rolling_radii[0] / run.drive.radii[0] - 1.0)
+    yield f"what bending adds to the radius of the motor: {rolls:.2%}"
+    for elements, depth in ((200, 50e-6), (400, 50e-6)):
         made = simulate(under_load(run.drive, elements, depth))
         slip = summarize(made).pulleys[1].slip
         yield f"{elements} elements, {1e6 * depth:.0f} um: slip {creep(made):.2%} by hand, {slip:.2%} in the run"

@@ -33,7 +33,7 @@ def headlines(run: Run, start: float, end: float) -> dict[str, float]:
     """Speeds and slips from angles; means of tensions and hub loads; the sum of the losses."""
     part = run.dataset.sel(time=slice(start - 1e-9, end + 1e-9))
     turned = part.pulley_angle.values[-1] - part.pulley_angle.values[0]
-    rims = np.abs(turned) * run.drive.radii
+    rims = np.abs(turned) * run.drive.rolling_radii
     losses = ("friction_loss", "damping_loss", "material_loss", "tensioner_loss", "coupling_loss")
     hubs = np.hypot(*part.hub_force.mean("time").values.T)
     return {

@@ -97,6 +97,8 @@ class ElementKind:
         Whether a belt of such elements may be open, or closed by multipliers.
     cubic_angle : callable
         Angle of a pulley over which a cubic misses the circle as much as the element does over a given one (rad).
+    bent_strain : float
+        Strain of the centreline on a circle of radius R, without tension, over EI / (EA R^2).
     """
 
     name: str
@@ -118,6 +120,7 @@ class ElementKind:
     turned: int = -1
     has_ends: bool = True
     cubic_angle: Callable[[FloatArray], FloatArray] = as_cubic
+    bent_strain: float = 0.0
 
     @property
     def dof(self) -> int:

@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from math import pi, sin
 from typing import TYPE_CHECKING, Any, Literal, Self
 
+import numpy as np
 from pydantic import ConfigDict, Field, PrivateAttr, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
+from beltdyn.arrays import FloatArray
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
 from beltdyn.parts.part import Part, computed
@@ -156,6 +158,17 @@ class Belt(Part):
     def offset(self, side: Side) -> float:
         """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""
         return self.pitch_offset if side == "inside" else self.back_offset
+
+    def bent_strain(self, radius: FloatArray) -> FloatArray:
+        """Strain of the line that carries the tension, where the belt lies on circles without tension.
+
+        Parameters
+        ----------
+        radius : ndarray
+            R, m.
+        """
+        flexibility = self.bending_stiffness / self.axial_stiffness
+        return np.asarray(self.element_kind.bent_strain * flexibility / np.asarray(radius) ** 2)
 
     @property
     def element_kind(self) -> ElementKind:

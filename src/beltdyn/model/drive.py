@@ -78,6 +78,14 @@ class Drive(Part):
         return radii(self.pulleys, self.belt)
 
     @cached_property
+    def rolling_radii(self) -> FloatArray:
+        """Radii R / (1 + e) at which a bent belt without tension rolls on the pulleys, shape (n,), m.
+
+        Bending shortens it by the strain e of `Belt.bent_strain`, so that a rim takes more of it along.
+        """
+        return np.asarray(self.radii / (1.0 + self.belt.bent_strain(self.radii)))
+
+    @cached_property
     def centers(self) -> FloatArray:
         """Centers of the pulleys, shape (n, 2), m, with spring-loaded tensioners at zero."""
         return np.array([pulley.center for pulley in self.pulleys])

@@ -13,7 +13,7 @@ UNLOADED = 1e-4
 
 
 def rim_speeds(speed: FloatArray, drive: Drive) -> FloatArray:
-    """Speeds of the rims in the direction of ascending belt coordinate, m/s.
+    """Speeds at which a belt without tension rolls on the rims, in the direction of ascending belt coordinate, m/s.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def rim_speeds(speed: FloatArray, drive: Drive) -> FloatArray:
         A pulley at the belt's back turns clockwise where the others turn counter-clockwise.
     """
     turning = np.array([pulley.turning for pulley in drive.pulleys])
-    return np.asarray(speed * drive.radii * turning)
+    return np.asarray(speed * drive.rolling_radii * turning)
 
 
 def relative_loss(lost: FloatArray, rim: FloatArray) -> FloatArray:

@@ -191,6 +191,15 @@ def test_effective_radii(make_drive: MakeDrive) -> None:
     assert [pulley.turning for pulley in drive.pulleys] == [1, -1, 1]
 
 
+def test_rolling_radii(make_drive: MakeDrive) -> None:
+    """R (1 + 3 EI / 2 EA R^2), of a rectangle R (1 + h^2 / 8 R^2), to first order; bending does not shorten links."""
+    drive = make_drive("flat", bending_factor=1.0)
+    part = 0.125 * (drive.belt.thickness / drive.radii) ** 2
+    np.testing.assert_allclose(drive.rolling_radii / drive.radii - 1.0, part, rtol=1.1 * part.max())
+    links = drive.replace(belt=drive.belt.replace(discretization="truss", elements=60))
+    np.testing.assert_array_equal(links.rolling_radii, links.radii)
+
+
 def test_tensioner_on_its_stop(make_drive: MakeDrive) -> None:
     tensioner = {"kind": "sliding", "pulley": "idler", "direction": (0, 1), "mass": 0.5, "preload": 900.0}
     held = tensioner | {"stops": (-0.01, 0.01), "stop_stiffness": 1e7}

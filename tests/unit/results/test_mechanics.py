@@ -32,6 +32,7 @@ def serpentine(friction: FrictionParameters | None = None) -> Any:
     return SimpleNamespace(
         pulleys=[SimpleNamespace(turning=turning) for turning in (1, 1, -1)],
         radii=np.array([0.1, 0.05, 0.02]),
+        rolling_radii=np.array([0.1, 0.05, 0.02]),
         frictions=np.array([0.5, 1.0, 0.3]),
         contact=SimpleNamespace(friction_parameters=friction or ForceSlope(1e3)),
         belt=SimpleNamespace(mass_per_length=0.2),

@@ -38,4 +38,5 @@ ANCF = ElementKind(
     damping=damping_force,
     scratch={"elastic": ELASTIC_WORKSPACE, "damping": DAMPING_WORKSPACE},
     turned=4,
+    bent_strain=-1.5,  # least energy of Eq. 14, EA e^2 / 2 + EI (1 + 3 e) / (2 R^2) at a small strain e
 )

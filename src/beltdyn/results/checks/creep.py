@@ -43,22 +43,18 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
                 "creep alone takes: impossible.",
                 f"Slip, and what is told from it, is wrong by {defect:.2%} of the speed or more; tensions and torques "
                 "are not concerned.",
-                _finer(evidence, defect),
+                _finer(evidence),
             )
 
 
-def _finer(evidence: Evidence, defect: float) -> str:
-    """Say what is to blame: the bending around the smallest pulley, or the mesh there."""
+def _finer(evidence: Evidence) -> str:
+    """Say how coarse the mesh is, which is to blame: what bending does to slip is in the rolling radii."""
     drive = evidence.drive
-    radius, belt = float(drive.radii.min()), drive.belt
-    name = drive.pulleys[int(drive.radii.argmin())].name
-    bent = belt.bending_stiffness / belt.axial_stiffness / radius**2
-    covered = float(np.degrees(belt.length / belt.elements / radius))
-    finer = f"compare a run with belt.elements = {2 * belt.elements} (an element covers {covered:.0f}° of {name})"
-    if defect < bent:
-        stretched = f"Bending around {name} changes the belt's stretch by {bent:.2%}"
-        return f"{stretched}: slip is known to that and no better; {finer}."
-    return f"The mesh is to blame: {finer}."
+    covered = float(np.degrees(drive.belt.length / drive.belt.elements / drive.radii.min()))
+    return (
+        f"The mesh is to blame: compare a run with belt.elements = {2 * drive.belt.elements} (an element covers "
+        f"{covered:.0f}° of {drive.pulleys[int(drive.radii.argmin())].name})."
+    )
 
 
 def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
