@@ -5,7 +5,13 @@ from math import cos, pi
 import numpy as np
 import pytest
 
-from beltdyn.machines.profiles.functions import Profiles, prescribed_motion, profile_integral, profile_value
+from beltdyn.machines.profiles.functions import (
+    Profiles,
+    prescribed_motion,
+    profile_bend,
+    profile_integral,
+    profile_value,
+)
 from beltdyn.model import Constant, CosineRamp, CosineRampPublished, Harmonic, Profile, Pulley, Ramp, Step, Table
 from beltdyn.system.build_machines import machine_arrays
 
@@ -113,3 +119,27 @@ def test_speed_and_acceleration_are_rates(profiles: Profiles, case: tuple[int, P
 
 def test_without_harmonics_the_speed_is_the_profile(profiles: Profiles, case: tuple[int, Profile]) -> None:
     assert prescribed_motion(profiles, case[0], 0.3)[1:] == profile_value(profiles, case[0], 0.3)
+
+
+KINKS: dict[str, list[float]] = {
+    "constant": [],
+    "step": [0.2],
+    "ramp": [START, END],
+    "cosine_ramp": [START, END],
+    "cosine_ramp_published": [START, END],
+    "table": [0.0, 0.05, 0.2, 0.6],
+    "early table": [-0.5, -0.2, 0.15],
+}
+WAVES = {"cosine_ramp": pi / (END - START), "cosine_ramp_published": pi / END}
+"""Half a wave from start to end, and from zero to the end as Eq. 29 is printed, rad/s."""
+
+
+@pytest.mark.parametrize("name", PROFILES)
+@pytest.mark.parametrize("time", TIMES)
+def test_next_kink_and_the_wave_until_then(profiles: Profiles, name: str, time: float) -> None:
+    """At a kink the next one is that which follows."""
+    kink, frequency = profile_bend(profiles, list(PROFILES).index(name), time)
+    later = [instant for instant in KINKS[name] if instant > time]
+    assert kink == (min(later) if later else np.inf)
+    rising = START <= time < END
+    assert frequency == pytest.approx(WAVES.get(name, 0.0) if rising else 0.0, rel=1e-12)
