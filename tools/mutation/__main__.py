@@ -51,7 +51,7 @@ def main() -> None:
     _write(answers, list(_chosen(asked)))
 
     def session() -> bool:
-        in_session(asked.tests, lambda items: _try_in_functions(items, asked, answers, kept))
+        in_session([*asked.tests, "-k", asked.select], lambda items: _try_in_functions(items, asked, answers, kept))
         return True
 
     os.waitpid(fork(session, math.inf), 0)  # the package is imported in a copy of this process
@@ -152,6 +152,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folders", nargs="+", help="folders or files below src/beltdyn")
     parser.add_argument("--tests", nargs="+", default=["tests/unit"], help="tests that may kill")
+    parser.add_argument("--select", default="", help="which of these tests, as for pytest -k")
     parser.add_argument("--sample", type=int, help="try that many mutants of each folder, taken at random")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sample")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time")
