@@ -120,3 +120,23 @@ def test_position_and_size_of_the_pulley_do_not_matter() -> None:
     np.testing.assert_allclose(
         moved, intervals(control), atol=1e-10
     )  # cancellation in coordinates 400 times the radius
+
+
+@given(st.lists(st.floats(-2.5, 2.5), min_size=8, max_size=8), st.sampled_from([0.05, 1.0, 3.0]))
+def test_quick_rejection_goes_by_what_the_element_is_to_the_pulley(numbers: list[float], size: float) -> None:
+    """Moved and enlarged together they are the same; so they are if seen in a mirror."""
+    control = np.array(numbers).reshape(4, 2)
+    away = out_of_reach(control, UNIT)
+    moved = out_of_reach(
+        size * control + [8.0, -3.0], UNIT._replace(center_x=8.0, center_y=-3.0, radius=size * (1.0 + 1e-9))
+    )
+    wider = out_of_reach(control, UNIT._replace(radius=1.0 + 2e-9))
+    assert moved in (away, wider)  # at the very limit rounding decides
+    assert out_of_reach(control * [1.0, -1.0], UNIT) == away
+
+
+@pytest.mark.parametrize("far", [1.001, 5.0])
+def test_quick_rejection_sees_straight_elements_beyond_a_tangent(far: float) -> None:
+    control = np.array([[far, -0.6], [far, -0.2], [far, 0.2], [far, 0.6]])
+    assert out_of_reach(control, UNIT)
+    assert not out_of_reach(control * [0.998 / far, 1.0], UNIT)
