@@ -126,7 +126,8 @@ class Belt(Part):
         Parameters
         ----------
         **changes
-            The constructor's arguments that differ. A `length` takes the place of an `installed_tension`.
+            The constructor's arguments that differ. A `length` takes the place of an `installed_tension`, and an
+            `installed_tension` that of a `length`, where one of them alone was given.
 
         Returns
         -------
@@ -137,9 +138,11 @@ class Belt(Part):
         ModelError
             If the changed belt is not valid.
         """
-        if self._given is None or ("length" in changes and self._given.length is None):
-            return super().replace(**changes)
-        return self._given.replace(**changes)
+        arguments = self.given.arguments
+        for new, old in (("length", "installed_tension"), ("installed_tension", "length")):
+            if changes.get(new) is not None and new not in arguments:
+                arguments.pop(old, None)
+        return type(self)(**arguments | changes)
 
     def definite(self, length: float, *, found: bool = False) -> Self:
         """Make a copy of a certain length, which has its tension from that.

@@ -18,6 +18,8 @@ from beltdyn.model.tensioner_balance import come_to_rest
 _LARGEST_STRAIN = 0.5
 _SMALLEST_STRAIN = 1e-10
 _MOST_STEPS = 60
+_ROUNDING = 1e-14
+"""Of a length, within which a take-up is not looked for: a drive that has found its own keeps it."""
 
 
 class _Open(NamedTuple):
@@ -174,6 +176,8 @@ def _tightened(given: _Open, path: Path) -> _Open:
     if abs(leverage) < LEAST_LEVERAGE:
         raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
     here, first = 0.0, excess(0.0)
+    if abs(first) <= _ROUNDING * given.belt.length:
+        return given
     step = -float(np.sign(leverage * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
     for _ in range(_MOST_STEPS):
         try:

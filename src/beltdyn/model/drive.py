@@ -5,6 +5,7 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
+import tomli_w
 from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.arrays import FloatArray
@@ -18,9 +19,9 @@ from beltdyn.model.layout import radii, trace
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.simulation import Simulation
-from beltdyn.model.toml_writer import dumps
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration
+from beltdyn.parts.text_file import parse_toml
 
 
 class Drive(Part):
@@ -48,9 +49,7 @@ class Drive(Part):
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file."""
-        from beltdyn.model.toml_reader import loads
-
-        return loads, (self.text,)
+        return _from_text, (self.text,)
 
     @model_validator(mode="after")
     def _becomes_definite(self) -> Self:
@@ -182,4 +181,24 @@ class Drive(Part):
 
         A tension that is asked for stays so, until the length or the take-up for it was found (`tightened`).
         """
-        return self._source or dumps(self, None if self._tightened else self._installed_tension, self._length_given)
+        return self._source or tomli_w.dumps(self.data, multiline_strings=False)
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The groups and keys of a drive file, in SI units and with every default spelled out.
+
+        A tension that is asked for stays so, until the length or the take-up for it was found (`tightened`).
+        """
+        data = self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        if self._installed_tension is not None and not self._tightened:
+            data["belt"]["installed_tension"] = self._installed_tension
+            if not self._length_given:
+                del data["belt"]["length"]
+        return data
+
+
+def _from_text(text: str) -> Drive:
+    """The drive of a text that `Drive.text` gave."""
+    drive = Drive.model_validate(parse_toml(text))
+    drive._source = text
+    return drive

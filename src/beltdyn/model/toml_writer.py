@@ -1,23 +1,17 @@
 """Drives to TOML."""
 
-from typing import TYPE_CHECKING
-
 import tomli_w
 
-if TYPE_CHECKING:
-    from beltdyn.model.drive import Drive
+from beltdyn.model.drive import Drive
 
 
-def dumps(drive: "Drive", installed_tension: float | None = None, with_length: bool = True) -> str:
+def dumps(drive: Drive) -> str:
     """Write a drive as TOML, in SI units and with every default spelled out.
 
     Parameters
     ----------
     drive : Drive
-    installed_tension : float, optional
-        Tension at rest to ask for, N.
-    with_length : bool
-        Write the length of the belt, also where a tension is asked for.
+        The drive. A tension that was asked for is asked for again, unless the length for it was found in a run.
 
     Returns
     -------
@@ -29,9 +23,4 @@ def dumps(drive: "Drive", installed_tension: float | None = None, with_length: b
     >>> bd.loads(bd.dumps(drive)) == drive
     True
     """
-    data = drive.model_dump(mode="json", by_alias=True, exclude_none=True)
-    if installed_tension is not None:
-        data["belt"]["installed_tension"] = installed_tension
-        if not with_length:
-            del data["belt"]["length"]
-    return tomli_w.dumps(data, multiline_strings=False)
+    return tomli_w.dumps(drive.data, multiline_strings=False)

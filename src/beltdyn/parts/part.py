@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.errors import ModelError
@@ -48,6 +48,16 @@ class Part(BaseModel):
     def alternatives(cls) -> Mapping[str, FieldInfo]:
         """Arguments that the constructor takes in place of fields, by their names."""
         return {}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _leave_open(cls, data: Any) -> Any:
+        """Take None for an argument that is left open."""
+        if not isinstance(data, Mapping):
+            return data
+        fields = {field.alias or name: field for name, field in cls.model_fields.items()} | dict(cls.alternatives())
+        optional = {name for name, field in fields.items() if field.default is None}
+        return {name: value for name, value in data.items() if value is not None or name not in optional}
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:

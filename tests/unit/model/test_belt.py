@@ -55,3 +55,24 @@ def test_curves(drive: Drive, kind: str, curves: int) -> None:
 @pytest.mark.parametrize("kind", ["ancf", "truss", "three-node-beam"])
 def test_fewest_elements(drive: Drive, kind: str) -> None:
     assert drive.belt.replace(elements=3, discretization=kind).elements == 3
+
+
+def test_length_and_installed_tension_take_the_place_of_each_other(drive: Drive) -> None:
+    asked = drive.belt.replace(installed_tension=40.0)
+    assert "length" not in asked.arguments
+    assert asked.installed_tension == 40.0
+    again = asked.replace(length=1.2)
+    assert (again.length, again.installed_tension) == (1.2, None)
+    assert drive.belt.replace(length=None, installed_tension=40.0) == asked
+
+
+def test_a_belt_with_length_and_tension_keeps_both(drive: Drive) -> None:
+    """Then a fixed tensioner takes up what is missing."""
+    both = drive.belt.replace(length=1.2, installed_tension=40.0)
+    assert (both.length, both.installed_tension) == (1.2, 40.0)
+    assert both.replace(installed_tension=50.0).length == 1.2
+
+
+def test_a_belt_without_length_and_tension_is_refused(drive: Drive) -> None:
+    with pytest.raises(ModelError, match=r"length is missing\. Give the unstretched length, or installed_tension"):
+        drive.belt.replace(length=None)

@@ -1,5 +1,6 @@
 import contextlib
 import json
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -151,3 +152,13 @@ def test_any_layout_with_arbitrary_numbers(make_drive: Callable[..., Drive], lay
 @given(st.text())
 def test_arbitrary_text(text: str) -> None:
     read(text)
+
+
+def test_a_written_drive_asks_for_its_tension_again_until_its_length_is_found(drive: Drive) -> None:
+    asked = drive.replace(belt=drive.belt.replace(installed_tension=40.0))
+    again = loads(dumps(asked))
+    assert again == asked
+    assert (again.installed_tension, tomllib.loads(dumps(asked))["belt"].get("length")) == (40.0, None)
+    found = asked.tightened(1e-5)
+    assert loads(dumps(found)).belt.length == found.belt.length == asked.belt.length - 1e-5
+    assert loads(dumps(found)).installed_tension is None
