@@ -25,22 +25,26 @@ DRIVES: dict[str, tuple[Callable[[], Drive], float, float]] = {
     "new": (lambda: packaged("cli", "new_drive.toml"), 0.8, 1.0),
     "case_1": (cases.two_pulley, 0.8, 1.0),
     "unequal_radii": (lambda: packaged("examples", "unequal_radii.toml"), 1.2, 1.5),
+    "slip_through": (lambda: packaged("examples", "slip_through.toml"), 0.9, 1.2),
+    "accessory_drive": (lambda: packaged("examples", "accessory_drive.toml"), 0.975, 1.2),
 }
 """Name -> the drive, and the beginning and end of steady running, s."""
 
 
 def headlines(run: Run, start: float, end: float) -> dict[str, float]:
-    """Speeds and slips from angles; means of tensions and hub loads; the sum of the losses."""
-    part = run.dataset.sel(time=slice(start - 1e-9, end + 1e-9))
+    """Speeds and slips from angles; means of tensions, hub loads and tensioners' places; the sum of the losses."""
+    part = run.dataset.drop_dims("filtered_time").sel(time=slice(start - 1e-9, end + 1e-9))
     turned = part.pulley_angle.values[-1] - part.pulley_angle.values[0]
     rims = np.abs(turned) * run.drive.rolling_radii
     losses = ("friction_loss", "damping_loss", "material_loss", "tensioner_loss", "coupling_loss")
     hubs = np.hypot(*part.hub_force.mean("time").values.T)
+    places = part.tensioner_position.mean("time").values if "tensioner_position" in part else ()
     return {
         **{f"speed_{number}": float(angle) for number, angle in enumerate(turned)},
         **{f"slip_{number}": float(1.0 - rim / rims[0]) for number, rim in enumerate(rims) if number},
         **{f"tension_{number}": float(value) for number, value in enumerate(part.span_tension.mean("time").values)},
         **{f"hub_{number}": float(value) for number, value in enumerate(hubs)},
+        **{f"arm_{number}": float(value) for number, value in enumerate(places)},
         "losses": sum(float(part[name][-1] - part[name][0]) for name in losses),
     }
 
