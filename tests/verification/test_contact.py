@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Constant, Contact, Path, Pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import Loads, System
+from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, no_multipliers
@@ -45,7 +45,7 @@ def turning(speed: float, center: tuple[float, float] = (0.0, 0.0), name: str = 
     return Pulley(name=name, center=center, radius=RADIUS, speed=Constant(value=speed))
 
 
-def load(system: System, state: State) -> tuple[FloatArray, Loads]:
+def load(system: System, state: State) -> tuple[FloatArray, BodyForces]:
     """Residual of the nodes, shape (N, 6), and the loads on the pulleys."""
     equations, zero = new_equations(system), np.zeros_like(state.position)
     velocity, none = state.velocity, no_multipliers(system)
@@ -83,7 +83,7 @@ class TestStraightBelt:
     """Integral of mu k_p (R - rho) rho."""
 
     @pytest.fixture
-    def loads(self, request: pytest.FixtureRequest, contact: Contact) -> Loads:
+    def loads(self, request: pytest.FixtureRequest, contact: Contact) -> BodyForces:
         belt = belt_of(0.3, 6)
         system = belt_system(belt, [turning(request.param)], contact)
         along = np.linspace(-0.16, 0.14, belt.elements + 1)
@@ -92,13 +92,13 @@ class TestStraightBelt:
         return load(system, moving(state, np.zeros((along.size, len(system.scale))), request.param))[1]
 
     @pytest.mark.parametrize("loads", [0.0], indirect=True)
-    def test_normal_force(self, loads: Loads) -> None:
+    def test_normal_force(self, loads: BodyForces) -> None:
         np.testing.assert_allclose(
             loads.hub, [[0.0, -self.NORMAL]], atol=1e-9 * self.NORMAL
         )  # 8 Gauss points an element
 
     @pytest.mark.parametrize("loads", [-500.0, 500.0], ids=["clockwise", "counter-clockwise"], indirect=True)
-    def test_torque_of_sliding(self, loads: Loads) -> None:
+    def test_torque_of_sliding(self, loads: BodyForces) -> None:
         np.testing.assert_allclose(abs(loads.moment), self.SLIDING, rtol=1e-9)
         assert loads.power[0] > 0.0  # the belt brakes, the driver drives
 
@@ -114,7 +114,7 @@ class TestRoundBelt:
     def system(self, contact: Contact) -> System:
         return belt_system(belt_of(self.LENGTH, self.ELEMENTS), [turning(0.0)], contact, "shared_node")
 
-    def loads(self, system: System, speed: float, sinking: float = 0.0, around: float = 0.0) -> Loads:
+    def loads(self, system: System, speed: float, sinking: float = 0.0, around: float = 0.0) -> BodyForces:
         """Loads for a pulley's speed and velocities of the belt towards and around the centre."""
         angle = 2 * pi * np.arange(self.ELEMENTS) / self.ELEMENTS
         out = np.stack([np.cos(angle), np.sin(angle)], axis=1)

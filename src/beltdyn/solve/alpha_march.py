@@ -20,7 +20,7 @@ from beltdyn.solve.march import (
     new_march,
 )
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import Loads
+from beltdyn.system.arrays import BodyForces
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
 
@@ -81,7 +81,7 @@ class GeneralizedAlpha:
 
 def _chunk(steps: Steps, filled: int, march: March) -> Chunk:
     """The filled part of the room for steps."""
-    loads = Loads(*(array[:filled] for array in steps.loads))
+    loads = BodyForces(*(array[:filled] for array in steps.loads))
     rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
     return Chunk(**rows, loads=loads, reached=float(march.clock[0]))
 

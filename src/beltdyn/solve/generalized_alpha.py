@@ -15,7 +15,7 @@ from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import Step, new_step, try_step
 from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
 from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import ENERGY_WORKS, Loads, Motion, System
+from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, Motion, System
 from beltdyn.system.body_forces import keep_loads
 from beltdyn.system.missed_action import missed_work
 from beltdyn.system.motion import Equations
@@ -157,7 +157,7 @@ def _accept(system: System, method: Method, march: March, equations: Equations, 
 
 
 @kernel(inline=True)
-def _keep(march: March, step: Step, loads: Loads, steps: Steps, filled: int) -> int:
+def _keep(march: March, step: Step, loads: BodyForces, steps: Steps, filled: int) -> int:
     """Keep the state that was reached and its loads, where there is room; returns the number of steps filled."""
     if filled == steps.time.size:
         return filled

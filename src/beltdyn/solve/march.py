@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import ENERGY_WORKS, POWERS, Loads, Motion, System
+from beltdyn.system.arrays import ENERGY_WORKS, POWERS, BodyForces, Motion, System
 from beltdyn.system.body_forces import load_history
 from beltdyn.system.motion import no_multipliers
 
@@ -76,7 +76,7 @@ class Steps(NamedTuple):
     """Alike."""
     work: FloatArray
     """In the order of `ENERGY_WORKS`, J, shape (k, 8)."""
-    loads: Loads
+    loads: BodyForces
     """A history of k states."""
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive, Pulley, install
 from beltdyn.model.instants import SAME, Instants
-from beltdyn.system.arrays import ENERGY_WORKS, Loads, System
+from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
 from beltdyn.system.state import State
 from beltdyn.system.state_loads import loads_at
 
@@ -28,7 +28,7 @@ class Chunk:
         Nodal coordinates and coordinates of bodies, and their rates.
     work : ndarray, shape (k, 8)
         In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
-    loads : Loads
+    loads : BodyForces
         Of each state; `system.state_loads.loads_at` finds them where a method does not know them.
     reached : float
         Time that the solver has reached, s.
@@ -39,7 +39,7 @@ class Chunk:
     position: FloatArray
     velocity: FloatArray
     work: FloatArray
-    loads: Loads
+    loads: BodyForces
     reached: float
 
     @classmethod
@@ -53,13 +53,13 @@ class Chunk:
     def join(cls, chunks: Sequence[Self]) -> Self:
         """One chunk of several successive ones."""
         arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in _ROWS}
-        loads = Loads(*(np.concatenate(rows) for rows in zip(*(chunk.loads for chunk in chunks), strict=True)))
+        loads = BodyForces(*(np.concatenate(rows) for rows in zip(*(chunk.loads for chunk in chunks), strict=True)))
         return cls(**arrays, loads=loads, reached=chunks[-1].reached)
 
     def only(self, states: BoolArray | slice) -> Self:
         """Some of the states."""
         arrays = {name: getattr(self, name)[states] for name in _ROWS}
-        return replace(self, **arrays, loads=Loads(*(rows[states] for rows in self.loads)))
+        return replace(self, **arrays, loads=BodyForces(*(rows[states] for rows in self.loads)))
 
     def around(self, instants: Instants, before: float) -> BoolArray:
         """Which states are the ends of steps that hold output instants.

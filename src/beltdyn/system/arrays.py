@@ -162,7 +162,7 @@ class RingMatrix(NamedTuple):
     factors: RingFactors
 
 
-class Loads(NamedTuple):
+class BodyForces(NamedTuple):
     """What the bodies feel and what the energy account needs, at one state.
 
     A history of k states has one row for each in every array: see `loads.load_history`.

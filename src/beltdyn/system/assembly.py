@@ -15,7 +15,7 @@ from beltdyn.elements.dispatch import damping_force, elastic_force
 from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-from beltdyn.system.arrays import Loads, RingMatrix, System
+from beltdyn.system.arrays import BodyForces, RingMatrix, System
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads
 from beltdyn.system.discretization import element_kind
 from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
@@ -58,7 +58,7 @@ def assemble(
     by_acceleration: float,
     work: np.record,
     matrix: RingMatrix,
-    loads: Loads,
+    loads: BodyForces,
 ) -> None:
     """Residual of the equations of motion and its tangent at a state.
 
@@ -188,7 +188,7 @@ def _contact(
     by_velocity: float,
     work: np.record,
     matrix: RingMatrix,
-    loads: Loads,
+    loads: BodyForces,
 ) -> None:
     """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
     fill_control(system, element, curve, work.coordinates[0], work.control)
@@ -294,7 +294,9 @@ def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) 
 
 
 @kernel(inline=True)
-def _bodies(system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: Loads) -> None:
+def _bodies(
+    system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: BodyForces
+) -> None:
     """Motion of the free bodies (Eq. 23)."""
     bodies, first = system.bodies, system.first_body
     for body in range(bodies.size):

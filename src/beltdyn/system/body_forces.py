@@ -8,14 +8,14 @@ from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import link_torque
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
-from beltdyn.system.arrays import POWERS, Loads, System
+from beltdyn.system.arrays import POWERS, BodyForces, System
 from beltdyn.system.pulley_state import tensioner_coordinate
 
 
-def new_loads(system: System) -> Loads:
+def new_loads(system: System) -> BodyForces:
     """Make zero loads for a system."""
     pulleys, bodies = system.pulleys.size, system.bodies.size
-    return Loads(
+    return BodyForces(
         np.zeros(pulleys),
         np.zeros((pulleys, 2)),
         np.zeros(pulleys),
@@ -27,13 +27,13 @@ def new_loads(system: System) -> Loads:
     )
 
 
-def load_history(system: System, count: int) -> Loads:
+def load_history(system: System, count: int) -> BodyForces:
     """Make room for the loads of a number of states, one row for each."""
-    return Loads(*(np.zeros((count, *array.shape)) for array in new_loads(system)))
+    return BodyForces(*(np.zeros((count, *array.shape)) for array in new_loads(system)))
 
 
 @kernel
-def keep_loads(loads: Loads, history: Loads, k: int) -> None:
+def keep_loads(loads: BodyForces, history: BodyForces, k: int) -> None:
     """Write the loads of a state into row k of a history."""
     for p in range(loads.moment.size):
         history.moment[k, p], history.shaft[k, p] = loads.moment[p], loads.shaft[p]
@@ -48,7 +48,7 @@ def keep_loads(loads: Loads, history: Loads, k: int) -> None:
 
 
 @kernel
-def clear_loads(loads: Loads) -> None:
+def clear_loads(loads: BodyForces) -> None:
     """Set everything to zero but the torques on the shafts, which are overwritten later."""
     loads.moment[:] = 0.0
     loads.hub[:] = 0.0
@@ -60,7 +60,7 @@ def clear_loads(loads: Loads) -> None:
 
 
 @kernel
-def add_contact(loads: Loads, pulley: int, totals: ContactTotals) -> None:
+def add_contact(loads: BodyForces, pulley: int, totals: ContactTotals) -> None:
     """Add the contact of a curve of the belt with a pulley."""
     loads.moment[pulley] += totals.moment
     loads.hub[pulley, 0] += totals.hub_x
@@ -80,7 +80,7 @@ def add_machines(
     by_position: float,
     by_velocity: float,
     corner: FloatArray,
-    loads: Loads,
+    loads: BodyForces,
 ) -> None:
     """Forces on the bodies and their powers, when all contact is summed, and what they add to the tangent.
 
@@ -119,7 +119,7 @@ def _add_tensioners(
     by_velocity: float,
     wanted: bool,
     corner: FloatArray,
-    loads: Loads,
+    loads: BodyForces,
 ) -> None:
     """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
     tensioners, first = system.tensioners, system.first_body
@@ -148,7 +148,7 @@ def _add_links(
     by_velocity: float,
     wanted: bool,
     corner: FloatArray,
-    loads: Loads,
+    loads: BodyForces,
 ) -> None:
     """Torques between the bodies of hub chains."""
     links, first = system.links, system.first_body
@@ -184,7 +184,7 @@ def _take_shafts(
     by_velocity: float,
     wanted: bool,
     corner: FloatArray,
-    loads: Loads,
+    loads: BodyForces,
 ) -> None:
     """Torques on the shafts from outside, and their powers."""
     first = system.first_body

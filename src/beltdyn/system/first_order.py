@@ -5,7 +5,7 @@ from functools import cached_property
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.system.arrays import DRIVER_WORK, POWERS, Loads, RingMatrix, System
+from beltdyn.system.arrays import DRIVER_WORK, POWERS, BodyForces, RingMatrix, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
 from beltdyn.system.missed_action import jump_work
@@ -48,7 +48,7 @@ class FirstOrder:
         """Positions, velocities and works from unknowns of shape (..., size)."""
         return y[..., : self._half], y[..., self._half : 2 * self._half], y[..., 2 * self._half :]
 
-    def loads_at(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Loads:
+    def loads_at(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
         """Loads at states; see `state_loads.loads_at`.
 
         The prescribed motion is written into the states: a solver's integral of it has its errors.

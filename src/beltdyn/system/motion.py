@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import Loads, RingMatrix, System
+from beltdyn.system.arrays import BodyForces, RingMatrix, System
 from beltdyn.system.assembly import assembly_workspace, border_size
 from beltdyn.system.body_forces import new_loads
 from beltdyn.system.ring_matrix import ring_matrix
@@ -20,7 +20,7 @@ class Equations(NamedTuple):
     """Solution for the nodes, shape (N, 6)."""
     border_part: FloatArray
     """Solution for the free bodies and the multipliers, shape (m,)."""
-    loads: Loads
+    loads: BodyForces
     work: np.record
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.contact_force import contact_workspace
-from beltdyn.system.arrays import Loads, System
+from beltdyn.system.arrays import BodyForces, System
 
 
 class Observations(NamedTuple):
@@ -78,7 +78,7 @@ class Samples(NamedTuple):
     contact: np.record
 
 
-def new_observations(system: System, loads: Loads, shown: int) -> Observations:
+def new_observations(system: System, loads: BodyForces, shown: int) -> Observations:
     """Make observations of states whose loads are known.
 
     Parameters

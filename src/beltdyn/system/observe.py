@@ -13,7 +13,7 @@ from beltdyn.contact.point_force import point_force
 from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
-from beltdyn.system.arrays import Loads, System
+from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.assembly import fill_control, gather
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
@@ -43,7 +43,7 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
 
 
 def observe_motion(
-    system: System, position: FloatArray, velocity: FloatArray, loads: Loads, shown: BoolArray
+    system: System, position: FloatArray, velocity: FloatArray, loads: BodyForces, shown: BoolArray
 ) -> Observations:
     """Observe a number of states whose loads are known.
 

@@ -11,7 +11,7 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import damping_force
 from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import Loads, Motion, System
+from beltdyn.system.arrays import BodyForces, Motion, System
 from beltdyn.system.assembly import assembly_workspace, fill_control, gather
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
 from beltdyn.system.prescribed import prescribe
@@ -26,10 +26,10 @@ class LoadsScratch(NamedTuple):
     work: np.record
     corner: FloatArray
     """No tangent, shape (0, 0)."""
-    loads: Loads
+    loads: BodyForces
 
 
-def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Loads:
+def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
     """Find the loads at a number of states.
 
     Parameters
@@ -43,7 +43,7 @@ def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: F
 
     Returns
     -------
-    Loads
+    BodyForces
         One row for each state.
     """
     history = load_history(system, time.size)
@@ -55,7 +55,12 @@ def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: F
 
 @kernel
 def fill_loads(
-    system: System, time: FloatArray, position: FloatArray, velocity: FloatArray, scratch: LoadsScratch, history: Loads
+    system: System,
+    time: FloatArray,
+    position: FloatArray,
+    velocity: FloatArray,
+    scratch: LoadsScratch,
+    history: BodyForces,
 ) -> None:
     """Fill a history of loads; see `loads_at`."""
     for k in range(time.size):
@@ -66,7 +71,7 @@ def fill_loads(
 
 
 @kernel
-def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: Loads) -> None:
+def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: BodyForces) -> None:
     """Loads and powers at a state, without residual and tangent.
 
     Newton's method stops when the state is known well enough.  The loads that it leaves are those before its last

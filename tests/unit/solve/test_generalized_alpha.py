@@ -8,7 +8,7 @@ from beltdyn.solve.engine import advance, restart
 from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
 from beltdyn.solve.march import FAILED, STEPS, March, Settings, empty_steps, new_march
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import ENERGY_WORKS, Loads, System
+from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
 
@@ -30,7 +30,7 @@ def run(
     status, filled = advance(system, settings, march, equations, stop, budget, steps)
     assert status == REACHED
     rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
-    return Chunk(**rows, loads=Loads(*(array[:filled] for array in steps.loads)), reached=stop)
+    return Chunk(**rows, loads=BodyForces(*(array[:filled] for array in steps.loads)), reached=stop)
 
 
 def test_states_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:
