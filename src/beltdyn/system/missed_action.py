@@ -163,7 +163,7 @@ def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
 
 @kernel
 def action_at(system: System, source: int, motion: Motion, time: float) -> float:
-    """Prescribed speed, torque on a shaft or torque of a coupling at an instant of a step."""
+    """Prescribed speed, torque on a shaft or torque of a link at an instant of a step."""
     first = system.first_body
     if source >= system.pulleys.size:
         number = source - system.pulleys.size
