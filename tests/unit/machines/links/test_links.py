@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.machines.links.link import LinkTorque
-from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.links.registry import link_torque, torque_of_kind
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Pulley
 from beltdyn.records import Records
@@ -54,6 +54,17 @@ def test_derivatives(chain: Chain, name: str, rate: float, time: float) -> None:
     assert by_twist == pytest.approx(numeric, abs=10 * FLOOR)
     numeric = (torque(0.2, rate + STEP) - torque(0.2, rate - STEP)) / (2 * STEP)
     assert by_rate == pytest.approx(numeric, abs=10 * FLOOR)
+
+
+@pytest.mark.parametrize("name", LINKS)
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("scale", [0.03, 0.6])
+def test_derivative_by_the_value_of_the_schedule(chain: Chain, name: str, rate: float, scale: float) -> None:
+    """What a clutch transmits as it slips follows its schedule; nothing else does."""
+    link = chain[1][NUMBER[name]]
+    larger, smaller = (torque_of_kind(link, scale + h, 0.2, rate).torque for h in (STEP, -STEP))
+    found = torque_of_kind(link, scale, 0.2, rate).by_schedule
+    assert found == pytest.approx((larger - smaller) / (2 * STEP), abs=10 * FLOOR)
 
 
 @pytest.mark.parametrize("name", LINKS)
