@@ -1,10 +1,14 @@
 """Belt elements, a kind a file or a folder: energy, force and tangent, mass, and the curve that contact sees.
 
-`kind` says what a kind provides, `registry` lists the kinds, and `dispatch` has their kernels under one name each.
+Importing a kind here puts it on the list.  `kind` says what a kind provides, and `dispatch` has the kernels of all
+kinds under one name each.
 """
 
-from beltdyn.elements.kind import Element, ElementKind
-from beltdyn.elements.registry import ELEMENTS
-from beltdyn.elements.section import Section
-
-__all__ = ["ELEMENTS", "Element", "ElementKind", "Section"]
+from beltdyn.elements.ancf.kind import ANCF as ANCF
+from beltdyn.elements.kind import ELEMENTS as ELEMENTS
+from beltdyn.elements.kind import Element as Element
+from beltdyn.elements.kind import ElementKind as ElementKind
+from beltdyn.elements.quintic import QUINTIC as QUINTIC
+from beltdyn.elements.section import Section as Section
+from beltdyn.elements.three_node_beam import THREE_NODE_BEAM as THREE_NODE_BEAM
+from beltdyn.elements.truss import TRUSS as TRUSS

@@ -1,16 +1,16 @@
 """The kernels of all element kinds under one name each: the class of the first argument chooses the kind."""
 
-from beltdyn.elements.registry import ELEMENTS
+from beltdyn.elements import ELEMENTS
 from beltdyn.kernel import by_type
 
-strain_energy = by_type({kind.element: kind.energy for kind in ELEMENTS}, "strain_energy")
+strain_energy = by_type({kind.element: kind.energy for kind in ELEMENTS.values()}, "strain_energy")
 """Strain energy of an element; see `ElementKind.energy`."""
 
-elastic_force = by_type({kind.element: kind.force for kind in ELEMENTS}, "elastic_force")
+elastic_force = by_type({kind.element: kind.force for kind in ELEMENTS.values()}, "elastic_force")
 """Elastic force of an element with its tangent; see `ElementKind.force`."""
 
-damping_force = by_type({kind.element: kind.damping for kind in ELEMENTS}, "damping_force")
+damping_force = by_type({kind.element: kind.damping for kind in ELEMENTS.values()}, "damping_force")
 """Damping force of an element with its tangent; see `ElementKind.damping`."""
 
-tension = by_type({kind.element: kind.tension for kind in ELEMENTS}, "tension")
+tension = by_type({kind.element: kind.tension for kind in ELEMENTS.values()}, "tension")
 """Tension that results report; see `ElementKind.tension`."""

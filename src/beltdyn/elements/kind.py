@@ -47,7 +47,7 @@ def as_cubic(angle: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class ElementKind:
-    """A belt element between two nodes, as models, systems, results and figures see it.
+    """A belt element between two nodes, as models, systems, results and figures see it; made, it is in `ELEMENTS`.
 
     A node has n coordinates, those of an element are e, shape (2 n,): of its first node, then of its second.  Part of
     them are v vectors of two components that carry the centreline, which consists of one or several Bezier curves.
@@ -122,6 +122,9 @@ class ElementKind:
     cubic_angle: Callable[[FloatArray], FloatArray] = as_cubic
     bent_strain: float = 0.0
 
+    def __post_init__(self) -> None:
+        ELEMENTS[self.name] = self
+
     @property
     def dof(self) -> int:
         """Coordinates of a node, n."""
@@ -142,3 +145,7 @@ class ElementKind:
         """Kind of the rows in which `force` and `damping` work and leave what they find."""
         size = 2 * self.dof
         return record(gradient=f"{size}f8", tangent=f"({size},{size})f8", **self.scratch)
+
+
+ELEMENTS: dict[str, ElementKind] = {}
+"""All element kinds by name."""

@@ -9,18 +9,17 @@ from pydantic import ConfigDict, Field, PrivateAttr, ValidationInfo, model_valid
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements import ELEMENTS, ElementKind
+from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
 from beltdyn.parts.part import Part, computed
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
 
-_KINDS = {kind.name: kind for kind in ELEMENTS}
-_MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS)
+_MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
 
 if TYPE_CHECKING:
     ElementName = str
 else:
-    ElementName = Literal[tuple(_KINDS)]
+    ElementName = Literal[tuple(ELEMENTS)]
 
 Side = Literal["inside", "outside"]
 """The side of the belt that touches a pulley; the outside is the belt's back."""
@@ -77,7 +76,7 @@ class Belt(Part):
         description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
     )
     elements: Count = Field(20, ge=3, le=100_000, description="the number of belt elements")
-    discretization: ElementName = Field(ELEMENTS[0].name, description=f"the kind of elements: {_MEANINGS}")
+    discretization: ElementName = Field(ANCF.name, description=f"the kind of elements: {_MEANINGS}")
     integration: Literal["full", "reduced"] = Field(
         "full",
         description="the integration of the elastic forces: over Gauss points, or over three Lobatto points, "
@@ -176,7 +175,7 @@ class Belt(Part):
     @property
     def element_kind(self) -> ElementKind:
         """What the elements are: `discretization` by its name."""
-        return _KINDS[self.discretization]
+        return ELEMENTS[self.discretization]
 
     @property
     def area(self) -> float:

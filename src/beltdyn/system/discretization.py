@@ -10,7 +10,7 @@ from beltdyn.model import Belt
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.system.arrays import System
 
-_KINDS = {kind.element: kind for kind in ELEMENTS}
+_KINDS = {kind.element: kind for kind in ELEMENTS.values()}
 _REDUCED = 3
 """Lobatto points of reduced integration: exact for the bending of a cubic, not for its stretching."""
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements import ELEMENTS
 from beltdyn.elements.dispatch import damping_force, elastic_force, strain_energy, tension
 from beltdyn.elements.kind import ElementKind
-from beltdyn.elements.registry import ELEMENTS
 from beltdyn.elements.section import Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
@@ -20,7 +20,7 @@ DIRECTION = np.array([0.8, -0.6])
 ROUNDING = 1e-12
 
 
-@pytest.fixture(params=ELEMENTS, ids=[kind.name for kind in ELEMENTS])
+@pytest.fixture(params=list(ELEMENTS.values()), ids=list(ELEMENTS))
 def kind(request: pytest.FixtureRequest) -> ElementKind:
     chosen: ElementKind = request.param
     return chosen

@@ -1,0 +1,129 @@
+"""Quintic element: r, dr/dx and d2r/dx2 at the nodes, and sections that stay normal to the centreline (Eqs. 13, 14).
+
+With q = dr/dx, w = d2r/dx2, G = q . q and c = q x w the strain energy is
+
+    U = integral of EA alpha1 / 8 (G - 1)^2 + EI alpha2 / 2 c^2 / G over the reference length,
+
+the axial and the first bending term of Eq. 14 without shear.  The curvature is continuous from element to element.
+"""
+
+from math import comb
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.elements.kind import ElementKind
+from beltdyn.elements.planar_curve import Density, add_density, combine, curve_scratch
+from beltdyn.elements.section import Section
+from beltdyn.kernel import kernel
+from beltdyn.quadrature import Quadrature, gauss_points
+
+Six = tuple[float, float, float, float, float, float]
+_DEGREE = 5
+
+
+class Quintic(NamedTuple):
+    """What the kernels get; e is r (m), r' and r'' (1/m) of node i, then of node j."""
+
+    section: Section
+    elastic: Quadrature
+
+
+@kernel
+def slopes(xi: float, length: float) -> Six:
+    """Factors of the six vectors in q, at xi = x / L."""
+    chord = 30.0 * xi * xi * (1.0 - xi) * (1.0 - xi) / length
+    return (
+        -chord,
+        1.0 - xi * xi * (18.0 - xi * (32.0 - 15.0 * xi)),
+        length * xi * (1.0 - xi * (4.5 - xi * (6.0 - 2.5 * xi))),
+        chord,
+        -xi * xi * (12.0 - xi * (28.0 - 15.0 * xi)),
+        length * xi * xi * (1.5 - xi * (4.0 - 2.5 * xi)),
+    )
+
+
+@kernel
+def bends(xi: float, length: float) -> Six:
+    """Factors of the six vectors in w, at xi = x / L."""
+    chord = 60.0 * xi * (1.0 - xi) * (1.0 - 2.0 * xi) / (length * length)
+    return (
+        -chord,
+        -xi * (36.0 - xi * (96.0 - 60.0 * xi)) / length,
+        1.0 - xi * (9.0 - xi * (18.0 - 10.0 * xi)),
+        chord,
+        -xi * (24.0 - xi * (84.0 - 60.0 * xi)) / length,
+        xi * (3.0 - xi * (12.0 - 10.0 * xi)),
+    )
+
+
+@kernel
+def quintic_energy(element: Quintic, e: FloatArray, length: float) -> float:
+    """Strain energy of an element; see `ElementKind.energy`."""
+    total, points, weights = 0.0, element.elastic.points, element.elastic.weights
+    for k in range(points.size):
+        qx, qy = combine(e, slopes(points[k], length))
+        wx, wy = combine(e, bends(points[k], length))
+        metric, cross = qx * qx + qy * qy, qx * wy - qy * wx
+        stretching = 0.125 * element.section.axial * (metric - 1.0) * (metric - 1.0)
+        total += weights[k] * length * (stretching + 0.5 * element.section.bending * cross * cross / metric)
+    return total
+
+
+@kernel
+def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, work: np.record) -> None:
+    """Elastic force of an element with its tangent; see `ElementKind.force`."""
+    points, weights = element.elastic.points, element.elastic.weights
+    work.gradient[:] = 0.0
+    if wanted:
+        work.tangent[:] = 0.0
+    for k in range(points.size):
+        slope, bend = slopes(points[k], length), bends(points[k], length)
+        q, w = combine(e, slope), combine(e, bend)
+        axial, bending = weights[k] * length * element.section.axial, weights[k] * length * element.section.bending
+        metric = q[0] * q[0] + q[1] * q[1]
+        turning = (q[0] * w[1] - q[1] * w[0]) / metric
+        density = Density(
+            0.25 * axial * (metric - 1.0) - 0.5 * bending * turning * turning,
+            bending * turning,
+            0.25 * axial + bending * turning * turning / metric,
+            -bending * turning / metric,
+            bending / metric,
+        )
+        add_density(density, slope, bend, q, w, wanted, work)
+
+
+def quintic_control(length: float) -> FloatArray:
+    """Control points of the Bezier curve from the six vectors, shape (1, 6, 6)."""
+    fifth, square = length / 5.0, length**2 / 20.0
+    near = np.array([[1.0, 0.0, 0.0], [1.0, fifth, 0.0], [1.0, 2.0 * fifth, square]])
+    far = near * [1.0, -1.0, 1.0]
+    return np.block([[near, np.zeros((3, 3))], [np.zeros((3, 3)), far[::-1]]])[None]
+
+
+def quintic_mass(section: Section, length: float) -> FloatArray:
+    """Mass matrix, the integral of rho A S^T S, which six Gauss points take exactly, shape (12, 12)."""
+    xi, weights = gauss_points(_DEGREE + 1)
+    bernstein = np.array([comb(_DEGREE, k) * xi**k * (1.0 - xi) ** (_DEGREE - k) for k in range(_DEGREE + 1)])
+    shape = np.sqrt(section.mass * length * weights)[:, None] * (bernstein.T @ quintic_control(length)[0])
+    return np.kron(shape.T @ shape, np.eye(2))
+
+
+QUINTIC = ElementKind(
+    name="quintic",
+    meaning="for smooth contact a quintic centreline without shear",
+    element=Quintic,
+    coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "d2r_x/dx2", "d2r_y/dx2"),
+    vectors=(0, 2, 4, 6, 8, 10),
+    shift=(1.0, 0.0, 0.0, 1.0, 0.0, 0.0),
+    control=quintic_control,
+    scale=lambda length: (1.0, 1.0, length, length, length**2, length**2),
+    mass=quintic_mass,
+    nodal=lambda place, slope, bend: np.hstack([place, slope, bend]),
+    energy=quintic_energy,
+    force=quintic_force,
+    scratch=curve_scratch(6),
+    turned=2,
+    bent_strain=-1.0,  # least energy EA e^2 / 2 + EI (1 + 2 e) / (2 R^2) at a small strain e
+)

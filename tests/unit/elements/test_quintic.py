@@ -1,0 +1,108 @@
+"""The quintic element: derivatives, rigid motion, mass, pure bending, and how it meets its neighbours."""
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.elements.quintic import QUINTIC, Quintic, bends, slopes
+from beltdyn.elements.section import Section
+from beltdyn.quadrature import gauss_points
+from beltdyn.records import blank
+
+LENGTH, AXIAL, BENDING, MASS = 0.05, 1e4, 0.02, 0.1
+SECTION = Section(*(0.0 for _ in Section._fields[:8]))._replace(axial=AXIAL, bending=BENDING, mass=MASS)
+ELEMENT = Quintic(SECTION, gauss_points(4))
+SCALE = np.tile([LENGTH, LENGTH, 1.0, 1.0, 1.0 / LENGTH, 1.0 / LENGTH], 2)
+"""Changes of the coordinates that strain alike."""
+STRAIGHT = np.array([0, 0, 1, 0, 0, 0, LENGTH, 0, 1, 0, 0, 0], dtype=float)
+DIFFERENCES = 1e-8
+"""Central differences with a step of 1e-5, relative to the largest entry."""
+
+
+def forces(e: FloatArray, wanted: bool = True) -> tuple[FloatArray, FloatArray]:
+    work = blank(QUINTIC.workspace)
+    work.tangent[:] = 7.0
+    QUINTIC.force(ELEMENT, e, LENGTH, wanted, work)
+    return work.gradient, work.tangent
+
+
+@pytest.fixture(params=range(4))
+def deformed(request: pytest.FixtureRequest) -> FloatArray:
+    """Stretched and bent."""
+    return STRAIGHT + 0.1 * SCALE * np.random.default_rng(request.param).uniform(-1.0, 1.0, 12)
+
+
+def test_force_is_the_slope_of_the_energy(deformed: FloatArray) -> None:
+    moves = 1e-5 * np.diag(SCALE)
+    found = [
+        QUINTIC.energy(ELEMENT, deformed + h, LENGTH) - QUINTIC.energy(ELEMENT, deformed - h, LENGTH) for h in moves
+    ]
+    expected = SCALE * forces(deformed)[0]
+    np.testing.assert_allclose(np.array(found) / 2e-5, expected, atol=DIFFERENCES * np.abs(expected).max())
+
+
+def test_tangent_is_the_slope_of_the_force(deformed: FloatArray) -> None:
+    moves = 1e-5 * np.diag(SCALE)
+    found = np.array([SCALE * (forces(deformed + h)[0] - forces(deformed - h)[0]) for h in moves]) / 2e-5
+    expected = SCALE[:, None] * forces(deformed)[1] * SCALE
+    np.testing.assert_allclose(found, expected, atol=DIFFERENCES * np.abs(expected).max())
+
+
+def test_force_without_tangent(deformed: FloatArray) -> None:
+    alone, kept = forces(deformed, False)
+    np.testing.assert_array_equal(alone, forces(deformed)[0])
+    np.testing.assert_array_equal(kept, 7.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 3.0])
+def test_rigid_motion_takes_no_force(angle: float) -> None:
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    moved = (STRAIGHT.reshape(6, 2) @ turn + np.outer([1, 0, 0, 1, 0, 0], [0.3, -0.4])).ravel()
+    np.testing.assert_allclose(forces(moved)[0], 0.0, atol=1e-13 * AXIAL)
+
+
+@pytest.mark.parametrize("stretch", [0.9, 1.05])
+def test_uniform_stretch(stretch: float) -> None:
+    """The ends are pulled by E A alpha1 (G - 1) |q| / 2."""
+    e = STRAIGHT.copy()
+    e[[2, 6, 8]] *= stretch
+    pull = 0.5 * AXIAL * (stretch**2 - 1.0) * stretch
+    expected = np.zeros(12)
+    expected[[0, 6]] = -pull, pull
+    np.testing.assert_allclose(forces(e)[0], expected, atol=1e-12 * AXIAL)
+    assert QUINTIC.tension(ELEMENT, stretch**2, 0.0) == pytest.approx(pull)
+
+
+def test_energy_of_an_arc() -> None:
+    """EI L / 2 R^2: a quintic through nodes on a circle misses it by the sixth power of the angle that it covers."""
+    errors = []
+    for angle in (0.8, 0.4):
+        radius = LENGTH / angle
+        turned = np.array([0.0, angle])
+        place = radius * np.stack([np.sin(turned), 1.0 - np.cos(turned)], axis=1)
+        tangent = np.stack([np.cos(turned), np.sin(turned)], axis=1)
+        bend = np.stack([-np.sin(turned), np.cos(turned)], axis=1) / radius
+        energy = QUINTIC.energy(ELEMENT, QUINTIC.nodal(place, tangent, bend).ravel(), LENGTH)
+        errors.append(abs(energy / (0.5 * BENDING * LENGTH / radius**2) - 1.0))
+    assert errors[0] < 1e-5
+    assert np.log2(errors[0] / errors[1]) > 5.5
+
+
+def test_factors_are_the_derivatives_of_the_curve_that_contact_sees() -> None:
+    """Derivatives of the Bezier curve by the differences of its control points, at both ends."""
+    control = QUINTIC.control(LENGTH)[0]
+    first, second = 5.0 * np.diff(control, axis=0) / LENGTH, 20.0 * np.diff(control, 2, axis=0) / LENGTH**2
+    for xi, end in ((0.0, 0), (1.0, -1)):
+        np.testing.assert_allclose(slopes(xi, LENGTH), first[end], atol=1e-12 / LENGTH)
+        np.testing.assert_allclose(bends(xi, LENGTH), second[end], atol=1e-12 / LENGTH**2)
+
+
+def test_mass_moves_as_a_rigid_line() -> None:
+    """Kinetic energy of a translation and of a rotation about the middle."""
+    mass = QUINTIC.mass(SECTION, LENGTH)
+    shift, spin = np.zeros(12), np.zeros(12)
+    shift[[0, 6]] = 1.0
+    spin[[1, 3, 7, 9]] = -LENGTH / 2.0, 1.0, LENGTH / 2.0, 1.0
+    assert shift @ mass @ shift == pytest.approx(MASS * LENGTH)
+    assert spin @ mass @ spin == pytest.approx(MASS * LENGTH**3 / 12.0)
+    assert shift @ mass @ spin == pytest.approx(0.0, abs=1e-15)
