@@ -95,6 +95,12 @@ def test_slip_of_the_friction_law(
     assert remedy in finding.remedy
 
 
+def test_slip_of_the_friction_law_within_a_part_of_a_turn(make_run: MakeRun, run: Run) -> None:
+    """The belt may take up 6 mm by its stretch: 5 % of the 98 mm that pass may be that, and 20 % are not."""
+    assert said(make_run(**with_slip(run, 0.2)), "slope of the friction law")
+    assert not said(make_run(**with_slip(run, 0.05)), "slope of the friction law")
+
+
 def test_slope_that_is_asked_for(turning: Callable[..., Run], run: Run) -> None:
     """Three lengths EA / (nu v) fill the arc of pi R: nu = 3 * 10 kN / (4.24 m/s * 0.255 m) = 2.77e4 kg/(m s)."""
     (finding,) = turning(**with_slip(run, 0.2)).findings

@@ -68,8 +68,8 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
         and pulley.slip * pulley.regularisation > 0.0
         and abs(pulley.regularisation) > abs(pulley.elastic_creep)
     ]
-    if led and evidence.window.turns:
-        worst = max(led, key=lambda pulley: abs(pulley.regularisation))
+    worst = max(led, key=lambda pulley: abs(pulley.regularisation), default=None)
+    if worst is not None and (evidence.window.turns or _exceeds_stretch(evidence, worst.regularisation)):
         others = f" (so on {', '.join(one.name for one in led if one is not worst)} too)" if led[1:] else ""
         yield Finding(
             f"of the slip of {worst.name}, {worst.slip:.2%}, elastic creep makes {worst.elastic_creep:.2%}, and the "
@@ -77,6 +77,14 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
             "Slip and friction losses are those of that slope rather than of the belt.",
             f"For slip near that of Coulomb's friction {_steeper(evidence)}.",
         )
+
+
+def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
+    """Whether rims come apart by more, within the window, than the belt is stretched: it does not only get tighter."""
+    drive, window = evidence.drive, evidence.window
+    passed = abs(evidence.pulleys[0].speed) * float(drive.rolling_radii[0]) * (window.end - window.start)
+    tension = float(np.max(window.mean(evidence.recorded, "span_tension")))
+    return abs(slip) * passed > tension / drive.belt.axial_stiffness * drive.belt.length
 
 
 def _steeper(evidence: Evidence) -> str:
