@@ -124,7 +124,7 @@ def test_position_and_size_of_the_pulley_do_not_matter() -> None:
 
 @given(st.lists(st.floats(-2.5, 2.5), min_size=8, max_size=8), st.sampled_from([0.05, 1.0, 3.0]))
 def test_quick_rejection_goes_by_what_the_element_is_to_the_pulley(numbers: list[float], size: float) -> None:
-    """Moved and enlarged together they are the same; so they are if seen in a mirror."""
+    """Moved and enlarged together they are the same; so they are if turned or seen in a mirror."""
     control = np.array(numbers).reshape(4, 2)
     away = out_of_reach(control, UNIT)
     moved = out_of_reach(
@@ -133,6 +133,7 @@ def test_quick_rejection_goes_by_what_the_element_is_to_the_pulley(numbers: list
     wider = out_of_reach(control, UNIT._replace(radius=1.0 + 2e-9))
     assert moved in (away, wider)  # at the very limit rounding decides
     assert out_of_reach(control * [1.0, -1.0], UNIT) == away
+    assert out_of_reach(control[:, ::-1] * [-1.0, 1.0], UNIT) == away
 
 
 @pytest.mark.parametrize("far", [1.001, 5.0])

@@ -107,3 +107,8 @@ def test_slip_of_the_instant_swings_where_its_mean_does_not(make_run: MakeRun, r
 def test_no_output_between_two_instants(run: Run) -> None:
     with pytest.raises(ModelError, match=r"no output from 2 to None s: the run was recorded from 0 to 1 s"):
         slips(run, start=2)
+
+
+def test_a_run_without_outputs_has_nothing_to_show(run: Run) -> None:
+    with pytest.raises(ModelError, match="the run ended before its first output"):
+        slips(Run(run.dataset.isel(time=slice(0)), run.drive))
