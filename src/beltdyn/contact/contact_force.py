@@ -13,8 +13,7 @@ from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstei
 from beltdyn.contact.contact_zone import touching_intervals, zone_record
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach, approach
-from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent
-from beltdyn.contact.pulley_moment import pulley_moment
+from beltdyn.contact.point_force import PointForce, point_force, point_tangent, point_turn
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import blank, record
@@ -25,8 +24,6 @@ class ContactTotals(NamedTuple):
 
     moment: float
     """Moment on the pulley, N m (Eq. 23)."""
-    moment_by_speed: float
-    """Its derivative with respect to the pulley's speed, N m s."""
     hub_x: float
     """Force on the pulley, N."""
     hub_y: float
@@ -59,7 +56,8 @@ def contact_record(count: int, vectors: int) -> np.dtype[np.void]:
         xy=f"({vectors},{vectors})f8",
         yx=f"({vectors},{vectors})f8",
         yy=f"({vectors},{vectors})f8",
-        by_speed=f"({vectors},2)f8",  # derivative of `force` with respect to the pulley's speed, N s
+        by_turn=f"({vectors},2)f8",  # derivative of `force` with respect to angle and speed of the pulley
+        moment_by_turn="f8",  # the same of the moment on the pulley
         moment=f"({vectors},2)f8",  # derivative of the moment on the pulley with respect to the vectors, N
         zone=zone_record(count),
         weights=f"({count},)f8",  # of the control points at a point, and their derivatives along the curve
@@ -99,7 +97,8 @@ def contact_force(
     rule
         Points and weights.
     by_position, by_velocity : float
-        The tangent is by_position d/d(position) + by_velocity d/d(velocity); with both zero there is none.
+        The tangent is by_position d/d(position) + by_velocity d/d(velocity), of the belt and of the pulley's
+        angle; with both zero there is none.
     work
         Made by `contact_workspace`; overwritten.
 
@@ -114,16 +113,16 @@ def contact_force(
         count = touching_intervals(curve.control, pulley, work.zone)
     else:
         count, intervals[0, 0], intervals[0, 1] = 1, 0.0, 1.0
-    totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     wanted = by_position != 0.0 or by_velocity != 0.0
     for interval in range(count):
-        start, end = intervals[interval, 0], intervals[interval, 1]
-        moving = wanted and (start > 0.0 or end < 1.0)
+        start, stop = intervals[interval, 0], intervals[interval, 1]
+        moving = wanted and (start > 0.0 or stop < 1.0)
         work.force_by_end[:] = 0.0
         work.moment_by_end[:] = 0.0
         for point in range(rule.points.size):
             place, share = rule.points[point], curve.length * rule.weights[point]
-            xi, weight = start + (end - start) * place, share * (end - start)
+            xi, weight = start + (stop - start) * place, share * (stop - start)
             fill_bernstein(xi, work.weights)
             x, y = combine(curve.control, work.weights)
             vx, vy = combine(curve.velocity, work.weights)
@@ -135,16 +134,14 @@ def contact_force(
             _add_pairs(work.force, work.functions, weight * force.x, weight * force.y)
             totals = _add_point(totals, weight, here, force, pulley)
             if wanted:
-                tangent = point_tangent(here, force, by_position, by_velocity)
-                _spread(weight, tangent, here, force.by_slip * pulley.radius, work)
+                _spread(weight, here, force, pulley, by_position, by_velocity, work)
             if moving:
-                drift = _drift(xi, curve, here, force, work)
+                drift = _drift(xi, curve, here, force, pulley, work)
                 _add_end(work, 0, -share, weight * (1.0 - place), force, drift)
                 _add_end(work, 1, share, weight * place, force, drift)
-        if moving and start > 0.0:
-            _move_end(curve, pulley, start, 0, by_position, work)
-        if moving and end < 1.0:
-            _move_end(curve, pulley, end, 1, by_position, work)
+        for end, xi in ((0, start), (1, stop)):
+            if moving and 0.0 < xi < 1.0:
+                _move_end(curve, pulley, xi, end, by_position, work)
     return totals
 
 
@@ -156,7 +153,8 @@ def _clear(work: np.record) -> None:
     work.xy[:] = 0.0
     work.yx[:] = 0.0
     work.yy[:] = 0.0
-    work.by_speed[:] = 0.0
+    work.by_turn[:] = 0.0
+    work.moment_by_turn = 0.0
     work.moment[:] = 0.0
 
 
@@ -166,8 +164,7 @@ def _add_point(
 ) -> ContactTotals:
     """Sums with those of one more point, which stands for a length of belt."""
     return ContactTotals(
-        totals.moment + weight * pulley_moment(force.arm, force.friction),
-        totals.moment_by_speed + weight * pulley_moment(force.arm, -force.by_slip * pulley.radius),
+        totals.moment + weight * force.moment,
         totals.hub_x - weight * force.x,
         totals.hub_y - weight * force.y,
         totals.penalty_energy + weight * force.normal.energy,
@@ -177,14 +174,25 @@ def _add_point(
 
 
 @kernel(inline=True)
-def _spread(weight: float, tangent: PointTangent, here: Approach, drag: float, work: np.record) -> None:
-    """Give tangent and couplings of a point to the vectors (Eq. 24); drag is -df_t/d(omega)."""
-    _add_pairs(work.by_speed, work.functions, weight * drag * here.normal_y, -weight * drag * here.normal_x)
+def _spread(
+    weight: float,
+    here: Approach,
+    force: PointForce,
+    pulley: PulleyState,
+    by_position: float,
+    by_velocity: float,
+    work: np.record,
+) -> None:
+    """Give tangent and couplings of a point to the vectors (Eq. 24)."""
+    tangent = point_tangent(here, force, pulley.speed, by_position, by_velocity)
+    turn = point_turn(here, force, pulley.speed, by_position, by_velocity)
+    _add_pairs(work.by_turn, work.functions, weight * turn.x, weight * turn.y)
     _add_pairs(work.moment, work.functions, weight * tangent.moment_x, weight * tangent.moment_y)
     _add_block(work.xx, work.functions, weight * tangent.xx)
     _add_block(work.xy, work.functions, weight * tangent.xy)
     _add_block(work.yx, work.functions, weight * tangent.yx)
     _add_block(work.yy, work.functions, weight * tangent.yy)
+    work.moment_by_turn += weight * turn.moment
 
 
 @kernel(inline=True)
@@ -205,14 +213,16 @@ def _add_block(block: FloatArray, shape: FloatArray, factor: float) -> None:
 
 
 @kernel(inline=True)
-def _drift(xi: float, curve: Curve, here: Approach, force: PointForce, work: np.record) -> tuple[float, float, float]:
+def _drift(
+    xi: float, curve: Curve, here: Approach, force: PointForce, pulley: PulleyState, work: np.record
+) -> tuple[float, float, float]:
     """Change of force and moment along the curve; the shape functions' own goes to `work.function_rates`."""
     fill_bernstein_rates(xi, work.rates)
     fill_shape_functions(curve.basis, work.rates, work.function_rates)
     rx, ry = combine(curve.control, work.rates)
     sx, sy = combine(curve.velocity, work.rates)
-    place = point_tangent(here, force, 1.0, 0.0)
-    motion = point_tangent(here, force, 0.0, 1.0)
+    place = point_tangent(here, force, pulley.speed, 1.0, 0.0)
+    motion = point_tangent(here, force, pulley.speed, 0.0, 1.0)
     return (
         place.xx * rx + place.xy * ry + motion.xx * sx + motion.xy * sy,
         place.yx * rx + place.yy * ry + motion.yx * sx + motion.yy * sy,
@@ -232,25 +242,26 @@ def _add_end(
     row = work.force_by_end[end]
     _add_pairs(row, work.functions, share * force.x + grow * drift[0], share * force.y + grow * drift[1])
     _add_pairs(row, work.function_rates, grow * force.x, grow * force.y)
-    work.moment_by_end[end] += share * pulley_moment(force.arm, force.friction) + grow * drift[2]
+    work.moment_by_end[end] += share * force.moment + grow * drift[2]
 
 
 @kernel(inline=True)
 def _move_end(curve: Curve, pulley: PulleyState, xi: float, end: int, by_position: float, work: np.record) -> None:
     """Add what the motion of one end of the touching interval does to the tangent.
 
-    The end is a root of d(xi) = 0, so it moves by -S_b n . dr_b / (n . dr/dxi).
+    The end is a root of d(xi) = 0, so it moves by -(S_b n . dr_b + p_t d(theta)) / (n . dr/dxi).
     """
     fill_bernstein(xi, work.weights)
     fill_bernstein_rates(xi, work.rates)
     fill_shape_functions(curve.basis, work.weights, work.functions)
     x, y = combine(curve.control, work.weights)
     rx, ry = combine(curve.control, work.rates)
-    nx, ny = x - pulley.center_x, y - pulley.center_y
-    along = nx * rx + ny * ry
+    here = approach(x, y, 0.0, 0.0, pulley)
+    along = here.normal_x * rx + here.normal_y * ry
     if along == 0.0:
         return
-    mx, my = -by_position * nx / along, -by_position * ny / along
+    share = -by_position / along
+    mx, my = share * here.normal_x, share * here.normal_y
     for a in range(work.functions.size):
         fx, fy = work.force_by_end[end, a, 0], work.force_by_end[end, a, 1]
         for b in range(work.functions.size):
@@ -258,4 +269,7 @@ def _move_end(curve: Curve, pulley: PulleyState, xi: float, end: int, by_positio
             work.xy[a, b] += fx * my * work.functions[b]
             work.yx[a, b] += fy * mx * work.functions[b]
             work.yy[a, b] += fy * my * work.functions[b]
+        work.by_turn[a, 0] += fx * share * here.offset
+        work.by_turn[a, 1] += fy * share * here.offset
     _add_pairs(work.moment, work.functions, work.moment_by_end[end] * mx, work.moment_by_end[end] * my)
+    work.moment_by_turn += work.moment_by_end[end] * share * here.offset

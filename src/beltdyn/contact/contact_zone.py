@@ -4,6 +4,9 @@ The centreline of an element is a Bezier curve of degree p given by its control 
 The squared distance to a pulley's centre is then a polynomial of degree 2 p, and R^2 minus it, the overlap, has the
 sign of the penetration.  In Bernstein form it changes sign at most as often as its coefficients do; where those change
 more than once, the element is halved (Lane and Riesenfeld, Bounds on a polynomial, BIT 21 (1981) 112-117).
+
+Against a surface that is not a smooth circle the penetration is sampled along the element, and roots are found where
+its sign changes between two samples.
 """
 
 import numpy as np
@@ -11,11 +14,14 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import BINOMIALS, combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.law import PulleyState
-from beltdyn.kernel import kernel
+from beltdyn.contact.surface import Round, Shaped, outer_radius, shaped_gap
+from beltdyn.kernel import by_type, kernel
 from beltdyn.records import blank, record
 
 _HALVINGS = 12
 """A dip of an element over less than 2^-12 of its length is not seen; it is below a millionth of the radius deep."""
+_SAMPLES = 16
+"""Intervals of an element in which its contact with a shaped surface is looked for; shorter ones may not be seen."""
 _STEPS = 60
 _RESOLUTION = 1e-13
 
@@ -33,11 +39,12 @@ def zone_record(count: int) -> np.dtype[np.void]:
     dtype
         `pieces` is a stack of pieces of the element that are not yet searched, the leftmost last: the Bernstein
         coefficients of the overlap, and where the piece ends.  `intervals` has room for all intervals that a polynomial
-        of degree 2 p can have.
+        of degree 2 p can have, and for all that sampling finds.
     """
+    most = max(count, _SAMPLES // 2) + 1
     return record(
         pieces=f"({_HALVINGS + 1},{2 * count})f8",
-        intervals=f"({count + 1},2)f8",
+        intervals=f"({most},2)f8",
         weights=f"({count},)f8",
         rates=f"({count},)f8",
     )
@@ -70,7 +77,7 @@ def out_of_reach(control: FloatArray, pulley: PulleyState) -> bool:
         dx += control[k, 0]
         dy += control[k, 1]
     dx, dy = dx / count - pulley.center_x, dy / count - pulley.center_y
-    reach = pulley.radius * (dx * dx + dy * dy) ** 0.5
+    reach = outer_radius(pulley.surface) * (dx * dx + dy * dy) ** 0.5
     for k in range(count):
         if dx * (control[k, 0] - pulley.center_x) + dy * (control[k, 1] - pulley.center_y) <= reach:
             return False
@@ -96,9 +103,15 @@ def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record
     int
         Number of intervals.
     """
+    return _intervals(pulley.surface, control, pulley.center_x, pulley.center_y, zone)
+
+
+@kernel
+def _on_circle(surface: Round, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
+    """Exact intervals on a smooth circle."""
     pieces, intervals = zone.pieces, zone.intervals
     end = pieces.shape[1] - 1
-    _fill_overlap(control, pulley, pieces)
+    _fill_overlap(control, center_x, center_y, surface.radius, pieces)
     inside = pieces[0, 0] >= 0.0
     count, last, left, start = 0, 0, 0.0, 0.0
     while last >= 0:
@@ -109,7 +122,7 @@ def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record
             last += 1
             continue
         if changes % 2 == 1:
-            root = _root(control, pulley, left, right, inside, zone)
+            root = _root(control, surface, center_x, center_y, left, right, inside, zone)
             if inside and count < intervals.shape[0]:
                 intervals[count, 0], intervals[count, 1] = start, root
                 count += 1
@@ -123,17 +136,17 @@ def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record
 
 
 @kernel(inline=True)
-def _fill_overlap(control: FloatArray, pulley: PulleyState, pieces: FloatArray) -> None:
+def _fill_overlap(control: FloatArray, center_x: float, center_y: float, radius: float, pieces: FloatArray) -> None:
     """Write the whole element on the stack: Bernstein coefficients of R^2 - |r - O|^2."""
-    degree, rim = control.shape[0] - 1, pulley.radius * pulley.radius
+    degree, rim = control.shape[0] - 1, radius * radius
     for k in range(2 * degree + 1):
         square = 0.0
         for i in range(degree + 1):
             j = k - i
             if not 0 <= j <= degree:
                 continue
-            x = (control[i, 0] - pulley.center_x) * (control[j, 0] - pulley.center_x)
-            y = (control[i, 1] - pulley.center_y) * (control[j, 1] - pulley.center_y)
+            x = (control[i, 0] - center_x) * (control[j, 0] - center_x)
+            y = (control[i, 1] - center_y) * (control[j, 1] - center_y)
             square += BINOMIALS[degree, i] * BINOMIALS[degree, j] * (x + y)
         pieces[0, k] = rim - square / BINOMIALS[2 * degree, k]
     pieces[0, 2 * degree + 1] = 1.0
@@ -160,7 +173,16 @@ def _halve(pieces: FloatArray, piece: int, middle: float) -> None:
 
 
 @kernel(inline=True)
-def _root(control: FloatArray, pulley: PulleyState, left: float, right: float, falling: bool, zone: np.record) -> float:
+def _root(
+    control: FloatArray,
+    surface: Round,
+    center_x: float,
+    center_y: float,
+    left: float,
+    right: float,
+    falling: bool,
+    zone: np.record,
+) -> float:
     """The root of the overlap between two points at which it has opposite signs.
 
     Newton's method, and halving where that would leave the bracket.
@@ -171,8 +193,8 @@ def _root(control: FloatArray, pulley: PulleyState, left: float, right: float, f
         fill_bernstein_rates(xi, zone.rates)
         x, y = combine(control, zone.weights)
         dx, dy = combine(control, zone.rates)
-        x, y = x - pulley.center_x, y - pulley.center_y
-        value, slope = pulley.radius * pulley.radius - (x * x + y * y), -2.0 * (x * dx + y * dy)
+        x, y = x - center_x, y - center_y
+        value, slope = surface.radius * surface.radius - (x * x + y * y), -2.0 * (x * dx + y * dy)
         if (value >= 0.0) == falling:
             left = xi
         else:
@@ -184,3 +206,40 @@ def _root(control: FloatArray, pulley: PulleyState, left: float, right: float, f
             return trial
         xi = trial
     return xi
+
+
+@kernel
+def _on_shape(surface: Shaped, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
+    """Intervals on a surface of any kind, between samples at which the penetration changes its sign."""
+    intervals = zone.intervals
+    count, start = 0, 0.0
+    inside = _depth(surface, control, center_x, center_y, 0.0, zone) >= 0.0
+    for sample in range(_SAMPLES):
+        left, right = sample / _SAMPLES, (sample + 1) / _SAMPLES
+        if (_depth(surface, control, center_x, center_y, right, zone) >= 0.0) == inside:
+            continue
+        while right - left > _RESOLUTION:
+            middle = 0.5 * (left + right)
+            if (_depth(surface, control, center_x, center_y, middle, zone) >= 0.0) == inside:
+                left = middle
+            else:
+                right = middle
+        if inside:
+            intervals[count, 0], intervals[count, 1] = start, left
+            count += 1
+        start, inside = right, not inside
+    if inside:
+        intervals[count, 0], intervals[count, 1] = start, 1.0
+        count += 1
+    return count
+
+
+@kernel
+def _depth(surface: Shaped, control: FloatArray, center_x: float, center_y: float, xi: float, zone: np.record) -> float:
+    """Penetration of a point of the curve, m."""
+    fill_bernstein(xi, zone.weights)
+    x, y = combine(control, zone.weights)
+    return shaped_gap(surface, x - center_x, y - center_y).penetration
+
+
+_intervals = by_type({Round: _on_circle, Shaped: _on_shape}, "touching_intervals")

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.contact.normal import NormalParameters
+from beltdyn.contact.surface import Round, Shaped
 
 
 class ContactLaw(NamedTuple):
@@ -23,15 +24,14 @@ class PulleyState(NamedTuple):
     """A pulley at one instant, as the belt meets it."""
 
     center_x: float
-    """m."""
+    """Place of its shaft, m."""
     center_y: float
-    """m."""
-    radius: float
-    """R, m."""
+    surface: Round | Shaped
+    """Its surface, at the angle that it has."""
     speed: float
     """Angular speed omega, rad/s, counter-clockwise positive."""
     friction: float
     """Coulomb coefficient mu."""
     velocity_x: float = 0.0
-    """Velocity of its centre, m/s."""
+    """Velocity of its shaft, m/s."""
     velocity_y: float = 0.0

@@ -1,12 +1,12 @@
-"""What a drive file is told of the number that a law of contact takes."""
+"""What a drive file is told of the number that a law of contact or the surface of a pulley takes."""
 
 from typing import NamedTuple
 
 
 class Parameter(NamedTuple):
-    """A number of a law, as a key of the group ``[contact]`` of a drive file.
+    """A number of a law or of a surface, as a key of a drive file.
 
-    It is required where its law is chosen, and refused elsewhere.
+    It is required where what it belongs to is chosen, unless it has a default, and refused elsewhere.
     """
 
     name: str
@@ -15,5 +15,7 @@ class Parameter(NamedTuple):
     """SI unit as a user writes it, "kg/(m*s)"; empty for a ratio."""
     meaning: str
     """What it is, in words that go before its unit."""
-    above: float = 0.0
-    """What it must be larger than."""
+    above: float | None = 0.0
+    """What it must be larger than; None where it may be any number."""
+    default: float | None = None
+    """What it is where it is not given."""

@@ -1,26 +1,40 @@
-"""Penetration, normal and tangent of a centreline point against a pulley (Eqs. 18, 19, 21 and 22)."""
+"""Penetration, normal and tangent of a centreline point against a pulley (Eqs. 18, 19, 21 and 22).
 
+With p = r - O the place against the shaft, n the normal of the surface and t = (-n_y, n_x), a point of the pulley at p
+moves with omega (-p_y, p_x), that is omega (p . n) along t and -omega (p . t) along n.  On a smooth circle p . t = 0.
+"""
+
+from collections.abc import Callable
 from math import sqrt
 from typing import NamedTuple
 
 from beltdyn.contact.law import PulleyState
-from beltdyn.kernel import kernel
+from beltdyn.contact.surface import Round, Shaped, shaped_gap
+from beltdyn.kernel import by_type, kernel
 
 
 class Approach(NamedTuple):
     """How a belt point stands and moves against a pulley."""
 
-    distance: float
-    """rho = |r - O|, m."""
     penetration: float
-    """d = R - rho, m; positive when the point is inside the pulley (Eq. 18)."""
+    """d, the distance inside the surface, m; R - rho of a smooth circle, with rho = |r - O| (Eq. 18)."""
     normal_x: float
     """Outward unit normal n (Eq. 19)."""
     normal_y: float
+    curvature: float
+    """How n turns along t at the point, 1/m; 1 / rho of a smooth circle."""
+    lever: float
+    """Arm p . n of a force along t about the shaft, m; rho of a smooth circle."""
+    rim: float
+    """The same of the surface below the point, p . n + d, m; R of a smooth circle."""
+    offset: float
+    """Arm p . t of a force along n about the shaft, m; zero of a smooth circle."""
+    turn: float
+    """How n turns with the pulley where the point stays, 1 - curvature (p . n); zero of a smooth circle."""
     radial: float
-    """n . dr/dt against the centre, m/s; the penetration grows at the opposite rate."""
+    """n . dr/dt against the surface, m/s; the penetration grows at the opposite rate."""
     circumferential: float
-    """t . dr/dt against the centre, with t = (-n_y, n_x) (Eq. 21), m/s."""
+    """t . dr/dt against the shaft (Eq. 21), m/s."""
 
 
 @kernel
@@ -34,23 +48,56 @@ def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: P
     velocity_x, velocity_y
         Its velocity, m/s.
     pulley
-        The pulley, whose centre may move.
+        The pulley, whose shaft may move.
     """
     dx, dy = x - pulley.center_x, y - pulley.center_y
     vx, vy = velocity_x - pulley.velocity_x, velocity_y - pulley.velocity_y
+    return _approach(pulley.surface, dx, dy, vx, vy, pulley.speed)
+
+
+@kernel(inline=True)
+def _to_circle(surface: Round, dx: float, dy: float, vx: float, vy: float, speed: float) -> Approach:
+    """A smooth circle, whose angle does not matter."""
     distance = sqrt(dx * dx + dy * dy)
     nx, ny = dx / distance, dy / distance
     return Approach(
-        distance,
-        pulley.radius - distance,
-        nx,
-        ny,
-        nx * vx + ny * vy,
-        nx * vy - ny * vx,
+        penetration=surface.radius - distance,
+        normal_x=nx,
+        normal_y=ny,
+        curvature=1.0 / distance,
+        lever=distance,
+        rim=surface.radius,
+        offset=0.0,
+        turn=0.0,
+        radial=nx * vx + ny * vy,
+        circumferential=nx * vy - ny * vx,
     )
+
+
+@kernel
+def _to_shape(surface: Shaped, dx: float, dy: float, vx: float, vy: float, speed: float) -> Approach:
+    """A surface that turns with its pulley."""
+    gap = shaped_gap(surface, dx, dy)
+    nx, ny = gap.normal_x, gap.normal_y
+    lever, offset = dx * nx + dy * ny, dy * nx - dx * ny
+    return Approach(
+        penetration=gap.penetration,
+        normal_x=nx,
+        normal_y=ny,
+        curvature=gap.curvature,
+        lever=lever,
+        rim=lever + gap.penetration,
+        offset=offset,
+        turn=1.0 - gap.curvature * lever,
+        radial=nx * vx + ny * vy + speed * offset,
+        circumferential=nx * vy - ny * vx,
+    )
+
+
+_approach: Callable[..., Approach] = by_type({Round: _to_circle, Shaped: _to_shape}, "approach")
 
 
 @kernel
 def slip_velocity(point: Approach, pulley: PulleyState) -> float:
     """Slip velocity v_t = t . dr/dt - omega R (Eq. 22), m/s; published with R, not with the radius of the point."""
-    return point.circumferential - pulley.speed * pulley.radius
+    return point.circumferential - pulley.speed * point.rim

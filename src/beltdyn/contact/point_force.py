@@ -1,12 +1,19 @@
 """Contact force at one point of the belt and its variation (Eqs. 17-22).
 
-With n, t of Eqs. 19 and 21, subscripts n, t for components along them, v the velocity of the point and rho its
-distance from the pulley's centre, a change of position, velocity and pulley speed changes
+Subscripts n, t mark components along them, v the velocity of the point, p its place against the shaft, w = v_n + omega
+p_t its velocity along n against the surface, kappa the curvature there and a(d) = p_n + d the arm of the rim.  Changes
+of position, velocity, angle theta and speed turn the normal by
 
-    d by -dr_n,   dd/dt by -v_t dr_t / rho - dv_n,   n by t dr_t / rho,   t by -n dr_t / rho,
-    the slip velocity by -v_n dr_t / rho + dv_t - R d(omega),
+    db = kappa dr_t + (1 - kappa p_n) d(theta),
 
-from which the variations of f_n n + f_t t and of the moment -rho f_t, or -R f_t, follow.
+and change n by t db, t by -n db, p_n by dr_n + p_t db, p_t by dr_t - p_n db, and
+
+    d by -dr_n - p_t d(theta),
+    w by dv_n + v_t db + omega (dr_t - p_n db) + p_t d(omega),
+    the slip velocity by dv_t - w db + omega p_t d(theta) - a d(omega),
+
+from which the variations of f_n n + f_t t and of the moment f_n p_t - arm f_t follow.  On a smooth circle kappa p_n = 1
+and p_t = 0.
 """
 
 from typing import NamedTuple
@@ -15,7 +22,7 @@ from beltdyn.contact.friction import friction_force
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NormalForce, normal_force
 from beltdyn.contact.penetration import Approach, slip_velocity
-from beltdyn.contact.pulley_moment import moment_arm
+from beltdyn.contact.pulley_moment import moment_arm, pulley_moment
 from beltdyn.kernel import kernel
 
 
@@ -33,8 +40,10 @@ class PointForce(NamedTuple):
     """df_t / d(slip velocity), N s/m^2."""
     by_normal: float
     """df_t / df_n."""
+    moment: float
+    """Moment on the pulley, N."""
     arm: float
-    """Arm of friction about the pulley's centre, m."""
+    """Arm of friction about the pulley's shaft, m."""
     arm_slope: float
     """Its change with the distance of the point."""
 
@@ -48,6 +57,14 @@ class PointTangent(NamedTuple):
     yy: float
     moment_x: float
     moment_y: float
+
+
+class PointTurn(NamedTuple):
+    """Variation of the force and of the moment with the angle of the pulley."""
+
+    x: float
+    y: float
+    moment: float
 
 
 @kernel
@@ -66,7 +83,7 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
     normal = normal_force(law.normal, here.penetration, -here.radial)
     slip = slip_velocity(here, pulley)
     friction, by_slip, by_normal = friction_force(law.friction, slip, normal.force, pulley.friction)
-    arm, arm_slope = moment_arm(here, pulley, law)
+    arm, arm_slope = moment_arm(here, law)
     return PointForce(
         normal,
         friction,
@@ -74,13 +91,16 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
         normal.force * here.normal_y + friction * here.normal_x,
         by_slip,
         by_normal,
+        pulley_moment(normal.force, friction, here.offset, arm),
         arm,
         arm_slope,
     )
 
 
 @kernel
-def point_tangent(here: Approach, force: PointForce, by_position: float, by_velocity: float) -> PointTangent:
+def point_tangent(
+    here: Approach, force: PointForce, speed: float, by_position: float, by_velocity: float
+) -> PointTangent:
     """Derivative of force and moment: by_position d/d(position) + by_velocity d/d(velocity).
 
     Parameters
@@ -89,19 +109,22 @@ def point_tangent(here: Approach, force: PointForce, by_position: float, by_velo
         How the point stands and moves.
     force
         Result of `point_force`.
+    speed
+        Angular speed of the pulley, rad/s.
     by_position, by_velocity
         Factors of the two derivatives.
     """
-    curvature = 1.0 / here.distance
+    tilt, push = by_position * here.curvature, by_position * force.normal.force
     sink = -(by_position * force.normal.by_penetration + by_velocity * force.normal.by_rate)
-    sweep = -by_position * force.normal.by_rate * here.circumferential * curvature
-    drag = by_velocity - by_position * here.radial * curvature
+    swing = here.circumferential * here.curvature + speed * here.turn
+    sweep = -by_position * force.normal.by_rate * swing
+    drag = by_velocity - here.radial * tilt
     friction_n = force.by_normal * sink
     friction_t = force.by_normal * sweep + force.by_slip * drag
-    nn, nt = sink, sweep - by_position * force.friction * curvature
-    tn, tt = friction_n, friction_t + by_position * force.normal.force * curvature
-    moment_n = -by_position * force.arm_slope * force.friction - force.arm * friction_n
-    moment_t = -force.arm * friction_t
+    nn, nt = sink, sweep - force.friction * tilt
+    tn, tt = friction_n, friction_t + force.normal.force * tilt
+    moment_n = sink * here.offset - by_position * force.arm_slope * force.friction - force.arm * friction_n
+    moment_t = nt * here.offset + push * here.turn - force.arm * friction_t
     nx, ny = here.normal_x, here.normal_y
     xn, xt, yn, yt = nx * nn - ny * tn, nx * nt - ny * tt, ny * nn + nx * tn, ny * nt + nx * tt
     return PointTangent(
@@ -112,3 +135,21 @@ def point_tangent(here: Approach, force: PointForce, by_position: float, by_velo
         moment_n * nx - moment_t * ny,
         moment_n * ny + moment_t * nx,
     )
+
+
+@kernel
+def point_turn(here: Approach, force: PointForce, speed: float, by_angle: float, by_speed: float) -> PointTurn:
+    """Derivative of force and moment: by_angle d/d(theta) + by_speed d/d(omega); arguments as for `point_tangent`."""
+    along = -force.by_slip * by_speed * here.rim
+    if here.offset == 0.0 and here.turn == 0.0:
+        return PointTurn(-along * here.normal_y, along * here.normal_x, -force.arm * along)
+    tilt, lift = here.turn * by_angle, here.offset * by_angle
+    rate = (here.circumferential - speed * here.lever) * tilt + here.offset * by_speed
+    normal = -force.normal.by_penetration * lift - force.normal.by_rate * rate
+    along += force.by_slip * (speed * lift - here.radial * tilt) + force.by_normal * normal
+    arm = here.offset * tilt - (1.0 - force.arm_slope) * lift
+    moment = normal * here.offset - force.normal.force * here.lever * tilt - along * force.arm - force.friction * arm
+    across = normal - force.friction * tilt
+    along += force.normal.force * tilt
+    nx, ny = here.normal_x, here.normal_y
+    return PointTurn(across * nx - along * ny, across * ny + along * nx, moment)

@@ -1,6 +1,6 @@
 """The contact between belt and pulleys: penalty normal force and creep-rate friction."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, create_model, model_validator
@@ -104,15 +104,15 @@ class Contact(_Laws, Penalty):
     def _has_the_parameters_of_its_laws(self) -> Self:
         for kind, laws in (("normal", NORMAL_LAWS), ("friction", FRICTION_LAWS)):
             chosen = getattr(self, f"{kind}_law")
-            needed = [parameter.name for parameter in laws[chosen].parameters]
+            own = {parameter.name: parameter for parameter in laws[chosen].parameters}
             for key, owner in ((key.name, law.name) for law in laws.values() for key in law.parameters):
-                if key not in needed and getattr(self, key) is not None:
+                if key not in own and getattr(self, key) is not None:
                     raise ValueError(
                         f'{key} belongs to the {kind} law "{owner}", not to "{chosen}". '
                         f'Remove it, or set {kind}_law = "{owner}"'
                     )
-            for key in needed:
-                if getattr(self, key) is None:
+            for key, parameter in own.items():
+                if getattr(self, key) is None and parameter.default is None:
                     raise ValueError(f'{key} is missing: the {kind} law "{chosen}" needs it. Give {key}')
         return self
 
@@ -120,13 +120,18 @@ class Contact(_Laws, Penalty):
     def normal_parameters(self) -> NormalParameters:
         """Parameters of the law of the normal force, whose type says which law it is."""
         law = NORMAL_LAWS[self.normal_law]
-        own = (getattr(self, key.name) for key in law.parameters)
-        parameters: NormalParameters = law.record(self.stiffness, self.damping, *own)
+        parameters: NormalParameters = law.record(self.stiffness, self.damping, *self._values(law.parameters))
         return parameters
 
     @property
     def friction_parameters(self) -> FrictionParameters:
         """Parameters of the friction law, whose type says which law it is, and which know where it saturates."""
         law = FRICTION_LAWS[self.friction_law]
-        parameters: FrictionParameters = law.record(*(getattr(self, key.name) for key in law.parameters))
+        parameters: FrictionParameters = law.record(*self._values(law.parameters))
         return parameters
+
+    def _values(self, parameters: Iterable[Parameter]) -> Iterator[Any]:
+        """What is given for some parameters, or their defaults."""
+        for parameter in parameters:
+            given = getattr(self, parameter.name)
+            yield parameter.default if given is None else given

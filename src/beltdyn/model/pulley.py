@@ -11,6 +11,7 @@ from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side
 from beltdyn.model.contact import Contact
+from beltdyn.model.surface import AnySurface
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio
 
@@ -27,6 +28,9 @@ class Pulley(Part):
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
     radius: Length = Field(gt=0, description="the radius of the pulley, on which the surface of the belt lies, in m")
+    surface: AnySurface | None = Field(
+        None, description="the surface that is not a smooth circle of this radius, a group [pulley.surface]"
+    )
     side: Side = Field("inside", description="the side of the belt that touches the pulley; the outside is its back")
     friction: Ratio | None = Field(
         None,
@@ -63,6 +67,15 @@ class Pulley(Part):
             raise ValueError(
                 "has neither speed nor inertia. Give speed if its motion is prescribed, "
                 "or an inertia above zero if it turns freely"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _surface_holds_the_shaft(self) -> Self:
+        if self.surface is not None and self.surface.reach >= self.radius:
+            raise ValueError(
+                f'surface of kind "{self.surface.kind}" reaches {self.surface.reach:g} m beyond the radius of '
+                f"{self.radius:g} m, and as far inside: the shaft would lie outside. Make it smaller"
             )
         return self
 

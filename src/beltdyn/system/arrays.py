@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
+from beltdyn.contact.surface import RoundRims, ShapedRims
 from beltdyn.elements import Element
 from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
@@ -78,6 +79,8 @@ class System(NamedTuple):
     contact: Quadrature
     pulleys: Records
     """Rows of `PULLEY`, shape (P,)."""
+    rims: RoundRims | ShapedRims
+    """Surfaces of the pulleys; the type says whether all of them are round."""
     bodies: Records
     """Rows of `BODY`, shape (D,)."""
     profiles: Profiles

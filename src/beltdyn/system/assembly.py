@@ -221,8 +221,8 @@ def _contact(
         _take_contact(system, wanted, work)
         add_contact(loads, p, totals)
         if bodies[p].unknown >= 0 and wanted:
-            matrix.corner[bodies[p].unknown, bodies[p].unknown] -= by_velocity * totals.moment_by_speed
-            _couple(system, element, node_j, bodies[p].unknown, by_velocity, work.contact, matrix)
+            matrix.corner[bodies[p].unknown, bodies[p].unknown] -= work.contact.moment_by_turn
+            _couple(system, element, node_j, bodies[p].unknown, work.contact, matrix)
         if center.unknown >= 0 and wanted:
             drifting = by_position if rounds == 2 else 0.0
             couple_center(
@@ -231,7 +231,6 @@ def _contact(
                 node_j,
                 bodies[p].unknown,
                 center,
-                by_velocity,
                 drifting,
                 work.contact,
                 work.drift,
@@ -263,17 +262,16 @@ def _couple(
     node_i: int,
     node_j: int,
     unknown: int,
-    by_velocity: float,
     contact: np.record,
     matrix: RingMatrix,
 ) -> None:
-    """Coupling of the element with the speed of a free pulley."""
+    """Coupling of the element with angle and speed of a free pulley."""
     dof = len(system.scale)
     for a in range(len(system.vectors)):
         first = system.vectors[a]
         node, c = (node_i, first) if first < dof else (node_j, first - dof)
         for axis in range(2):
-            matrix.column[node, c + axis, unknown] -= by_velocity * contact.by_speed[a, axis]
+            matrix.column[node, c + axis, unknown] -= contact.by_turn[a, axis]
             matrix.row[node, unknown, c + axis] -= contact.moment[a, axis]
 
 

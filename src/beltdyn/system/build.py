@@ -9,11 +9,13 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
+from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.layout import radii as effective_radii
 from beltdyn.model.pulley import friction_on
+from beltdyn.model.surface import SURFACES
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import Records, records
 from beltdyn.system.arrays import BODY, PULLEY, Supports, System
@@ -133,6 +135,7 @@ def belt_system(
         law=_contact_law(contact),
         contact=contact_points(contact),
         pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
+        rims=_rims(pulleys, radii),
         bodies=_bodies(pulleys, radii, tensioners),
         **machines._asdict(),
         supports=supports._replace(force=supports.force + weight_forces(mesh, nodes, gravity)),
@@ -185,6 +188,19 @@ def _pulley_arrays(
         shaft=shaft_bodies(pulleys),
         carrier=carrier,
     )
+
+
+def _rims(pulleys: Sequence[Pulley], radii: FloatArray) -> RoundRims | ShapedRims:
+    """Surfaces of the pulleys."""
+    surfaces = [pulley.surface or SURFACES["circle"]() for pulley in pulleys]
+    if all(surface.kind == "circle" for surface in surfaces):
+        return RoundRims(radii)
+    table = records(SHAPE, reach=[surface.reach for surface in surfaces])
+    for row, surface in zip(table, surfaces, strict=True):
+        row["kind"] = list(KINDS).index(surface.kind)
+        for name, value in surface.parameters.items():
+            row[name] = value
+    return ShapedRims(radii, table)
 
 
 def _bodies(

@@ -91,7 +91,6 @@ def couple_center(
     node_j: int,
     rim: int,
     center: MovingCenter,
-    by_velocity: float,
     drifting: float,
     contact: np.record,
     drift: np.record,
@@ -109,8 +108,6 @@ def couple_center(
         Place of the rim's angle in the border, -1 where it is prescribed.
     center
         How the centre moves.
-    by_velocity
-        Factor of the derivative with respect to velocity in the tangent.
     drifting
         Factor of the drift: that of the derivative with respect to position, zero where there is none.
     contact
@@ -136,8 +133,8 @@ def couple_center(
                 matrix.row[node, own, c] += system.shift[b] * (contact.xx[b, a] * x + contact.yx[b, a] * y)
                 matrix.row[node, own, c + 1] += system.shift[b] * (contact.xy[b, a] * x + contact.yy[b, a] * y)
         if rim >= 0:
-            push = x * contact.by_speed[a, 0] + y * contact.by_speed[a, 1]
-            matrix.corner[own, rim] += by_velocity * weight * push
+            push = x * contact.by_turn[a, 0] + y * contact.by_turn[a, 1]
+            matrix.corner[own, rim] += weight * push
             matrix.corner[rim, own] += weight * (x * contact.moment[a, 0] + y * contact.moment[a, 1])
     if rim >= 0 and drifting != 0.0:
         matrix.corner[rim, own] += drifting * drift.moment

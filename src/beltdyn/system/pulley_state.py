@@ -2,6 +2,7 @@
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import PulleyState
+from beltdyn.contact.surface import surface_at
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import System
@@ -26,12 +27,12 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     position, velocity : ndarray, shape (6 N + D,)
         The state.
     """
-    item = system.pulleys[pulley]
-    carrier = item.carrier
-    speed = velocity[system.first_body + pulley]
+    item, body = system.pulleys[pulley], system.first_body + pulley
+    carrier, speed = item.carrier, velocity[body]
+    surface = surface_at(system.rims, pulley, position[body])
     if carrier < 0:
-        return PulleyState(item.center[0], item.center[1], item.radius, speed, item.friction, 0.0, 0.0)
+        return PulleyState(item.center[0], item.center[1], surface, speed, item.friction, 0.0, 0.0)
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
     vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
-    return PulleyState(center.x, center.y, item.radius, speed, item.friction, vx, vy)
+    return PulleyState(center.x, center.y, surface, speed, item.friction, vx, vy)

@@ -10,11 +10,24 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import LAWS, CoefficientSlope, ForceSlope, FrictionParameters
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
+from beltdyn.contact.surface import KINDS, SHAPE, Round, ShapedRims, surface_at
+from beltdyn.records import records
 
 
 @pytest.fixture(scope="session")
 def pulley() -> PulleyState:
-    return PulleyState(center_x=0.3, center_y=-0.2, radius=0.1, speed=7.0, friction=0.5)
+    return PulleyState(0.3, -0.2, Round(0.1), speed=7.0, friction=0.5)
+
+
+@pytest.fixture(scope="session")
+def eccentric() -> Callable[[float], PulleyState]:
+    """The same pulley with a rim that is 4 mm eccentric, at an angle."""
+    table = records(SHAPE, kind=[list(KINDS).index("eccentric")], eccentricity=[4e-3], eccentric_angle=[0.3])
+
+    def at(angle: float) -> PulleyState:
+        return PulleyState(0.3, -0.2, surface_at(ShapedRims(np.array([0.1]), table), 0, angle), speed=7.0, friction=0.5)
+
+    return at
 
 
 FRICTION: dict[str, FrictionParameters] = {
@@ -39,7 +52,7 @@ def place() -> Callable[[PulleyState, float, float], tuple[float, float]]:
     """Point at a penetration and an angle."""
 
     def at(pulley: PulleyState, penetration: float, angle: float) -> tuple[float, float]:
-        distance = pulley.radius - penetration
+        distance = pulley.surface.radius - penetration
         return pulley.center_x + distance * np.cos(angle), pulley.center_y + distance * np.sin(angle)
 
     return at

@@ -24,8 +24,8 @@ def sunk(pulley: PulleyState, degree: int) -> tuple[FloatArray, FloatArray]:
     wave = 1e-3 * np.cos(7.0 * np.arange(degree + 1))
     out = np.stack([np.cos(along), np.sin(along)], axis=1)
     center = np.array([pulley.center_x, pulley.center_y])
-    control = center + (pulley.radius + wave + 0.002 * np.arange(degree + 1) / degree)[:, None] * out
-    velocity = pulley.radius * pulley.speed * np.stack([-out[:, 1], out[:, 0]], axis=1)
+    control = center + (pulley.surface.radius + wave + 0.002 * np.arange(degree + 1) / degree)[:, None] * out
+    velocity = pulley.surface.radius * pulley.speed * np.stack([-out[:, 1], out[:, 0]], axis=1)
     return control, velocity * (1.0 + 0.3 * wave / 1e-3)[:, None] - 0.02 * out
 
 
@@ -51,12 +51,20 @@ def answer(*arguments: Any) -> FloatArray:
     return np.append(work.force.ravel(), totals.moment)
 
 
+@pytest.fixture(params=["circle", "eccentric"])
+def any_pulley(
+    request: pytest.FixtureRequest, pulley: PulleyState, eccentric: Callable[[float], PulleyState]
+) -> PulleyState:
+    return pulley if request.param == "circle" else eccentric(0.9)
+
+
 @pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
 @pytest.mark.parametrize("degree", DEGREES)
 @pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
 def test_tangent(
-    pulley: PulleyState, law: ContactLaw, degree: int, follow_zone: bool, by_position: float, by_velocity: float
+    any_pulley: PulleyState, law: ContactLaw, degree: int, follow_zone: bool, by_position: float, by_velocity: float
 ) -> None:
+    pulley = any_pulley
     vectors, rates = sunk(pulley, degree)
     law, basis = law._replace(follow_zone=follow_zone), np.eye(degree + 1)
     work, _ = act(vectors, rates, basis, pulley, law, by_position, by_velocity)
@@ -83,13 +91,60 @@ def test_tangent(
 def test_derivative_with_respect_to_the_speed(pulley: PulleyState, law: ContactLaw, degree: int) -> None:
     vectors, rates = sunk(pulley, degree)
     basis, step = np.eye(degree + 1), 1e-5
-    work, totals = act(vectors, rates, basis, pulley, law, 0.0, 1.0)
+    work, _ = act(vectors, rates, basis, pulley, law, 0.0, 1.0)
     faster, slower = (
         answer(vectors, rates, basis, pulley._replace(speed=pulley.speed + s), law) for s in (step, -step)
     )
     expected = (faster - slower) / (2.0 * step)
-    given = np.append(work.by_speed.ravel(), totals.moment_by_speed)
+    given = np.append(work.by_turn.ravel(), work.moment_by_turn)
     np.testing.assert_allclose(given, expected, atol=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("arm_to_rim", [False, True], ids=["point", "rim"])
+@pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
+@pytest.mark.parametrize(("by_angle", "by_speed"), [(1.0, 0.0), (0.0, 1.0), (1.0, 300.0)])
+def test_derivative_with_respect_to_the_turning_of_a_shaped_pulley(
+    eccentric: Callable[[float], PulleyState],
+    law: ContactLaw,
+    follow_zone: bool,
+    arm_to_rim: bool,
+    by_angle: float,
+    by_speed: float,
+) -> None:
+    pulley, angle, step = eccentric(0.9), 0.9, 1e-7
+    vectors, rates = sunk(pulley, 3)
+    law, basis = law._replace(follow_zone=follow_zone, arm_to_rim=arm_to_rim), np.eye(4)
+    work, _ = act(vectors, rates, basis, pulley, law, by_angle, by_speed)
+    there, back = (
+        answer(vectors, rates, basis, eccentric(angle + s * by_angle)._replace(speed=pulley.speed + s * by_speed), law)
+        for s in (step, -step)
+    )
+    expected = (there - back) / (2.0 * step)
+    given = np.append(work.by_turn.ravel(), work.moment_by_turn)
+    np.testing.assert_allclose(given, expected, atol=1e-6 * np.abs(expected).max())  # truncation and rounding
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4, 2.0, 5.0])
+def test_an_eccentric_rim_acts_as_a_circle_about_its_own_centre(
+    pulley: PulleyState, eccentric: Callable[[float], PulleyState], law: ContactLaw, turn: float
+) -> None:
+    """Its forces are those of a circle there, which moves; its moment is theirs about the shaft."""
+    aside = 4e-3 * np.array([np.cos(turn + 0.3), np.sin(turn + 0.3)])
+    moved = pulley._replace(
+        center_x=pulley.center_x + aside[0],
+        center_y=pulley.center_y + aside[1],
+        velocity_x=-pulley.speed * aside[1],
+        velocity_y=pulley.speed * aside[0],
+    )
+    vectors, rates = sunk(moved, 3)
+    one, by_rim = act(vectors, rates, np.eye(4), eccentric(turn), law)
+    other, by_circle = act(vectors, rates, np.eye(4), moved, law)
+    rounding = 1e-9 * np.abs(other.force).max()  # ends of intervals, to 1e-13
+    np.testing.assert_allclose(one.force, other.force, atol=rounding)
+    about_shaft = by_circle.moment + aside[0] * by_circle.hub_y - aside[1] * by_circle.hub_x
+    assert by_rim.moment == pytest.approx(about_shaft, abs=rounding)
+    assert by_rim.friction_power == pytest.approx(by_circle.friction_power, rel=1e-9)
+    assert by_rim.damping_power == pytest.approx(by_circle.damping_power, rel=1e-9)
 
 
 @pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
@@ -102,7 +157,7 @@ def test_a_cubic_written_as_a_quintic(
     one, totals = act(vectors, rates, cubic, pulley, law, 1.0, 300.0)
     other, raised = act(vectors, rates, elevate(cubic, 5), pulley, law, 1.0, 300.0)
     rounding = 1e-12
-    for name in ("force", "by_speed", "moment", *BLOCKS):
+    for name in ("force", "by_turn", "moment", *BLOCKS):
         size = np.abs(one[name]).max()
         np.testing.assert_allclose(other[name], one[name], atol=rounding * size, err_msg=name)
     np.testing.assert_allclose(raised, totals, rtol=rounding)
@@ -135,7 +190,7 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
     rule = gauss_points(12)
     totals = contact_force(curve, pulley, law, rule, 0.0, 0.0, work)
 
-    half = np.sqrt(pulley.radius**2 - height**2)
+    half = np.sqrt(pulley.surface.radius**2 - height**2)
     if follow_zone:
         places, weights = np.polynomial.legendre.leggauss(40)
         s, share = half * places, 0.8 * half * weights
@@ -145,15 +200,14 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
     distance = np.hypot(s, height)
     normal = np.stack([s, np.full(s.size, height)], axis=1) / distance[:, None]
     tangent = np.stack([-normal[:, 1], normal[:, 0]], axis=1)
-    depth, sinking = pulley.radius - distance, -normal @ velocity
+    depth, sinking = pulley.surface.radius - distance, -normal @ velocity
     pressure = law.normal.stiffness * depth + law.normal.damping * sinking
     friction = np.sign(speed) * pulley.friction * pressure
     force = pressure[:, None] * normal + friction[:, None] * tangent
-    arm = np.full(s.size, pulley.radius) if arm_to_rim else distance
+    arm = np.full(s.size, pulley.surface.radius) if arm_to_rim else distance
     toward_end = (s - ends[0]) / np.ptp(ends)
     expected = ContactTotals(
         moment=-share @ (arm * friction),
-        moment_by_speed=0.0,
         hub_x=-share @ force[:, 0],
         hub_y=-share @ force[:, 1],
         penalty_energy=share @ (0.5 * law.normal.stiffness * depth**2),
@@ -177,7 +231,7 @@ def test_belt_and_pulley_that_move_on_together(pulley: PulleyState, law: Contact
     )
     here, totals = act(vectors, rates, np.eye(4), pulley, law, 1.0, 300.0)
     there, same = act(vectors + shift, rates + drift, np.eye(4), moved, law, 1.0, 300.0)
-    for name in ("force", "by_speed", "moment", *BLOCKS):
+    for name in ("force", "by_turn", "moment", *BLOCKS):
         np.testing.assert_allclose(there[name], here[name], atol=1e-10 * np.abs(here[name]).max(), err_msg=name)
     np.testing.assert_allclose(same, totals, rtol=1e-10)
 
@@ -188,7 +242,7 @@ def test_without_a_tangent_the_forces_are_the_same(pulley: PulleyState, law: Con
     without, same = act(vectors, rates, np.eye(4), pulley, law)
     np.testing.assert_array_equal(without.force, with_it.force)
     assert same == totals
-    assert not any(np.any(without[name]) for name in ("by_speed", "moment", *BLOCKS))
+    assert not any(np.any(without[name]) for name in ("by_turn", "moment", *BLOCKS))
 
 
 def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw) -> None:
@@ -200,7 +254,7 @@ def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw) -> None:
     kept = work.copy()
     again = contact_force(curve, pulley, law, RULE, 1.0, 300.0, work)
     assert again == first
-    for name in ("force", "by_speed", "moment", *BLOCKS):
+    for name in ("force", "by_turn", "moment", *BLOCKS):
         np.testing.assert_array_equal(work[name], kept[name])
 
 
@@ -213,7 +267,7 @@ def test_an_element_that_touches_all_along_is_its_own_zone(pulley: PulleyState, 
     )
     assert zone[1] == whole[1]
     assert whole[1].penalty_energy > 0.0
-    for name in ("force", "by_speed", "moment", *BLOCKS):
+    for name in ("force", "by_turn", "moment", *BLOCKS):
         np.testing.assert_array_equal(zone[0][name], whole[0][name])
 
 
@@ -227,7 +281,7 @@ def test_tangent_along_a_direction_where_either_end_is_inside(
     """Ends of an element that belong to its zone stay where they are; those of the zone within the element move."""
     vectors, rates = sunk(pulley, 3)
     out = vectors - [pulley.center_x, pulley.center_y]
-    vectors = vectors - np.linspace(*depths, 4)[:, None] * 1e-3 * out / pulley.radius
+    vectors = vectors - np.linspace(*depths, 4)[:, None] * 1e-3 * out / pulley.surface.radius
     work, _ = act(vectors, rates, np.eye(4), pulley, law, by_position, by_velocity)
     ends = work.zone.intervals[0]
     assert (ends[0] == 0.0, ends[1] == 1.0) == (depths[0] > 0.0, depths[1] > 0.0)

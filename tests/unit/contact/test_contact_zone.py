@@ -12,8 +12,9 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import fill_bernstein
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import PulleyState
+from beltdyn.contact.surface import Round
 
-UNIT = PulleyState(0.0, 0.0, 1.0, 0.0, 0.5)
+UNIT = PulleyState(0.0, 0.0, Round(1.0), 0.0, 0.5)
 XI = np.linspace(0.0, 1.0, 2001)
 GRAZING = 1e-6
 """Between two samples a curve of these lengths sags by less."""
@@ -116,7 +117,7 @@ def test_whole_element(shift: float, expected: Any) -> None:
 
 def test_position_and_size_of_the_pulley_do_not_matter() -> None:
     control = np.stack([np.linspace(-1.5, 1.5, 4), np.full(4, 0.6)], axis=1)
-    moved = intervals(0.01 * control + [3.0, -4.0], PulleyState(3.0, -4.0, 0.01, 50.0, 0.5))
+    moved = intervals(0.01 * control + [3.0, -4.0], PulleyState(3.0, -4.0, Round(0.01), 50.0, 0.5))
     np.testing.assert_allclose(
         moved, intervals(control), atol=1e-10
     )  # cancellation in coordinates 400 times the radius

@@ -23,7 +23,7 @@ def test_frame_of_a_point(
     here = approach(x, y, velocity_x, velocity_y, pulley)
     rounding = 1e-13
     assert here.penetration == pytest.approx(penetration, abs=rounding)
-    assert here.distance == pytest.approx(pulley.radius - penetration, abs=rounding)
+    assert here.lever == pytest.approx(pulley.surface.radius - penetration, abs=rounding)
     np.testing.assert_allclose([here.normal_x, here.normal_y], normal, atol=rounding)
     np.testing.assert_allclose([here.radial, here.circumferential], [radial, around], atol=20 * rounding)
 
@@ -45,7 +45,7 @@ def test_a_rim_point_that_turns_with_the_pulley_does_not_slip(pulley: PulleyStat
 
 def test_slip_is_measured_against_the_rim_at_any_depth(pulley: PulleyState, place: Place) -> None:
     here = approach(*place(pulley, 0.02, 2.0), 0.0, 0.0, pulley)
-    assert slip_velocity(here, pulley) == -pulley.speed * pulley.radius
+    assert slip_velocity(here, pulley) == -pulley.speed * pulley.surface.radius
 
 
 def test_only_the_motion_against_the_centre_counts(pulley: PulleyState, place: Place) -> None:

@@ -11,7 +11,6 @@ from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import Published
 from beltdyn.contact.penetration import Approach, approach
 from beltdyn.contact.point_force import point_force, point_tangent
-from beltdyn.contact.pulley_moment import pulley_moment
 
 Place = Callable[[PulleyState, float, float], tuple[float, float]]
 CASES = {
@@ -46,7 +45,7 @@ def act(state: FloatArray, pulley: PulleyState, law: ContactLaw) -> FloatArray:
     """Force and moment."""
     here = point(state, pulley)
     force = point_force(here, pulley, law)
-    return np.array([force.x, force.y, pulley_moment(force.arm, force.friction)])
+    return np.array([force.x, force.y, force.moment])
 
 
 def difference(state: FloatArray, change: FloatArray, pulley: PulleyState, law: ContactLaw) -> FloatArray:
@@ -67,7 +66,7 @@ def test_tangent(
     state: FloatArray, pulley: PulleyState, every_law: ContactLaw, by_position: float, by_velocity: float
 ) -> None:
     here = point(state, pulley)
-    tangent = point_tangent(here, point_force(here, pulley, every_law), by_position, by_velocity)
+    tangent = point_tangent(here, point_force(here, pulley, every_law), pulley.speed, by_position, by_velocity)
     columns, step = [], 1e-9 if by_position else 1e-6
     for axis in range(2):
         change = np.zeros(4)
@@ -83,7 +82,7 @@ def test_tangent_with_respect_to_the_speed_of_the_pulley(
 ) -> None:
     here = point(state, pulley)
     force = point_force(here, pulley, every_law)
-    by_speed = -force.by_slip * pulley.radius
+    by_speed = -force.by_slip * pulley.surface.radius
     faster, slower = (act(state, pulley._replace(speed=pulley.speed + s), every_law) for s in (1e-5, -1e-5))
     expected = np.array([-here.normal_y, here.normal_x, -force.arm]) * by_speed
     np.testing.assert_allclose(

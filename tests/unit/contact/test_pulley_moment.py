@@ -7,7 +7,6 @@ import pytest
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import approach
 from beltdyn.contact.point_force import point_force
-from beltdyn.contact.pulley_moment import pulley_moment
 
 Place = Callable[[PulleyState, float, float], tuple[float, float]]
 
@@ -21,9 +20,9 @@ def test_is_the_moment_of_the_reaction(
     here = approach(x, y, *velocity, pulley)
     force = point_force(here, pulley, law)
     arm_x, arm_y = x - pulley.center_x, y - pulley.center_y
-    moment = pulley_moment(force.arm, force.friction)
+    moment = force.moment
     assert moment == pytest.approx(-(arm_x * force.y - arm_y * force.x), rel=1e-12)
-    assert moment == pytest.approx(-(pulley.radius - 2e-3) * force.friction, rel=1e-12)
+    assert moment == pytest.approx(-(pulley.surface.radius - 2e-3) * force.friction, rel=1e-12)
 
 
 @pytest.mark.parametrize("velocity", [(0.0, 0.0), (2.0, -1.0), (-0.5, 0.6), (-0.02, 0.01)])
@@ -32,6 +31,6 @@ def test_with_the_arm_to_the_rim_friction_never_gives_energy(
 ) -> None:
     here = approach(*place(pulley, 2e-3, 1.0), *velocity, pulley)
     force = point_force(here, pulley, law._replace(arm_to_rim=True))
-    moment = pulley_moment(force.arm, force.friction)
-    assert moment == -pulley.radius * force.friction
+    moment = force.moment
+    assert moment == -pulley.surface.radius * force.friction
     assert force.friction * here.circumferential + moment * pulley.speed <= 0.0

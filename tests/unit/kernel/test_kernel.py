@@ -124,9 +124,10 @@ from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.penetration import Approach
 from beltdyn.contact.point_force import point_force
+from beltdyn.contact.surface import Round
 law = ContactLaw(NoPull(1e7, 0.0), ForceSlope(1e5), follow_zone=True)
-here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "distance": 0.08})
-print(point_force(here, PulleyState(0.0, 0.0, 0.081, 0.0, 1.2), law).normal.force)
+here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "lever": 0.08})
+print(point_force(here, PulleyState(0.0, 0.0, Round(0.081), 0.0, 1.2), law).normal.force)
 """
 
 

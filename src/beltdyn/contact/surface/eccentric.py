@@ -1,0 +1,40 @@
+"""An eccentric pulley: a circle of the effective radius whose centre lies beside the shaft."""
+
+from collections.abc import Mapping
+from math import cos, sin, sqrt
+
+import numpy as np
+
+from beltdyn.contact.parameter import Parameter
+from beltdyn.contact.surface.kind import Gap, SurfaceKind, register
+from beltdyn.kernel import kernel
+
+
+@kernel
+def eccentric_gap(x: float, y: float, radius: float, surface: np.record) -> Gap:
+    """Gap of a point: as on a circle about its own centre.
+
+    Parameters
+    ----------
+    x, y
+        Place of the point against the shaft, in the frame of the pulley, m.
+    radius
+        Effective radius R, m.
+    surface
+        With `eccentricity` (m) and `eccentric_angle` (rad).
+    """
+    dx = x - surface.eccentricity * cos(surface.eccentric_angle)
+    dy = y - surface.eccentricity * sin(surface.eccentric_angle)
+    distance = sqrt(dx * dx + dy * dy)
+    return Gap(radius - distance, dx / distance, dy / distance, 1.0 / distance)
+
+
+def _reach(parameters: Mapping[str, float]) -> float:
+    return parameters["eccentricity"]
+
+
+_KEYS = (
+    Parameter("eccentricity", "m", "the distance of the rim's centre from the shaft"),
+    Parameter("eccentric_angle", "rad", "the direction of the rim's centre at the start", above=None, default=0.0),
+)
+register(SurfaceKind("eccentric", eccentric_gap, _reach, _KEYS))
