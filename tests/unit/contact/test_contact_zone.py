@@ -129,9 +129,9 @@ def test_quick_rejection_goes_by_what_the_element_is_to_the_pulley(numbers: list
     control = np.array(numbers).reshape(4, 2)
     away = out_of_reach(control, UNIT)
     moved = out_of_reach(
-        size * control + [8.0, -3.0], UNIT._replace(center_x=8.0, center_y=-3.0, radius=size * (1.0 + 1e-9))
+        size * control + [8.0, -3.0], UNIT._replace(center_x=8.0, center_y=-3.0, surface=Round(size * (1.0 + 1e-9)))
     )
-    wider = out_of_reach(control, UNIT._replace(radius=1.0 + 2e-9))
+    wider = out_of_reach(control, UNIT._replace(surface=Round(1.0 + 2e-9)))
     assert moved in (away, wider)  # at the very limit rounding decides
     assert out_of_reach(control * [1.0, -1.0], UNIT) == away
     assert out_of_reach(control[:, ::-1] * [-1.0, 1.0], UNIT) == away
