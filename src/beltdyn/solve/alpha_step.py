@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import add_missed_impulses
 from beltdyn.solve.alpha_method import Method
-from beltdyn.solve.march import ITERATIONS, SLOWEST, March, Settings, allowed_error
+from beltdyn.solve.integrator_state import IntegratorState, Settings, allowed_error
 from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
@@ -75,7 +75,9 @@ def new_step(method: Method, start: float, length: float, stop: float) -> Step:
 
 
 @kernel
-def try_step(system: System, settings: Settings, method: Method, march: March, step: Step, equations: Equations) -> int:
+def try_step(
+    system: System, settings: Settings, method: Method, state: IntegratorState, step: Step, equations: Equations
+) -> int:
     """Solve the equations of motion at the end of a step, from a constant A as first guess.
 
     The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
@@ -91,7 +93,7 @@ def try_step(system: System, settings: Settings, method: Method, march: March, s
         Tolerances.
     method
         Coefficients.
-    march
+    state
         Its trial state is overwritten.
     step
         From `new_step`.
@@ -103,16 +105,16 @@ def try_step(system: System, settings: Settings, method: Method, march: March, s
     int
         Iterations, or 0 if they did not converge.
     """
-    _predict(system, method, march, step)
+    _predict(system, method, state, step)
     allowed = settings.newton_fraction * allowed_error(settings, step.length)
     before, slope, factor, renewed = inf, 0.0, 1.0, True
-    quick, slowest = march.clock[SLOWEST] <= _QUICK, 0.0
-    march.clock[SLOWEST] = 1.0
+    quick, slowest = state.clock.contraction <= _QUICK, 0.0
+    state.clock.contraction = 1.0
     for iteration in range(_MAX_ITERATIONS):
-        march.counts[ITERATIONS] += 1
-        _assemble(system, march, step, equations, renewed)
+        state.counts.iterations += 1
+        _assemble(system, state, step, equations, renewed)
         if slope > 0.0:
-            factor = _cut_back(system, march, step, equations, slope, factor, renewed)
+            factor = _cut_back(system, state, step, equations, slope, factor, renewed)
         if renewed and not factorise_ring(equations.matrix, system.closed):
             return 0
         substitute(equations.matrix, system.closed, equations.node_part, equations.border_part)
@@ -123,10 +125,10 @@ def try_step(system: System, settings: Settings, method: Method, march: March, s
         slowest = max(slowest, change / before)
         contraction = min(1.0, change / before) if factor == 1.0 else 1.0
         factor = 0.5 if iteration >= _DAMPED_FROM and change > _STAGNATION * before else 1.0
-        _move(system, march, step, equations, factor)
+        _move(system, state, step, equations, factor)
         if change <= _NEAR * allowed and contraction * change <= allowed:
-            _finish(method, march)
-            march.clock[SLOWEST] = slowest
+            _finish(method, state)
+            state.clock.contraction = slowest
             return iteration + 1
         renewed = not quick or slowest > _QUICK
         before = change
@@ -134,29 +136,29 @@ def try_step(system: System, settings: Settings, method: Method, march: March, s
 
 
 @kernel(inline=True)
-def _predict(system: System, method: Method, march: March, step: Step) -> None:
+def _predict(system: System, method: Method, state: IntegratorState, step: Step) -> None:
     """Overwrite the trial state by that of a constant A."""
     length = step.length
-    for i in range(march.position.size):
-        a = march.auxiliary[i]
-        march.trial[0, i] = march.position[i] + length * march.velocity[i] + 0.5 * length * length * a
-        march.trial[1, i] = march.velocity[i] + length * a
-        march.trial[2, i] = (a - method.af * march.acceleration[i]) / (1.0 - method.af)
-    add_missed_impulses(system, method, march, length)
-    prescribe(system, step.end, march.trial[0], march.trial[1], march.trial[2])
+    for i in range(state.position.size):
+        a = state.auxiliary[i]
+        state.trial.position[i] = state.position[i] + length * state.velocity[i] + 0.5 * length * length * a
+        state.trial.velocity[i] = state.velocity[i] + length * a
+        state.trial.acceleration[i] = (a - method.af * state.acceleration[i]) / (1.0 - method.af)
+    add_missed_impulses(system, method, state, length)
+    prescribe(system, step.end, state.trial.position, state.trial.velocity, state.trial.acceleration)
 
 
 @kernel(inline=True)
-def _assemble(system: System, march: March, step: Step, equations: Equations, renewed: bool) -> None:
+def _assemble(system: System, state: IntegratorState, step: Step, equations: Equations, renewed: bool) -> None:
     """Assemble the residual at the trial state, and the tangent if it is renewed."""
     share = 1.0 if renewed else 0.0
     assemble(
         system,
         step.end,
-        march.trial[0],
-        march.trial[1],
-        march.trial[2],
-        march.multipliers,
+        state.trial.position,
+        state.trial.velocity,
+        state.trial.acceleration,
+        state.multipliers,
         share,
         share * step.by_velocity,
         share * step.by_acceleration,
@@ -168,7 +170,7 @@ def _assemble(system: System, march: March, step: Step, equations: Equations, re
 
 @kernel(inline=True)
 def _cut_back(
-    system: System, march: March, step: Step, equations: Equations, slope: float, factor: float, renewed: bool
+    system: System, state: IntegratorState, step: Step, equations: Equations, slope: float, factor: float, renewed: bool
 ) -> float:
     """Take back what the last change went too far, by secants; returns the factor of the change that is left."""
     for _ in range(_CUTS):
@@ -176,27 +178,29 @@ def _cut_back(
         if now >= -_OVERSHOOT * slope:
             break
         kept = max(_SHORTEST, slope / (slope - now))
-        _move(system, march, step, equations, (kept - 1.0) * factor)
+        _move(system, state, step, equations, (kept - 1.0) * factor)
         factor *= kept
-        _assemble(system, march, step, equations, renewed)
+        _assemble(system, state, step, equations, renewed)
     return factor
 
 
 @kernel(inline=True)
-def _move(system: System, march: March, step: Step, equations: Equations, factor: float) -> None:
+def _move(system: System, state: IntegratorState, step: Step, equations: Equations, factor: float) -> None:
     """Take factor times the solution off the trial state."""
-    subtract_solution(system, equations, factor, march.trial[0])
-    subtract_solution(system, equations, factor * step.by_velocity, march.trial[1])
-    subtract_solution(system, equations, factor * step.by_acceleration, march.trial[2])
-    subtract_multipliers(system, equations, factor, march.multipliers)
+    subtract_solution(system, equations, factor, state.trial.position)
+    subtract_solution(system, equations, factor * step.by_velocity, state.trial.velocity)
+    subtract_solution(system, equations, factor * step.by_acceleration, state.trial.acceleration)
+    subtract_multipliers(system, equations, factor, state.multipliers)
 
 
 @kernel(inline=True)
-def _finish(method: Method, march: March) -> None:
+def _finish(method: Method, state: IntegratorState) -> None:
     """A at the end of the step, from the accelerations."""
-    for i in range(march.position.size):
-        march.trial[3, i] = (
-            (1.0 - method.af) * march.trial[2, i] + method.af * march.acceleration[i] - method.am * march.auxiliary[i]
+    for i in range(state.position.size):
+        state.trial.auxiliary[i] = (
+            (1.0 - method.af) * state.trial.acceleration[i]
+            + method.af * state.acceleration[i]
+            - method.am * state.auxiliary[i]
         ) / (1.0 - method.am)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
-from beltdyn.solve import generalized_alpha
-from beltdyn.solve.march import March, Settings, Steps, empty_steps, new_march
+from beltdyn.solve import alpha_advance
+from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, empty_steps, new_state
 from beltdyn.system.arrays import DRIVER_WORK, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.missed_action import jump_work
@@ -23,11 +23,11 @@ from beltdyn.system.ring_matrix import solve_ring, substitute
 ADVANCE: Final = 0
 """Step through time."""
 LINEARISE: Final = 1
-"""Assemble at the trial state of the march, and solve."""
+"""Assemble at the trial state of the integration, and solve."""
 ACCELERATE: Final = 2
 """Prescribe the motion of what is driven, linearise, and put the solution into the trial acceleration."""
 CORRECT: Final = 3
-"""Assemble the residual alone at the trial state of the march, and solve with the factors that are there."""
+"""Assemble the residual alone at the trial state of the integration, and solve with the factors that are there."""
 MOVE: Final = 4
 """Take a part of the solution off the trial position."""
 
@@ -52,7 +52,7 @@ class Request(NamedTuple):
 
 @kernel
 def serve(
-    system: System, request: Request, settings: Settings, march: March, equations: Equations, steps: Steps
+    system: System, request: Request, settings: Settings, state: IntegratorState, equations: Equations, steps: Steps
 ) -> tuple[int, int]:
     """Do what is asked for.
 
@@ -62,32 +62,32 @@ def serve(
         Belt, bodies, supports.
     request
         What to do.
-    settings, march, steps
-        As for `generalized_alpha.advance`.
+    settings, state, steps
+        As for `alpha_advance.advance`.
     equations
         Arrays to work in.
 
     Returns
     -------
     status, filled : int
-        Those of `generalized_alpha.advance`; of others 1, or 0 where the tangent is singular, and 0.
+        Those of `alpha_advance.advance`; of others 1, or 0 where the tangent is singular, and 0.
     """
-    kind, trial = request.kind, march.trial
+    kind, trial = request.kind, state.trial
     if kind == ADVANCE:
-        return generalized_alpha.advance(system, settings, march, equations, request.time, request.budget, steps)
+        return alpha_advance.advance(system, settings, state, equations, request.time, request.budget, steps)
     if kind == MOVE:
-        subtract_solution(system, equations, request.factor, trial[0])
-        subtract_multipliers(system, equations, request.factor, march.multipliers)
+        subtract_solution(system, equations, request.factor, trial.position)
+        subtract_multipliers(system, equations, request.factor, state.multipliers)
         return 1, 0
     if kind == ACCELERATE:
-        prescribe(system, request.time, trial[0], trial[1], trial[2])
+        prescribe(system, request.time, trial.position, trial.velocity, trial.acceleration)
     assemble(
         system,
         request.time,
-        trial[0],
-        trial[1],
-        trial[2],
-        march.multipliers,
+        trial.position,
+        trial.velocity,
+        trial.acceleration,
+        state.multipliers,
         request.by_position,
         request.by_velocity,
         request.by_acceleration,
@@ -101,16 +101,22 @@ def serve(
     if not solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part):
         return 0, 0
     if kind == ACCELERATE:
-        subtract_solution(system, equations, 1.0, trial[2])
-        subtract_multipliers(system, equations, 1.0, march.multipliers)
+        subtract_solution(system, equations, 1.0, trial.acceleration)
+        subtract_multipliers(system, equations, 1.0, state.multipliers)
     return 1, 0
 
 
 def advance(
-    system: System, settings: Settings, march: March, equations: Equations, stop: float, budget: int, steps: Steps
+    system: System,
+    settings: Settings,
+    state: IntegratorState,
+    equations: Equations,
+    stop: float,
+    budget: int,
+    steps: Steps,
 ) -> tuple[int, int]:
-    """Integrate; see `generalized_alpha.advance`."""
-    return serve(system, Request(ADVANCE, stop, budget), settings, march, equations, steps)
+    """Integrate; see `alpha_advance.advance`."""
+    return serve(system, Request(ADVANCE, stop, budget), settings, state, equations, steps)
 
 
 def linearise(
@@ -201,22 +207,23 @@ def _serve(
 ) -> bool:
     """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
     size = motion[0].size
-    march = new_march(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
-    march.trial[:3] = motion
-    solved = serve(system, request, _NO_SETTINGS, march, equations, empty_steps(system, 0))[0] == 1
-    for changed, vector in zip(motion, march.trial, strict=False):
+    state = new_state(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
+    for own, given in zip(state.trial, motion, strict=False):
+        own[:] = given
+    solved = serve(system, request, _NO_SETTINGS, state, equations, empty_steps(system, 0))[0] == 1
+    for changed, vector in zip(motion, state.trial, strict=False):
         changed[:] = vector
     return solved
 
 
-def restart(system: System, march: March, equations: Equations) -> None:
+def restart(system: System, state: IntegratorState, equations: Equations) -> None:
     """Take the accelerations from the equations of motion: at the start, and after a jump of what drives the system.
 
     Parameters
     ----------
     system
         Belt, bodies, supports.
-    march
+    state
         Changed in place; profiles are taken just after its time.
     equations
         Arrays to work in.
@@ -226,11 +233,11 @@ def restart(system: System, march: March, equations: Equations) -> None:
     ConvergenceError
         If the mass matrix is singular.
     """
-    after = float(np.nextafter(march.clock[0], np.inf))
-    speeds = march.velocity.copy()
-    if not accelerate(system, after, march.position, march.velocity, march.acceleration, march.multipliers, equations):
+    after = float(np.nextafter(state.clock.time, np.inf))
+    speeds = state.velocity.copy()
+    if not accelerate(system, after, state.position, state.velocity, state.acceleration, state.multipliers, equations):
         raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
-    march.auxiliary[:] = march.acceleration
-    march.lagged[:] = np.nan
-    march.work[DRIVER_WORK] += jump_work(system, speeds, march.velocity)
-    march.power[:] = equations.loads.power
+    state.auxiliary[:] = state.acceleration
+    state.lagged[:] = np.nan
+    state.work[DRIVER_WORK] += jump_work(system, speeds, state.velocity)
+    state.power[:] = equations.loads.power

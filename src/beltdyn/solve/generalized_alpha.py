@@ -1,170 +1,105 @@
-"""Generalised-alpha time integration with variable steps, in compiled code.
+"""Generalised-alpha behind the interface of all integrators."""
 
-The local error of the position is (beta + (am - af) / 2 - 1/6) h^2 (A1 - A0) to leading order.  It is
-allowed in proportion to the length of the step; but not beyond a length at which errors that pull the same way would
-add up to what the tension of the belt feels.
-"""
+from collections.abc import Iterator
+from dataclasses import dataclass
 
-from math import ceil, floor, inf, sqrt
-from typing import Final
+import numpy as np
 
-from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
-from beltdyn.solve.alpha_impulse import follow_profiles
-from beltdyn.solve.alpha_method import Method, method_of
-from beltdyn.solve.alpha_step import Step, new_step, try_step
-from beltdyn.solve.march import FAILED, REJECTED, STEPS, March, Settings, Steps, allowed_error, motion_of
-from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, Motion, System
-from beltdyn.system.body_forces import keep_loads
-from beltdyn.system.missed_action import missed_work
-from beltdyn.system.motion import Equations
-from beltdyn.system.numerical_loss import numerical_loss
-from beltdyn.system.state_loads import find_loads
+from beltdyn.errors import ConvergenceError
+from beltdyn.solve.alpha_advance import REACHED
+from beltdyn.solve.engine import advance, restart
+from beltdyn.solve.integrator_state import (
+    IntegratorState,
+    Settings,
+    Steps,
+    empty_steps,
+    new_state,
+)
+from beltdyn.solve.trajectory import Chunk, Task
+from beltdyn.system.arrays import BodyForces
+from beltdyn.system.motion import new_equations
+from beltdyn.system.state import crossing_time
 
-REACHED: Final = 0
-"""Status: the stop was reached, the room for steps is full, or the budget is spent."""
-STEP_TOO_SMALL: Final = 1
-"""Status: no step was found that converges and is accurate."""
-STRETCH: Final = 1.2
-"""A step may exceed the wanted one by this factor, so that it ends on an instant."""
-
-_EASY: Final = 5
-_GROWTH: Final = 2.0
-_SHRINK: Final = 0.2
-_AIM: Final = 0.8
-_LIMIT: Final = 4.0
-"""Steps are aimed at this part of the local error allowed, and taken up to this multiple: errors jump as nodes meet
-pulleys, and a step tried again costs more than it gains."""
-_WORST: Final = 3.0
-"""A node may err by this many times the root mean square allowed of all: errors are largest at the few nodes that meet
-pulleys, and would vanish in the mean of a fine mesh."""
-_SMALLEST_STEP: Final = 1e-11
-_NUMERICAL: Final = ENERGY_WORKS.index("numerical_loss")
+_ROOM = 64
+"""Steps handed out at once, at most."""
+_STEPS_AT_ONCE = 8000
+_FIRST_STEP = 1e-6
+_NEWTON_FRACTION = 0.01
+_CROSSINGS = 2.0
+"""A step is long from sqrt(rtol) times the time of so many crossings of the belt by an axial wave.  The drive vibrates
+on its belt about that slowly, and until that turns, errors that pull the same way add up."""
 
 
-@kernel
-def advance(
-    system: System,
-    settings: Settings,
-    march: March,
-    equations: Equations,
-    stop: float,
-    budget: int,
-    steps: Steps,
-) -> tuple[int, int]:
-    """Integrate until a stop, until there is no room for steps, or until a number of steps has been tried.
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Generalised-alpha with variable steps.
 
-    Parameters
+    Attributes
     ----------
-    system
-        Belt, pulleys, supports.
-    settings
-        Tolerances and the method's parameter.
-    march
-        Changed in place; it stands on the last state reached.
-    equations
-        Arrays to work in.
-    stop
-        Instant on which the last step ends, s: a kink or jump of what drives the system, or the end.
-    budget
-        Steps to try at most, so that the caller hears of progress.
-    steps
-        Filled with the steps that are accepted.
-
-    Returns
-    -------
-    status : int
-        `REACHED` or `STEP_TOO_SMALL`.
-    filled : int
-        Number of steps filled.
+    spectral_radius : float
+        At infinite frequency, 0 (strongest damping) to 1 (none).
+    rtol : float
+        Local error per unit of time over the velocity scale of the task; less for long steps.
+    max_step : float or None
+        s.
     """
-    filled = 0
-    method = method_of(settings.spectral_radius)
-    clock = march.clock
-    for _ in range(budget):
-        if clock[0] >= stop or (filled == steps.time.size and filled > 0):
-            break
-        length = resolved_length(system, settings, motion_of(march), _next_step(clock, settings, stop))
-        step = new_step(method, clock[0], length, stop)
-        iterations = try_step(system, settings, method, march, step, equations)
-        if iterations == 0:
-            march.counts[FAILED] += 1
-            clock[1] = 0.5 / STRETCH * length
-        else:
-            error = _local_error(system, settings, method, march, length)
-            growth = _GROWTH if iterations <= _EASY else 1.0
-            factor = min(growth, max(_SHRINK, (_AIM / max(error, 1e-12)) ** (1.0 / 3.0)))
-            if error > _LIMIT:
-                march.counts[REJECTED] += 1
-                factor /= STRETCH
-            else:
-                march.counts[STEPS] += 1
-                _accept(system, method, march, equations, step)
-                filled = _keep(march, step, equations.loads, steps, filled)
-            clock[1] = min(settings.max_step, factor * length)
-        if clock[1] < _SMALLEST_STEP:
-            return STEP_TOO_SMALL, filled
-    return REACHED, filled
+
+    spectral_radius: float
+    rtol: float
+    max_step: float | None = None
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate; see `Integrator`."""
+        system, start = task.system, task.start
+        settings = Settings(
+            spectral_radius=self.spectral_radius,
+            velocity_tolerance=self.rtol * task.velocity_scale,
+            newton_fraction=_NEWTON_FRACTION,
+            max_step=self.max_step or task.instants.end,
+            long_step=_CROSSINGS * self.rtol**0.5 * crossing_time(system),
+            output_interval=task.instants.interval,
+        )
+        first_step = min(_FIRST_STEP, settings.max_step)
+        state = new_state(system, 0.0, first_step, start.position, start.velocity)
+        equations = new_equations(system)
+        budget = max(1, _STEPS_AT_ONCE // system.length.size)
+        yield Chunk.start(system, start)
+        for stop in task.stops:
+            restart(system, state, equations)
+            while state.clock.time < stop:
+                steps = empty_steps(system, min(_ROOM, budget))
+                status, filled = advance(system, settings, state, equations, stop, budget, steps)
+                _count(task, state)
+                yield _chunk(steps, filled, state)
+                if status != REACHED:
+                    raise ConvergenceError(_message(task, state, self))
 
 
-@kernel(inline=True)
-def _next_step(clock: FloatArray, settings: Settings, stop: float) -> float:
-    """One of the equal steps to the stop, or to the last output instant that one step reaches, or else to the next."""
-    wanted, interval = clock[1], settings.output_interval
-    longest = min(settings.max_step, STRETCH * wanted)
-    following = floor((clock[0] + 0.5 * wanted) / interval) + 1.0
-    reached = floor((clock[0] + longest) / interval)
-    end = max(following, reached) * interval if interval < inf else stop
-    left = min(stop, end) - clock[0]
-    return left / ceil(left / longest * (1.0 - 1e-6))
+def _chunk(steps: Steps, filled: int, state: IntegratorState) -> Chunk:
+    """The filled part of the room for steps."""
+    loads = BodyForces(*(array[:filled] for array in steps.loads))
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
+    return Chunk(**rows, loads=loads, reached=float(state.clock.time))
 
 
-@kernel(inline=True)
-def _local_error(system: System, settings: Settings, method: Method, march: March, step: float) -> float:
-    """Local error of the positions over what is allowed: of all nodes in the mean, of the worst node, of each body."""
-    auxiliary, total, worst = march.trial[3], 0.0, 0.0
-    for node in range(system.nodes):
-        square = 0.0
-        for c in range(2 * system.points):
-            i = len(system.scale) * node + c
-            square += (auxiliary[i] - march.auxiliary[i]) ** 2
-        total, worst = total + square, max(worst, square)
-    largest = max(sqrt(total / (system.nodes * system.points)), sqrt(worst / system.points) / _WORST)
-    for body in range(system.bodies.size):
-        if system.bodies[body].unknown >= 0:
-            i = system.first_body + body
-            largest = max(largest, system.bodies[body].reach * abs(auxiliary[i] - march.auxiliary[i]))
-    return method.error * step * step * largest / allowed_error(settings, step)
+def _count(task: Task, state: IntegratorState) -> None:
+    """Hand the counters on."""
+    task.statistics.steps = int(state.counts.steps)
+    task.statistics.rejected_steps = int(state.counts.rejected + state.counts.failed)
+    task.statistics.newton_iterations = int(state.counts.iterations)
 
 
-@kernel(inline=True)
-def _accept(system: System, method: Method, march: March, equations: Equations, step: Step) -> None:
-    """Move to the end of the step, and do the energy account."""
-    work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
-    end = Motion(step.end, march.trial[0], march.trial[1], march.trial[2])
-    find_loads(system, end, work, corner, equations.loads)
-    march.work[_NUMERICAL] += numerical_loss(system, motion_of(march), end, march.impulse, work)
-    missed_work(system, motion_of(march), end, march.impulse, march.missed)
-    follow_profiles(system, method, march, step.length)
-    for k in range(power.size):
-        march.work[k] += 0.5 * step.length * (march.power[k] + power[k]) + march.missed[k]
-        march.power[k] = power[k]
-    for i in range(march.position.size):
-        march.position[i], march.velocity[i] = march.trial[0, i], march.trial[1, i]
-        march.acceleration[i], march.auxiliary[i] = march.trial[2, i], march.trial[3, i]
-    march.clock[0] = step.end
-
-
-@kernel(inline=True)
-def _keep(march: March, step: Step, loads: BodyForces, steps: Steps, filled: int) -> int:
-    """Keep the state that was reached and its loads, where there is room; returns the number of steps filled."""
-    if filled == steps.time.size:
-        return filled
-    steps.time[filled], steps.step[filled] = step.end, step.length
-    for i in range(march.position.size):
-        steps.position[filled, i], steps.velocity[filled, i] = march.position[i], march.velocity[i]
-    for k in range(march.work.size):
-        steps.work[filled, k] = march.work[k]
-    keep_loads(loads, steps.loads, filled)
-    return filled + 1
+def _message(task: Task, state: IntegratorState, method: GeneralizedAlpha) -> str:
+    """Where and when the state ended, and what to try."""
+    places, accelerations = (
+        vector[: task.system.first_body].reshape(-1, len(task.system.scale) // task.system.points)[:, :2]
+        for vector in (state.position, state.acceleration)
+    )
+    worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))
+    x, y = places[worst]
+    undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
+    return (
+        f"the simulation cannot go on at t = {state.clock.time:.6g} s: no time step above 1e-11 s converges. "
+        f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
+        f"another simulation.rtol than {method.rtol:g}, a smaller contact.stiffness or a smaller slope of friction."
+    )

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from beltdyn.model import Drive
 from beltdyn.results import Run, require_room
-from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import bring_to_rest
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording

@@ -13,7 +13,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.instants import SAME
-from beltdyn.solve.march import Settings
+from beltdyn.solve.integrator_state import Settings
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.solve.trajectory import Chunk, Task
 from beltdyn.system.arrays import ENERGY_WORKS, POWERS, Motion, System

@@ -5,7 +5,7 @@ from typing import Final
 import numpy as np
 
 from beltdyn.kernel import kernel
-from beltdyn.solve.march import Settings, allowed_error
+from beltdyn.solve.integrator_state import Settings, allowed_error
 from beltdyn.system.arrays import Motion, System
 from beltdyn.system.missed_action import missed_action
 

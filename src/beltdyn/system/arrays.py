@@ -200,7 +200,13 @@ POWERS = (
 )
 """Powers integrated over time by a run, by the name of their integral."""
 
-DRIVER_WORK = POWERS.index("driver_work")
-
 ENERGY_WORKS = (*POWERS, "numerical_loss")
 """Their integrals, and what the damping of the time integrator takes."""
+
+DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, MATERIAL_LOSS, TENSIONER_LOSS, COUPLING_LOSS, NUMERICAL_LOSS = (
+    range(len(ENERGY_WORKS))
+)
+"""Places of the works in these orders, and of their powers."""
+
+PENALTY_ENERGY, SPRING_ENERGY = range(2)
+"""Places in `Loads.stored`."""

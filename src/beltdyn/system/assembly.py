@@ -15,7 +15,7 @@ from beltdyn.elements.dispatch import damping_force, elastic_force
 from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-from beltdyn.system.arrays import BodyForces, RingMatrix, System
+from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, RingMatrix, System
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads
 from beltdyn.system.discretization import element_kind
 from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
@@ -93,7 +93,7 @@ def assemble(
         gather(system, element, acceleration, work.coordinates[2])
         _elastic_and_inertia(system, element, by_position, by_acceleration, wanted, work)
         if damped:
-            loads.power[4] += damping_force(
+            loads.power[MATERIAL_LOSS] += damping_force(
                 system.element,
                 work.coordinates[0],
                 work.coordinates[1],

@@ -8,7 +8,19 @@ from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import link_torque
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
-from beltdyn.system.arrays import POWERS, BodyForces, System
+from beltdyn.system.arrays import (
+    COUPLING_LOSS,
+    DAMPING_LOSS,
+    DRIVER_WORK,
+    FRICTION_LOSS,
+    PENALTY_ENERGY,
+    POWERS,
+    SPRING_ENERGY,
+    TENSIONER_LOSS,
+    TORQUE_WORK,
+    BodyForces,
+    System,
+)
 from beltdyn.system.pulley_state import tensioner_coordinate
 
 
@@ -67,7 +79,7 @@ def add_contact(loads: BodyForces, pulley: int, totals: ContactTotals) -> None:
     loads.hub[pulley, 1] += totals.hub_y
     loads.friction[pulley] += totals.friction_power
     loads.damping[pulley] += totals.damping_power
-    loads.stored[0] += totals.penalty_energy
+    loads.stored[PENALTY_ENERGY] += totals.penalty_energy
 
 
 @kernel
@@ -103,8 +115,8 @@ def add_machines(
     wanted = by_position != 0.0 or by_velocity != 0.0
     for p in range(system.pulleys.size):
         loads.force[p] += loads.moment[p]
-        loads.power[2] += loads.friction[p]
-        loads.power[3] += loads.damping[p]
+        loads.power[FRICTION_LOSS] += loads.friction[p]
+        loads.power[DAMPING_LOSS] += loads.damping[p]
     _add_tensioners(system, position, velocity, by_position, by_velocity, wanted, corner, loads)
     _add_links(system, time, position, velocity, by_position, by_velocity, wanted, corner, loads)
     _take_shafts(system, time, position, velocity, acceleration, by_position, by_velocity, wanted, corner, loads)
@@ -130,8 +142,8 @@ def _add_tensioners(
         hub, weight = loads.hub[tensioners[k].pulley], tensioners[k].weight
         x, y = hub[0] + weight[0], hub[1] + weight[1]
         loads.force[at - first] += own.force + tensioners[k].push + x * center.dx + y * center.dy
-        loads.power[5] += own.loss
-        loads.stored[1] += own.energy
+        loads.power[TENSIONER_LOSS] += own.loss
+        loads.stored[SPRING_ENERGY] += own.energy
         unknown = system.bodies[at - first].unknown
         if wanted and unknown >= 0:
             by_place = own.by_position + x * center.ddx + y * center.ddy
@@ -159,8 +171,8 @@ def _add_links(
         link = link_torque(system.profiles, links[number], time, twist, rate)
         loads.force[front] -= link.torque
         loads.force[back] += link.torque
-        loads.power[6] += link.loss
-        loads.stored[1] += link.energy
+        loads.power[COUPLING_LOSS] += link.loss
+        loads.stored[SPRING_ENERGY] += link.energy
         if wanted:
             slope = by_position * link.by_twist + by_velocity * link.by_rate
             i, j = system.bodies[front].unknown, system.bodies[back].unknown
@@ -193,11 +205,11 @@ def _take_shafts(
         unknown, speed = system.bodies[body].unknown, velocity[first + body]
         if unknown < 0:
             loads.shaft[p] = system.bodies[body].inertia * acceleration[first + body] - loads.force[body]
-            loads.power[0] += loads.shaft[p] * speed
+            loads.power[DRIVER_WORK] += loads.shaft[p] * speed
             continue
         load = shaft_torque(system.profiles, system.shaft_loads, p, time, position[first + body], speed)
         loads.shaft[p] = load.torque
         loads.force[body] += load.torque
-        loads.power[1] += load.torque * speed
+        loads.power[TORQUE_WORK] += load.torque * speed
         if wanted:
             corner[unknown, unknown] -= by_position * load.by_angle + by_velocity * load.by_speed

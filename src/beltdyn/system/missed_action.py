@@ -15,7 +15,7 @@ from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import link_torque
 from beltdyn.machines.loads.shaft import load_bend, shaft_torque
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, prescribed_motion, profile_bend, profile_value
-from beltdyn.system.arrays import Motion, System
+from beltdyn.system.arrays import COUPLING_LOSS, DRIVER_WORK, TORQUE_WORK, Motion, System
 
 _PARTS: Final = 4
 """A step that holds a wave is seen in so many parts at least,"""
@@ -126,19 +126,19 @@ def missed_work(
         i = first + body
         before, after = motion.velocity[i], end.velocity[i]
         mean = 0.5 * (before + after)
-        work[6] -= impulse[1, i] * mean
+        work[COUPLING_LOSS] -= impulse[1, i] * mean
         if system.bodies[body].unknown >= 0:
-            work[1] += impulse[0, i] * mean
+            work[TORQUE_WORK] += impulse[0, i] * mean
         else:
             power = before * motion.acceleration[i] + after * end.acceleration[i]
             gain = mean * (after - before) - 0.5 * length * power
-            work[0] += system.bodies[body].inertia * gain - impulse[1, i] * mean
+            work[DRIVER_WORK] += system.bodies[body].inertia * gain - impulse[1, i] * mean
     for p in range(system.pulleys.size):
         i = first + system.pulleys[p].shaft
         if system.bodies[system.pulleys[p].shaft].unknown >= 0:
             before = extrapolated_torque(system, p, motion, after_jump(motion.time))
             after = extrapolated_torque(system, p, end, end.time)
-            work[1] -= 0.25 * length * (after - before) * (end.velocity[i] - motion.velocity[i])
+            work[TORQUE_WORK] -= 0.25 * length * (after - before) * (end.velocity[i] - motion.velocity[i])
 
 
 def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.contact.contact_force import contact_workspace
-from beltdyn.system.arrays import BodyForces, System
+from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
 
 
 class Observations(NamedTuple):
@@ -112,8 +112,8 @@ def new_observations(system: System, loads: BodyForces, shown: int) -> Observati
         contact_pulley=np.full((count, points), -1, dtype=np.int8),
         kinetic_energy=np.zeros(shown),
         strain_energy=np.zeros(shown),
-        penalty_energy=loads.stored[:, 0].copy(),
-        spring_energy=loads.stored[:, 1].copy(),
+        penalty_energy=loads.stored[:, PENALTY_ENERGY].copy(),
+        spring_energy=loads.stored[:, SPRING_ENERGY].copy(),
         potential_energy=np.zeros(count),
     )
 

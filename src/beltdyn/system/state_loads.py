@@ -1,4 +1,4 @@
-"""Loads at states, without the equations of motion."""
+"""BodyForces at states, without the equations of motion."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import damping_force
 from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import BodyForces, Motion, System
+from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, Motion, System
 from beltdyn.system.assembly import assembly_workspace, fill_control, gather
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
 from beltdyn.system.prescribed import prescribe
@@ -72,7 +72,7 @@ def fill_loads(
 
 @kernel
 def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: BodyForces) -> None:
-    """Loads and powers at a state, without residual and tangent.
+    """BodyForces and powers at a state, without residual and tangent.
 
     Newton's method stops when the state is known well enough.  The loads that it leaves are those before its last
     change, which in stiff contact are off by much more: they have to be found anew.
@@ -96,7 +96,7 @@ def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArr
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])
         if damped:
-            loads.power[4] += damping_force(
+            loads.power[MATERIAL_LOSS] += damping_force(
                 system.element,
                 work.coordinates[0],
                 work.coordinates[1],

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from beltdyn.solve.alpha_method import method_of
 from beltdyn.solve.alpha_step import new_step, try_step
 from beltdyn.solve.engine import restart
-from beltdyn.solve.march import ITERATIONS, Settings, allowed_error, new_march
+from beltdyn.solve.integrator_state import Settings, allowed_error, new_state
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import straight
@@ -42,20 +42,26 @@ def test_a_step_ends_on_the_stop_that_rounding_would_miss() -> None:
 
 def test_constant_acceleration_is_exact(spinning: System) -> None:
     state = straight(spinning)
-    march, equations = new_march(spinning, 0.0, STEP, state.position, state.velocity), new_equations(spinning)
-    restart(spinning, march, equations)
-    iterations = try_step(spinning, SETTINGS, METHOD, march, new_step(METHOD, 0.0, STEP, 1.0), equations)
-    assert iterations == march.counts[ITERATIONS] == 1  # the first guess is right
-    position, velocity, acceleration, auxiliary = march.trial[:, -1]
+    integration, equations = (
+        new_state(spinning, 0.0, STEP, state.position, state.velocity),
+        new_equations(spinning),
+    )
+    restart(spinning, integration, equations)
+    iterations = try_step(spinning, SETTINGS, METHOD, integration, new_step(METHOD, 0.0, STEP, 1.0), equations)
+    assert iterations == integration.counts.iterations == 1  # the first guess is right
+    position, velocity, acceleration, auxiliary = (vector[-1] for vector in integration.trial)
     assert position == pytest.approx(0.5 * ACCELERATION * STEP**2)
     assert velocity == pytest.approx(ACCELERATION * STEP)
     assert acceleration == pytest.approx(ACCELERATION)
     assert auxiliary == pytest.approx(ACCELERATION)
-    assert march.clock[0] == 0.0
+    assert integration.clock.time == 0.0
 
 
 def test_no_solution_without_mass(spinning: System) -> None:
     state = straight(spinning)
-    march, equations = new_march(spinning, 0.0, STEP, state.position, state.velocity), new_equations(spinning)
+    integration, equations = (
+        new_state(spinning, 0.0, STEP, state.position, state.velocity),
+        new_equations(spinning),
+    )
     broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
-    assert try_step(broken, SETTINGS, METHOD, march, new_step(METHOD, 0.0, STEP, 1.0), equations) == 0
+    assert try_step(broken, SETTINGS, METHOD, integration, new_step(METHOD, 0.0, STEP, 1.0), equations) == 0

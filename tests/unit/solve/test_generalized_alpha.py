@@ -1,101 +1,42 @@
-"""One march of generalised-alpha: stops, budget, interpolation, works, and how it gives up."""
+"""Generalised-alpha as an integrator: chunks, statistics, longest step."""
+
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from beltdyn.errors import ConvergenceError
-from beltdyn.solve.engine import advance, restart
-from beltdyn.solve.generalized_alpha import REACHED, STEP_TOO_SMALL
-from beltdyn.solve.march import FAILED, STEPS, March, Settings, empty_steps, new_march
-from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
-from beltdyn.system.motion import new_equations
-from beltdyn.system.state import straight
+from beltdyn.arrays import FloatArray
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.trajectory import Chunk, Task
 
-SETTINGS = Settings(0.8, 1e-3, 1e-3, 1.0)
-ACCELERATION = 5.0
-ROUNDING = 1e-10
+Spin = Callable[..., Task]
+INTERVAL = 2.5e-3
+TIMES: FloatArray = INTERVAL * np.arange(201, dtype=np.float64)
 
 
-def start(system: System, step: float = 1e-3) -> March:
-    state = straight(system)
-    return new_march(system, 0.0, step, state.position, state.velocity)
+def test_steps_end_on_outputs_and_breakpoints(spin: Spin) -> None:
+    """Also where breakpoints lie between, on and beside outputs, and with more steps than fit in a buffer."""
+    chunks = list(GeneralizedAlpha(0.8, 1e-3, max_step=INTERVAL)(spin(INTERVAL, (0.1, 0.2001))))
+    joined = Chunk.join(chunks)
+    assert len(chunks) > 3
+    assert np.all(np.diff(joined.time) > 0.0)
+    np.testing.assert_allclose(joined.step[1:], np.diff(joined.time), rtol=1e-6)
+    apart = np.min(np.abs(joined.time - TIMES[:, None]), axis=1)
+    passed_by = (TIMES < 0.01) | (np.abs(TIMES - 0.205) < 0.005)  # by steps that begin shortly before
+    assert np.all(apart[~passed_by] < 1e-11)
+    assert np.all(np.isin([0.1, 0.2001], joined.time))
+    angles = joined.at(TIMES)[0][:, -1]
+    np.testing.assert_allclose(angles, 2.5 * TIMES**2, atol=1e-10)  # rounding
+    reached = [chunk.reached for chunk in chunks]
+    assert reached == sorted(reached)
+    assert reached[-1] == TIMES[-1]
 
 
-def run(
-    system: System, march: March, stop: float, room: int, budget: int = 10_000, settings: Settings = SETTINGS
-) -> Chunk:
-    steps, equations = empty_steps(system, room), new_equations(system)
-    restart(system, march, equations)
-    status, filled = advance(system, settings, march, equations, stop, budget, steps)
-    assert status == REACHED
-    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
-    return Chunk(**rows, loads=BodyForces(*(array[:filled] for array in steps.loads)), reached=stop)
-
-
-def test_states_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:
-    times = np.array([0.0123, 0.1, 0.25, 0.7])
-    chunk = Chunk.join([Chunk.start(spinning, straight(spinning)), run(spinning, start(spinning), 0.7, 10_000)])
-    assert chunk.time[-1] == 0.7
-    position, velocity = chunk.at(times)
-    np.testing.assert_allclose(position[:, -1], 0.5 * ACCELERATION * times**2, atol=ROUNDING)
-    np.testing.assert_allclose(velocity[:, -1], ACCELERATION * times, atol=ROUNDING)
-    works = np.zeros((len(chunk.time), len(ENERGY_WORKS)))
-    works[:, 1] = 2.0 * 0.5 * ACCELERATION * chunk.time**2  # torque times angle
-    np.testing.assert_allclose(chunk.work, works, atol=ROUNDING)
-
-
-@pytest.mark.parametrize("interval", [0.01, 0.003, 1e-4])
-def test_steps_end_on_multiples_of_the_interval(spinning: System, interval: float) -> None:
-    """Every step, or the last of some equal ones, ends on an output; but for those that it cannot reach yet."""
-    settings = SETTINGS._replace(max_step=0.0041, output_interval=interval)
-    chunk = run(spinning, start(spinning), 0.7, 10_000, settings=settings)
-    late = chunk.time[chunk.time > 0.1]
-    off = np.abs(late / interval - np.round(late / interval)) * interval
-    assert np.mean(off < 1e-11) > (0.3 if interval > 0.0041 else 0.99)
-    passed = np.arange(np.ceil(0.1 / interval), 0.7 / interval) * interval
-    if interval > 0.0041:
-        assert all(np.min(np.abs(late - instant)) < 1e-11 for instant in passed[1:])
-
-
-def test_stops_exactly(spinning: System) -> None:
-    march = start(spinning)
-    run(spinning, march, 0.1 + 0.2, 0)
-    assert march.clock[0] == 0.1 + 0.2
-
-
-def test_budget_is_kept(spinning: System) -> None:
-    march = start(spinning, 1e-6)
-    run(spinning, march, 0.7, 10, budget=3)
-    assert march.counts[STEPS] == 3
-    assert march.clock[0] < 1e-4
-
-
-def test_ends_when_there_is_no_room(spinning: System) -> None:
-    march = start(spinning)
-    assert len(run(spinning, march, 0.7, 2).time) == 2
-    assert march.counts[STEPS] == 2
-    assert march.clock[0] < 0.7
-
-
-def test_steps_grow_to_the_longest_allowed(spinning: System) -> None:
-    march = start(spinning, 1e-6)
-    steps = run(spinning, march, 1.0, 10_000, settings=SETTINGS._replace(max_step=1e-3)).step
-    assert steps.max() <= 1e-3 * (1 + 1e-5)  # rounding of the stop
-    assert march.counts[STEPS] == pytest.approx(1000, abs=15)
-
-
-def test_nan_forces_end_with_too_small_a_step(spinning: System) -> None:
-    march = start(spinning)
-    broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))
-    steps = empty_steps(spinning, 1)
-    found = advance(broken, SETTINGS, march, new_equations(spinning), 1.0, 10_000, steps)
-    assert found == (STEP_TOO_SMALL, 0)
-    assert march.counts[FAILED] > 0
-    assert march.clock[0] == 0.0
-
-
-def test_massless_belt_is_refused(spinning: System) -> None:
-    massless = spinning._replace(mass=np.zeros_like(spinning.mass))
-    with pytest.raises(ConvergenceError, match="singular"):
-        restart(massless, start(spinning), new_equations(spinning))
+def test_statistics_and_longest_step(spin: Spin) -> None:
+    task = spin(INTERVAL)
+    steps = np.concatenate([chunk.step for chunk in GeneralizedAlpha(0.8, 1e-3, max_step=2.5e-3)(task)])
+    assert steps[0] == 0.0
+    assert np.max(steps) <= 2.5e-3 * (1 + 1e-5)  # rounding of the instants
+    assert task.statistics.steps == pytest.approx(200, abs=15)
+    assert task.statistics.newton_iterations >= task.statistics.steps
+    assert task.statistics.rejected_steps == 0

@@ -8,9 +8,9 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
+from beltdyn.solve.alpha_advance import REACHED
 from beltdyn.solve.engine import advance, restart
-from beltdyn.solve.generalized_alpha import REACHED
-from beltdyn.solve.march import REJECTED, STEPS, Settings, empty_steps, new_march
+from beltdyn.solve.integrator_state import Settings, empty_steps, new_state
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations
 
@@ -74,14 +74,14 @@ def fixed_steps() -> Callable[[System, FloatArray, float, int, FloatArray], tupl
         end, anything = float(times[-1]), 1e30
         step = end / steps
         settings = Settings(radius, anything, 1e-13 / (anything * step), step)
-        march = new_march(system, 0.0, step, start, np.zeros_like(start))
+        integration = new_state(system, 0.0, step, start, np.zeros_like(start))
         equations = new_equations(system)
         taken = empty_steps(system, steps + 1)
-        restart(system, march, equations)
-        status, count = advance(system, settings, march, equations, end, 10 * steps, taken)
+        restart(system, integration, equations)
+        status, count = advance(system, settings, integration, equations, end, 10 * steps, taken)
         assert status == REACHED
-        assert abs(march.counts[STEPS] - steps) <= 1  # rounding of the clock
-        assert march.counts[REJECTED] == 0
+        assert abs(integration.counts.steps - steps) <= 1  # rounding of the clock
+        assert integration.counts.rejected == 0
         wanted = [int(np.argmin(np.abs(taken.time[:count] - time))) for time in times]
         np.testing.assert_allclose(taken.time[wanted], times, rtol=1e-9)
         return taken.position[wanted], taken.velocity[wanted]

@@ -14,7 +14,7 @@ import xarray as xr
 from beltdyn import simulate
 from beltdyn.model import Belt, Drive, Pulley
 from beltdyn.model.instants import Instants
-from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.arrays import DRIVER_WORK, POWERS

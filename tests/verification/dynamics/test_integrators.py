@@ -14,9 +14,9 @@ import xarray as xr
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
+from beltdyn.solve.alpha_advance import REACHED
 from beltdyn.solve.engine import advance
-from beltdyn.solve.generalized_alpha import REACHED
-from beltdyn.solve.march import STEPS, Settings, empty_steps, new_march
+from beltdyn.solve.integrator_state import Settings, empty_steps, new_state
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations
@@ -94,12 +94,12 @@ def test_spectral_radius_at_infinite_frequency(measured: Measured, curve: Measur
     scales = np.array([1.0, 1 / step, 1 / step**2, 1 / step**2])
     amplification = np.empty((4, 4))
     for column in range(4):
-        march = new_march(system, 0.0, step, rest, np.zeros_like(rest))
-        arrays = (march.position, march.velocity, march.acceleration, march.auxiliary)
+        integration = new_state(system, 0.0, step, rest, np.zeros_like(rest))
+        arrays = (integration.position, integration.velocity, integration.acceleration, integration.auxiliary)
         arrays[column][own] += small * scales[column]
         none = empty_steps(system, 0)
-        assert advance(system, settings, march, new_equations(system), step, 1, none)[0] == REACHED
-        assert march.counts[STEPS] == 1
+        assert advance(system, settings, integration, new_equations(system), step, 1, none)[0] == REACHED
+        assert integration.counts.steps == 1
         state = np.array([array[own] for array in arrays])
         state[0] -= rest[own]
         amplification[:, column] = state / (small * scales)

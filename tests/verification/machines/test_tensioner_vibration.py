@@ -24,7 +24,7 @@ from scipy.optimize import brentq, curve_fit
 from beltdyn.model import Drive
 from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.instants import Instants
-from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.state import State
 from beltdyn.theory.stretch import tension as tension_of

@@ -12,7 +12,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.model.instants import Instants
-from beltdyn.solve.alpha_march import GeneralizedAlpha
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.build import belt_system
 from beltdyn.system.discretization import belt_section

@@ -1,22 +1,30 @@
-"""The moving state of generalised-alpha and what it is told, as named tuples for its kernels."""
+"""The moving state of generalised-alpha and what it is told, as records for its kernels."""
 
-from typing import Final, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+from beltdyn.records import blank, record
 from beltdyn.system.arrays import ENERGY_WORKS, POWERS, BodyForces, Motion, System
 from beltdyn.system.body_forces import load_history
 from beltdyn.system.motion import no_multipliers
 
-STEPS: Final = 0
-REJECTED: Final = 1
-FAILED: Final = 2
-ITERATIONS: Final = 3
+CLOCK = record(
+    time="f8",  # s
+    next_step="f8",  # length of the step to try next, s
+    contraction="f8",  # largest Newton change of the last step over the one before it
+)
+"""How far an integration is."""
 
-SLOWEST: Final = 2
-"""Place in `March.clock`."""
+COUNTS = record(
+    steps="i8",  # accepted
+    rejected="i8",  # for their error
+    failed="i8",  # not solved by Newton's method
+    iterations="i8",  # of Newton's method
+)
+"""What an integration did so far."""
 
 
 class Settings(NamedTuple):
@@ -36,11 +44,21 @@ class Settings(NamedTuple):
     """Steps end on multiples of this where they can, s."""
 
 
-class March(NamedTuple):
-    """The moving state of an integration, and what it tries next; everything is changed in place."""
+class Trial(NamedTuple):
+    """State at the end of a step that is tried; each vector has shape (6 N + D,)."""
 
-    clock: FloatArray
-    """Time and next step, s, and the largest Newton change of the last step over the one before it; shape (3,)."""
+    position: FloatArray
+    velocity: FloatArray
+    acceleration: FloatArray
+    auxiliary: FloatArray
+    """A of the method."""
+
+
+class IntegratorState(NamedTuple):
+    """The moving state of generalised-alpha, and what it tries next; everything is changed in place."""
+
+    clock: np.record
+    """Row of `CLOCK`."""
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
@@ -57,10 +75,9 @@ class March(NamedTuple):
     """What the method makes of each profile, as A is of the acceleration; nan after a jump; shape (profiles,)."""
     missed: FloatArray
     """Works that the powers at its ends miss, from `missed_work`, J, shape (7,)."""
-    trial: FloatArray
-    """Position, velocity, acceleration and A at the end of the step that is tried, shape (4, 6 N + D)."""
-    counts: IntArray
-    """Steps, steps rejected for their error, steps that Newton failed, Newton iterations; shape (4,)."""
+    trial: Trial
+    counts: np.record
+    """Row of `COUNTS`."""
 
 
 class Steps(NamedTuple):
@@ -87,9 +104,9 @@ def allowed_error(settings: Settings, length: float) -> float:
 
 
 @kernel
-def motion_of(march: March) -> Motion:
+def motion_of(state: IntegratorState) -> Motion:
     """The motion at the beginning of the next step."""
-    return Motion(march.clock[0], march.position, march.velocity, march.acceleration)
+    return Motion(state.clock.time, state.position, state.velocity, state.acceleration)
 
 
 def empty_steps(system: System, count: int) -> Steps:
@@ -113,7 +130,7 @@ def empty_steps(system: System, count: int) -> Steps:
     )
 
 
-def new_march(system: System, time: float, step: float, position: FloatArray, velocity: FloatArray) -> March:
+def new_state(system: System, time: float, step: float, position: FloatArray, velocity: FloatArray) -> IntegratorState:
     """Begin an integration.
 
     Parameters
@@ -127,12 +144,13 @@ def new_march(system: System, time: float, step: float, position: FloatArray, ve
 
     Returns
     -------
-    March
+    IntegratorState
         `engine.restart` has to give it accelerations before it can advance.
     """
-    size = position.size
-    return March(
-        clock=np.array((time, step, 1.0)),
+    size, clock = position.size, blank(CLOCK)
+    clock.time, clock.next_step, clock.contraction = time, step, 1.0
+    return IntegratorState(
+        clock=clock,
         position=position.copy(),
         velocity=velocity.copy(),
         acceleration=np.zeros(size),
@@ -143,6 +161,6 @@ def new_march(system: System, time: float, step: float, position: FloatArray, ve
         impulse=np.zeros((2, size)),
         lagged=np.full(system.profiles.table.size - 1, np.nan),
         missed=np.zeros(len(POWERS)),
-        trial=np.zeros((4, size)),
-        counts=np.zeros(4, dtype=np.int64),
+        trial=Trial(np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)),
+        counts=blank(COUNTS),
     )
