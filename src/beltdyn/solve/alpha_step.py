@@ -30,6 +30,8 @@ _CUTS: Final = 2
 _SHORTEST: Final = 0.1
 _DAMPED_FROM: Final = 4
 _STAGNATION: Final = 0.8
+_GROWING: Final = 2
+"""So many changes that are no smaller than the ones before, and the step is given up: hardly one of these converges."""
 _QUICK: Final = 0.3
 """A tangent serves for several iterations of a step as long as each change is below this part of the one before."""
 _SAME: Final = 1e-11
@@ -108,7 +110,7 @@ def try_step(
     _predict(system, method, state, step)
     allowed = settings.newton_fraction * allowed_error(settings, step.length)
     before, slope, factor, renewed = inf, 0.0, 1.0, True
-    quick, slowest = state.clock.contraction <= _QUICK, 0.0
+    quick, slowest, growing = state.clock.contraction <= _QUICK, 0.0, 0
     state.clock.contraction = 1.0
     for iteration in range(_MAX_ITERATIONS):
         state.counts.iterations += 1
@@ -130,6 +132,9 @@ def try_step(
             _finish(method, state)
             state.clock.contraction = slowest
             return iteration + 1
+        growing += change >= before
+        if growing >= _GROWING:
+            return 0
         renewed = not quick or slowest > _QUICK
         before = change
     return 0
