@@ -154,3 +154,13 @@ def test_the_tutorials_pulleys_fit_the_new_drive(new_drive: str, tmp_path: Path)
         pulleys = sorted([pulley, *others], key=lambda item: str(item["name"]), reverse=True)
         changed = loads(tomli_w.dumps(data | {"pulley": pulleys}), base=tmp_path)
         assert changed != loads(new_drive)
+
+
+def test_the_map_names_every_folder_and_files_that_exist() -> None:
+    source, text = ROOT / "src" / "beltdyn", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    map_ = text[text.index("## Map") : text.index("## Habits")]
+    folders = {path.parent.name for path in source.glob("*/__init__.py")}
+    assert set(re.findall(r"^\| `(\w+)` \|", map_, flags=re.MULTILINE)) == folders
+    named = re.findall(r"`(\w+(?:/\w+)*\.py)`", map_)
+    assert len(named) > 20
+    assert [name for name in named if not (source / name).exists()] == []

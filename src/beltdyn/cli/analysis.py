@@ -10,7 +10,7 @@ from cyclopts import Parameter as Option
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_table, show_warnings
-from beltdyn.cli.run import require_output
+from beltdyn.cli.output import require_output
 
 if TYPE_CHECKING:
     from beltdyn.results import Result

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beltdyn.cli.console import show, show_error, show_table, show_warnings
+from beltdyn.cli.output import doubt, require_output, write_tables
 from beltdyn.cli.progress import runs_bar
-from beltdyn.cli.run import doubt, require_output, write_tables
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from beltdyn.cli.console import show
 from beltdyn.cli.new import refuse_existing, write_text
+from beltdyn.cli.output import ended, simulate_to
 from beltdyn.cli.plot import draw
-from beltdyn.cli.run import ended, simulate_to
 
 
 def demo(folder: Path = Path("beltdyn-demo"), /) -> int:

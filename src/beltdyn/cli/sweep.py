@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from beltdyn.cli.console import show
-from beltdyn.cli.run import ended, require_output, simulate_to
+from beltdyn.cli.output import ended, require_output, simulate_to
 from beltdyn.errors import ModelError
 
 if TYPE_CHECKING:

@@ -36,9 +36,7 @@ def largest_closure(recorded: Recorded) -> Closure:
     Closure
         The error of largest magnitude with its sign, and its instant; the first NaN if there is one.
     """
-    errors = np.asarray(recorded["energy_closure"])
-    worst = int(np.argmax(np.abs(errors)))
-    return Closure(float(recorded["time"][worst]), float(errors[worst]))
+    return _largest(recorded, np.asarray(recorded["energy_closure"]))
 
 
 def largest_numerical_share(recorded: Recorded) -> Closure:
@@ -56,6 +54,11 @@ def largest_numerical_share(recorded: Recorded) -> Closure:
     """
     taken, given = np.asarray(recorded["numerical_loss"]), energy_put_in(recorded)
     shares = np.divide(taken, given, out=np.zeros_like(given), where=given > 0.0)
+    return _largest(recorded, shares)
+
+
+def _largest(recorded: Recorded, shares: FloatArray) -> Closure:
+    """The share of largest magnitude, and its instant."""
     worst = int(np.argmax(np.abs(shares)))
     return Closure(float(recorded["time"][worst]), float(shares[worst]))
 

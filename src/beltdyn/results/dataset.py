@@ -230,14 +230,14 @@ def is_result(path: Path) -> bool:
         return False
 
 
-def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Check names and shapes of a chunk of outputs.
+def checked_outputs(layout: Layout, outputs: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Check names and shapes of outputs.
 
     Parameters
     ----------
     layout : Layout
         Sizes of the dimensions.
-    chunk : mapping
+    outputs : mapping
         An array for every name in `Layout.recorded`, each with one row for each new output or output of fields.
 
     Returns
@@ -251,12 +251,12 @@ def checked_chunk(layout: Layout, chunk: Mapping[str, NDArray[Any]]) -> dict[str
         If a name is missing or unknown, or a shape is wrong.
     """
     recorded = layout.recorded
-    if chunk.keys() != recorded.keys():
-        names = sorted(chunk.keys() ^ recorded.keys())
-        raise ValueError(f"missing or unknown variables in a chunk of outputs: {', '.join(names)}")
-    arrays = {name: np.asarray(chunk[name], dtype=variable.dtype) for name, variable in recorded.items()}
+    if outputs.keys() != recorded.keys():
+        names = sorted(outputs.keys() ^ recorded.keys())
+        raise ValueError(f"missing or unknown variables in outputs: {', '.join(names)}")
+    arrays = {name: np.asarray(outputs[name], dtype=variable.dtype) for name, variable in recorded.items()}
     for name, array in arrays.items():
-        expected = layout.shape(recorded[name], len(chunk[recorded[name].dims[0]]))
+        expected = layout.shape(recorded[name], len(outputs[recorded[name].dims[0]]))
         if array.shape != expected:
             raise ValueError(f"{name} has shape {array.shape}, expected {expected}")
     return arrays

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from beltdyn.errors import ModelError, OutputError
 from beltdyn.results import netcdf
 from beltdyn.results.atomic import atomic_path, require_replaceable, unwritable
-from beltdyn.results.dataset import build_dataset, checked_chunk, is_result, open_dataset
+from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset
 from beltdyn.results.layout import Layout
 from beltdyn.results.lock import OutputLock
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Chunk = Mapping[str, NDArray[Any]]
+Outputs = Mapping[str, NDArray[Any]]
 Status = Literal["running", "completed", "interrupted", "failed"]
 
 
@@ -33,12 +33,12 @@ class Recorder(Protocol):
             As for the beginning, of the same sizes.
         """
 
-    def append(self, chunk: Chunk) -> None:
+    def append(self, outputs: Outputs) -> None:
         """Take outputs.
 
         Parameters
         ----------
-        chunk : mapping
+        outputs : mapping
             An array for every name in `Layout.recorded`, each with one row for each new output along its first
             dimension, one of `schema.TIMES`.
 
@@ -82,15 +82,15 @@ class MemoryRecorder:
 
     def __init__(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
         self.revise(layout, attributes)
-        self._chunks = [checked_chunk(layout, _no_outputs(layout))]
+        self._chunks = [checked_outputs(layout, _no_outputs(layout))]
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
         """Begin anew; see `Recorder.revise`."""
         self._layout, self._attributes = layout, {**attributes, "status": "running"}
 
-    def append(self, chunk: Chunk) -> None:
+    def append(self, outputs: Outputs) -> None:
         """Take outputs; see `Recorder.append`."""
-        arrays = checked_chunk(self._layout, chunk)
+        arrays = checked_outputs(self._layout, outputs)
         self._chunks.append({name: array.copy() for name, array in arrays.items()})
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
@@ -151,7 +151,7 @@ class FileRecorder:
         with atomic_path(self.path, is_result, overwrite) as temporary:
             self._file = netcdf.GrowingFile(temporary, layout, {**attributes, "status": "running"})
 
-    def append(self, chunk: Chunk) -> None:
+    def append(self, outputs: Outputs) -> None:
         """Take outputs; see `Recorder.append`.
 
         Raises
@@ -161,7 +161,7 @@ class FileRecorder:
         OutputError
             If the file can no longer be written; it keeps what it holds.
         """
-        arrays = checked_chunk(self._layout, chunk)
+        arrays = checked_outputs(self._layout, outputs)
         try:
             self._file.append(self._target, arrays)
         except OSError as error:

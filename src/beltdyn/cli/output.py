@@ -1,0 +1,90 @@
+"""From a drive to a result file, and what is said and ended with."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from beltdyn.cli.console import show, show_error
+from beltdyn.cli.progress import progress_bar
+from beltdyn.cli.summary import show_summary
+from beltdyn.errors import ModelError, SimulationError
+from beltdyn.signals import exit_code
+
+if TYPE_CHECKING:
+    from beltdyn.model import Drive
+    from beltdyn.results import Run
+
+DOUBTFUL = 4
+
+
+def require_output(path: Path, files: Iterable[Path], csv: bool, force: bool) -> None:
+    """Make sure that results and their tables would replace nothing but such, and never a drive file.
+
+    Raises
+    ------
+    ModelError
+        If they would.
+    """
+    from beltdyn.results.atomic import require_replaceable
+    from beltdyn.results.dataset import is_result
+    from beltdyn.results.tables import require_tables
+
+    if path.resolve() in {file.resolve() for file in files}:
+        raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
+    require_replaceable(path, is_result, force)
+    if csv:
+        require_tables(tables_folder(path), force)
+
+
+def tables_folder(path: Path) -> Path:
+    """Where the tables of a result file are written."""
+    return path.with_name(f"{path.stem}-tables")
+
+
+def write_tables(run: "Run", path: Path, force: bool) -> None:
+    """Write plain tables into a folder beside the result file, and name them."""
+    from beltdyn.results import write_csv
+
+    show(f"Tables: {', '.join(str(table) for table in write_csv(run, tables_folder(path), force))}")
+
+
+def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
+    """Simulate into a file with a progress bar, and show the summary.
+
+    Raises
+    ------
+    SimulationError
+        If the simulation cannot go on.
+    """
+    from beltdyn.results import describe_size
+    from beltdyn.results.atomic import leftovers
+    from beltdyn.solve import simulate
+
+    show(f"Results of about {describe_size(drive)}")
+    try:
+        with progress_bar() as report:
+            finished = simulate(drive, path, report, force)
+    except SimulationError:
+        show(f"What was computed is in {path}")
+        raise
+    show_summary(finished)
+    if finished.status == "interrupted":
+        show("\nInterrupted: what was computed is kept.")
+    show(f"\nResults: {path}   (figures: beltdyn plot {path})")
+    for file in leftovers(path):
+        show(f"A killed run has left {file}, which nobody needs: remove it.")
+    return finished
+
+
+def doubt(warnings: Sequence[str]) -> int:
+    """Exit code where warnings are errors, which are said; 0 without any."""
+    if not warnings:
+        return 0
+    count = f"{len(warnings)} warnings make" if warnings[1:] else "a warning makes"
+    show_error(f"{count} these results doubtful. They are kept; without --strict this is no error.")
+    return DOUBTFUL
+
+
+def ended(run: "Run") -> int:
+    """Exit code of a run that ended without an error."""
+    return exit_code() if run.status == "interrupted" else 0
