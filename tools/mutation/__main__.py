@@ -159,19 +159,21 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--slowest", type=float, default=3.0, help="longest time of a test as plain Python, s")
     parser.add_argument("--budget", type=float, default=20.0, help="longest time of all tests of a mutant, s")
     parser.add_argument("--out", type=Path, default=Path("mutation.json"), help="file of the answers")
-    parser.add_argument("--again", type=Path, help="answers of a former run, of which the survivors are tried again")
+    parser.add_argument(
+        "--again", type=Path, help="answers of a former run of these sources, of which the survivors are tried again"
+    )
     return parser
 
 
 def _chosen(asked: argparse.Namespace) -> Iterator[Mutant]:
     """The mutants to try."""
     former = json.loads(asked.again.read_text(encoding="utf-8")) if asked.again else []
-    survivors = {(each["file"], each["before"], each["after"]) for each in former if each["outcome"] != "killed"}
+    survivors = {(each["file"], each["number"]) for each in former if each["outcome"] != "killed"}
     for folder in asked.folders:
         paths = sorted((SOURCE / folder).rglob("*.py")) or [SOURCE / folder]
         found = [mutant for path in paths for mutant, _ in mutants_of(path, ROOT)]
         if asked.again:
-            found = [each for each in found if (each.file, each.before, each.after) in survivors]
+            found = [each for each in found if (each.file, each.number) in survivors]
         if asked.sample and asked.sample < len(found):
             chosen = sorted(random.Random(asked.seed).sample(range(len(found)), asked.sample))
             found = [found[index] for index in chosen]
