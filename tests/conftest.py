@@ -118,7 +118,8 @@ def statistics() -> dict[str, Any]:
 def make_chunk(drive: Drive, layout: Layout) -> Callable[[FloatArray], Arrays]:
     def make(time: FloatArray) -> Arrays:
         outputs = _outputs(drive, layout, time)
-        return outputs | _summed_up(drive, layout, outputs)
+        nothing = {name: np.zeros(layout.shape(variable, len(time))) for name, variable in layout.recorded.items()}
+        return nothing | outputs | _summed_up(drive, layout, outputs)
 
     return make
 
@@ -189,7 +190,6 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "nodal_coordinates": coordinates,
         "nodal_velocities": velocities,
         "belt_tension": tension(layout.element_coordinate),
-        "tension_variation": 0.05 * tension(layout.element_coordinate),
         "span_tension": np.stack([still + SLACK, SLACK + pull], axis=1),
         "belt_speed": np.repeat(radius * speed[:, None], 2, axis=1),
         "normal_force": np.where(contact_pulley >= 0, tension(layout.belt_coordinate) / radius, 0.0),

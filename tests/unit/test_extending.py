@@ -104,7 +104,14 @@ def test_the_example_works(page: Path, extended: Path, tmp_path: Path) -> None:
     (check,) = (block.text for block in blocks(page) if block.is_check)
     (tmp_path / "check.py").write_text(check, encoding="utf-8")
     kernels = str(extended / "kernels")
-    run(["check.py"], tmp_path, PYTHONPATH=str(extended / "src"), BELTDYN_CACHE_DIR=kernels, MPLBACKEND="Agg")
+    run(
+        ["check.py"],
+        tmp_path,
+        PYTHONPATH=str(extended / "src"),
+        BELTDYN_CACHE_DIR=kernels,
+        MPLBACKEND="Agg",
+        OMP_NUM_THREADS="1",
+    )
 
 
 def run(arguments: list[str], folder: Path, **surroundings: str) -> None:

@@ -110,7 +110,12 @@ def write_csv(run: Run, folder: Path | str, overwrite: bool = False) -> list[Pat
     require_tables(folder, overwrite)
     folder = make_folder(Path(folder))
     dataset = _with_derived(run)
-    over_time = {"pulleys": _PULLEYS, "spans": _SPANS, "energy": _ENERGY, "tensioners": _TENSIONERS}
+    over_time = {
+        "pulleys": _with_others(_PULLEYS, "pulley"),
+        "spans": _with_others(_SPANS, "span"),
+        "energy": _ENERGY,
+        "tensioners": _with_others(_TENSIONERS, "tensioner"),
+    }
     tables = {
         f"{name}.csv": _table(_columns(dataset, ("time", *variables)))
         for name, variables in over_time.items()
@@ -173,6 +178,12 @@ def _with_derived(run: Run) -> "xr.Dataset":
         "tension_ratio": derived.tension_ratios(run),
     }
     return run.dataset.assign({name: part[name] for part in parts for name in part.data_vars} | named)
+
+
+def _with_others(names: tuple[str, ...], dimension: str) -> tuple[str, ...]:
+    """Names of variables over time along a dimension, with those behind that are recorded besides."""
+    recorded = (name for name, variable in VARIABLES.items() if variable.dims[:2] == ("time", dimension))
+    return (*names, *(name for name in recorded if name not in names))
 
 
 def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:

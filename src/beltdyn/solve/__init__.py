@@ -1,17 +1,26 @@
 """Solvers: static equilibrium, and simulation over time of one drive or many."""
 
 from beltdyn.solve.batch import Ending, simulate_all
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import equilibrium, simulate
+from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.static import Equilibrium, find_equilibrium
+from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 
 __all__ = [
     "BatchProgress",
     "Ending",
     "Equilibrium",
+    "ErrorControl",
+    "FixedSteps",
+    "GeneralizedAlpha",
     "Progress",
     "Rest",
+    "StandardIntegrator",
+    "StepError",
+    "Stepwise",
     "bring_to_rest",
     "equilibrium",
     "find_equilibrium",

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -47,6 +48,7 @@ class GeneralizedAlpha:
     spectral_radius: float
     rtol: float
     max_step: float | None = None
+    name: ClassVar[str] = "generalized_alpha"
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""

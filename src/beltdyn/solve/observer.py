@@ -17,6 +17,7 @@ from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.discretization import curve_lengths
+from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
 
 Arrays = dict[str, NDArray[Any]]
@@ -36,7 +37,7 @@ WORKS = ("friction_work_on_arc", "friction_work_on_belt")
 
 
 _VALUES_OF_SPANS = ("span_tension", "belt_speed", "mid_span_displacement")
-_OF_SHOWN = ("kinetic_energy", "strain_energy", "belt_tension", "tension_variation")
+_OF_SHOWN = frozenset(name for name, per in OBSERVED.items() if per.shown)
 """Observations that are there for states that are shown alone."""
 
 

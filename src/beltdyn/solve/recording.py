@@ -74,6 +74,7 @@ class Recording:
         overwrite: bool = False,
     ) -> None:
         self.statistics = Statistics()
+        self.integrator: str = drive.simulation.integrator
         self._drive, self._system, self._progress = drive, system, progress
         self._path = Path(output) if output is not None else None
         self._title = title
@@ -271,7 +272,7 @@ class Recording:
         wall = (self._ended or time.perf_counter()) - self._compiled
         cpu = (self._cpu_ended or time.process_time()) - self._cpu_started
         return {
-            "integrator": self._drive.simulation.integrator,
+            "integrator": self.integrator,
             "steps": self.statistics.steps,
             "rejected_steps": self.statistics.rejected_steps,
             "newton_iterations": self.statistics.newton_iterations,

@@ -1,14 +1,16 @@
 """From a drive to a run: start, integrate, observe, record."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import get_args
 
-from beltdyn.model import Drive
+from beltdyn.model import Drive, Simulation
 from beltdyn.results import Run, require_room
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import bring_to_rest
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
-from beltdyn.solve.standard import StandardIntegrator
+from beltdyn.solve.standard import Name, StandardIntegrator
 from beltdyn.solve.static import standing
 from beltdyn.solve.trajectory import Chunk, Integrator, drive_task
 from beltdyn.system.build import drive_system
@@ -16,7 +18,11 @@ from beltdyn.system.state import laid
 
 
 def simulate(
-    drive: Drive, output: Path | str | None = None, progress: Report | None = None, overwrite: bool = False
+    drive: Drive,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+    integrator: Integrator | None = None,
 ) -> Run:
     """Simulate a drive over time.
 
@@ -30,6 +36,9 @@ def simulate(
         Called now and then with a `Progress`.
     overwrite
         Replace any regular file by the results, and not only earlier results.
+    integrator
+        Method of time integration; that of the drive, `simulation.integrator`, by default. A one-step method becomes
+        one by `Stepwise`.
 
     Returns
     -------
@@ -64,7 +73,9 @@ def simulate(
         state = rest.state if rest and settings.start == "equilibrium" else laid(system, drive.path)
         recording.start(drive, system, rest.unstable if rest else ())
         task = drive_task(drive, system, state, recording.statistics)
-        for chunk in choose_integrator(drive)(task):
+        integrator = integrator or choose_integrator(drive)
+        recording.integrator = integrator.name
+        for chunk in integrator(task):
             recording.take(chunk)
         recording.check()
     return recording.run()
@@ -118,7 +129,19 @@ def choose_integrator(drive: Drive) -> Integrator:
     Integrator
         `GeneralizedAlpha` or a `StandardIntegrator`.
     """
-    settings = drive.simulation
-    if settings.integrator == "generalized_alpha":
-        return GeneralizedAlpha(settings.spectral_radius, settings.rtol, settings.max_step)
-    return StandardIntegrator(settings.integrator, settings.rtol, settings.max_step)
+    return INTEGRATORS[drive.simulation.integrator](drive.simulation)
+
+
+def _generalized_alpha(settings: Simulation) -> Integrator:
+    return GeneralizedAlpha(settings.spectral_radius, settings.rtol, settings.max_step)
+
+
+def _standard(name: Name) -> Callable[[Simulation], Integrator]:
+    return lambda settings: StandardIntegrator(name, settings.rtol, settings.max_step)
+
+
+INTEGRATORS: Mapping[str, Callable[[Simulation], Integrator]] = {
+    "generalized_alpha": _generalized_alpha,
+    **{name: _standard(name) for name in get_args(Name)},
+}
+"""What each name of an integrator in a drive file stands for."""

@@ -13,24 +13,18 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model.instants import SAME
-from beltdyn.solve.integrator_state import Settings
-from beltdyn.solve.step_bound import resolved_length
+from beltdyn.solve.step_bound import StepBound
+from beltdyn.solve.stepwise import POSITION_TIME, first_order_chunk
 from beltdyn.solve.trajectory import Chunk, Task
-from beltdyn.system.arrays import ENERGY_WORKS, POWERS, Motion, System
 from beltdyn.system.first_order import FirstOrder
 
 Name = Literal["cvode", "ida", "bdf", "radau"]
 
-_POSITION_TIME = 1e-3
 _ROOM = 64
 """States between steps that are handed out at once, at most."""
 _RELATIVE = 1e-9
 _PART = 0.02
 """Error that one step may make, over that of the run: the errors of steps add up."""
-_FIRST_STEP = 1e-4
-"""About the first step of a solver at most, s."""
-_GROWTH = 10.0
-"""Most that solvers lengthen a step by."""
 _HUGE = 1e30
 _HIGHEST_A_STABLE_ORDER = 2
 """Of the backward differentiation formulas: higher orders feed the belt's fast vibrations, which nothing damps."""
@@ -58,8 +52,8 @@ class StandardIntegrator:
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
-        tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, _POSITION_TIME)
-        bound = _StepBound(task.system, _PART * self.rtol * task.velocity_scale)
+        tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, POSITION_TIME)
+        bound = StepBound(task.system, _PART * self.rtol * task.velocity_scale)
         y, time = equations.pack(task.start), 0.0
         yield Chunk.start(task.system, task.start)
         written = 1
@@ -108,30 +102,6 @@ class _Leg:
     def begin(self) -> float:
         """Instant just after the start, where profiles have jumped, s."""
         return float(np.nextafter(self.start, np.inf))
-
-
-class _StepBound:
-    """How far a step may reach without missing what is prescribed."""
-
-    def __init__(self, system: System, velocity_tolerance: float) -> None:
-        self._system = system
-        self._settings = Settings(0.0, velocity_tolerance, 0.0, np.inf)
-        self.restart()
-
-    def restart(self) -> None:
-        """Begin anew, with small steps."""
-        self._before: tuple[float, FloatArray] | None = None
-        self._last = _FIRST_STEP
-
-    def end(self, time: float, position: FloatArray, velocity: FloatArray) -> float:
-        """Farthest end of a step from a state at a time, s."""
-        acceleration = np.zeros_like(velocity)
-        if self._before is not None and time > self._before[0]:
-            self._last = time - self._before[0]
-            acceleration = (velocity - self._before[1]) / self._last
-        self._before = time, velocity.copy()
-        motion = Motion(time, position.copy(), velocity.copy(), acceleration)
-        return time + resolved_length(self._system, self._settings, motion, _GROWTH * self._last)
 
 
 class _SolverError(Exception):
@@ -256,8 +226,4 @@ def _import_sundials() -> Any:
 def _chunk(equations: FirstOrder, solver: _Solver, time: FloatArray, before: float) -> Chunk:
     """States at some instants of the solver's last step, which began at a time, s."""
     y = np.array([solver.at(float(instant)) for instant in time]).reshape(len(time), equations.size)
-    position, velocity, work = (np.ascontiguousarray(part) for part in equations.unpack(y))
-    loads = equations.loads_at(time, position, velocity)
-    step = np.full(len(time), solver.time - before)
-    work = np.pad(work, ((0, 0), (0, len(ENERGY_WORKS) - len(POWERS))))  # their own damping is not known
-    return Chunk(time, step, position, velocity, work, loads, reached=solver.time)
+    return first_order_chunk(equations, time, y, solver.time - before, solver.time)

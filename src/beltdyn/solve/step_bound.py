@@ -4,6 +4,7 @@ from typing import Final
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.solve.integrator_state import Settings, allowed_error
 from beltdyn.system.arrays import Motion, System
@@ -12,6 +13,10 @@ from beltdyn.system.missed_action import missed_action
 _SHORTEST: Final = 1e-7
 """What happens within this time (s) is an impulse to any belt."""
 _BISECTIONS: Final = 3
+_FIRST_STEP = 1e-4
+"""About the first step of a solver at most, s."""
+_GROWTH = 10.0
+"""Most that solvers lengthen a step by."""
 
 
 @kernel
@@ -77,3 +82,35 @@ def _impulse(system: System, body: int, allowed: float, length: float) -> float:
     if system.bodies[body].unknown < 0:
         return np.inf
     return float(allowed * system.bodies[body].inertia / (system.bodies[body].reach * length))
+
+
+class StepBound:
+    """How far the next step of a solver may reach without missing what is prescribed.
+
+    Parameters
+    ----------
+    system
+        Belt, bodies, supports.
+    velocity_tolerance
+        Velocity that a step may miss, m/s.
+    """
+
+    def __init__(self, system: System, velocity_tolerance: float) -> None:
+        self._system = system
+        self._settings = Settings(0.0, velocity_tolerance, 0.0, np.inf)
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin anew, with small steps."""
+        self._before: tuple[float, FloatArray] | None = None
+        self._last = _FIRST_STEP
+
+    def end(self, time: float, position: FloatArray, velocity: FloatArray) -> float:
+        """Farthest end of a step from a state at a time, s."""
+        acceleration = np.zeros_like(velocity)
+        if self._before is not None and time > self._before[0]:
+            self._last = time - self._before[0]
+            acceleration = (velocity - self._before[1]) / self._last
+        self._before = time, velocity.copy()
+        motion = Motion(time, position.copy(), velocity.copy(), acceleration)
+        return time + resolved_length(self._system, self._settings, motion, _GROWTH * self._last)

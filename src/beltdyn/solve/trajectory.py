@@ -188,7 +188,11 @@ class Task:
 
 
 class Integrator(Protocol):
-    """A method of time integration."""
+    """A method of time integration, with its own control of steps."""
+
+    @property
+    def name(self) -> str:
+        """Name, for results and messages."""
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate, handing out chunks as they come.

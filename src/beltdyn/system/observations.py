@@ -1,6 +1,7 @@
 """Arrays for what is observed at states, and scratch arrays for observing one."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Annotated, NamedTuple, get_type_hints
 
 import numpy as np
 
@@ -9,53 +10,77 @@ from beltdyn.contact.contact_force import contact_workspace
 from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
 
 
+class Per(NamedTuple):
+    """What an observation has a value for, at every state."""
+
+    dims: tuple[str, ...] = ()
+    """Names out of "pulley" (and span), "curve" of the belt, "point" of contact, and "axis"."""
+    shown: bool = False
+    """Whether it is there for the states alone that are shown."""
+    dtype: type = float
+
+
+OfState = Annotated[FloatArray, Per()]
+OfShownState = Annotated[FloatArray, Per(shown=True)]
+OfPulley = Annotated[FloatArray, Per(("pulley",))]
+OfPulleyByAxis = Annotated[FloatArray, Per(("pulley", "axis"))]
+OfShownCurve = Annotated[FloatArray, Per(("curve",), shown=True)]
+OfPoint = Annotated[FloatArray, Per(("point",))]
+OfPointByAxis = Annotated[FloatArray, Per(("point", "axis"))]
+NumberOfPoint = Annotated[IntArray, Per(("point",), dtype=np.int8)]
+
+
 class Observations(NamedTuple):
-    """Derived quantities at k states; P pulleys (and spans), n curves of the belt with c contact points each.
+    """Derived quantities at a number of states; the names are those of the results."""
 
-    What belongs to the inside of the belt is there for m of the states, those that are shown.
-    """
-
-    pulley_torque: FloatArray
-    """Moment of the belt on each pulley, N m, shape (k, P)."""
-    shaft_torque: FloatArray
-    """Torque on each pulley from outside, N m, shape (k, P)."""
-    hub_force: FloatArray
-    """Force of the belt on each pulley, N, shape (k, P, 2)."""
-    pulley_center: FloatArray
-    """m, shape (k, P, 2)."""
-    friction_power: FloatArray
-    """Power lost in friction on each pulley, W, shape (k, P)."""
-    contact_damping_power: FloatArray
-    """Power lost in the contact dampers of each pulley, W, shape (k, P)."""
-    wrap_angle: FloatArray
-    """rad, shape (k, P)."""
-    belt_tension: FloatArray
-    """Mean axial force of each curve, N, shape (m, n)."""
-    tension_variation: FloatArray
-    """Root mean square deviation of the axial force within each curve from that mean, N, shape (m, n)."""
-    span_tension: FloatArray
-    """Mean axial force of the free belt after each pulley, N, shape (k, P); nan where the belt does not leave it."""
-    belt_speed: FloatArray
-    """Mean speed along the belt of the same, m/s, shape (k, P)."""
-    normal_force: FloatArray
-    """N/m, shape (k, n c)."""
-    friction_force: FloatArray
-    slip_velocity: FloatArray
+    pulley_torque: OfPulley
+    """Moment of the belt on each pulley, N m."""
+    shaft_torque: OfPulley
+    """Torque on each pulley from outside, N m."""
+    hub_force: OfPulleyByAxis
+    """Force of the belt on each pulley, N."""
+    pulley_center: OfPulleyByAxis
+    """m."""
+    friction_power: OfPulley
+    """Power lost in friction on each pulley, W."""
+    contact_damping_power: OfPulley
+    """Power lost in the contact dampers of each pulley, W."""
+    wrap_angle: OfPulley
+    """rad."""
+    belt_tension: OfShownCurve
+    """Mean axial force of each curve, N."""
+    tension_variation: OfShownCurve
+    """Root mean square deviation of the axial force within each curve from that mean, N."""
+    span_tension: OfPulley
+    """Mean axial force of the free belt after each pulley, N; nan where the belt does not leave it."""
+    belt_speed: OfPulley
+    """Mean speed along the belt of the same, m/s."""
+    normal_force: OfPoint
+    """N/m."""
+    friction_force: OfPoint
+    """N/m."""
+    slip_velocity: OfPoint
     """m/s, zero where the belt is free."""
-    contact_position: FloatArray
-    """m, shape (k, n c, 2)."""
-    contact_pulley: IntArray
-    """Number of the pulley that a point touches, -1 where it is free, shape (k, n c)."""
-    kinetic_energy: FloatArray
-    """J, shape (m,)."""
-    strain_energy: FloatArray
-    """J, shape (m,)."""
-    penalty_energy: FloatArray
-    """J, shape (k,)."""
-    spring_energy: FloatArray
-    """Of hub chains and tensioners."""
-    potential_energy: FloatArray
-    """Of weight, zero where everything is at the origin."""
+    contact_position: OfPointByAxis
+    """m."""
+    contact_pulley: NumberOfPoint
+    """Number of the pulley that a point touches, -1 where it is free."""
+    kinetic_energy: OfShownState
+    """J."""
+    strain_energy: OfShownState
+    """J."""
+    penalty_energy: OfState
+    """J."""
+    spring_energy: OfState
+    """Of hub chains and tensioners, J."""
+    potential_energy: OfState
+    """Of weight, zero where everything is at the origin, J."""
+
+
+OBSERVED: Mapping[str, Per] = {
+    name: hint.__metadata__[0] for name, hint in get_type_hints(Observations, include_extras=True).items()
+}
+"""What each observation has a value for."""
 
 
 class Samples(NamedTuple):
@@ -90,31 +115,26 @@ def new_observations(system: System, loads: BodyForces, shown: int) -> Observati
     shown
         Number of states that are shown.
     """
-    count, pulleys = loads.moment.shape
     curves = system.length.size * system.control.shape[1]
-    points = curves * system.contact.points.size
-    return Observations(
+    sizes = {
+        "pulley": system.pulleys.size,
+        "curve": curves,
+        "point": curves * system.contact.points.size,
+        "axis": 2,
+    }
+    states = len(loads.moment)
+    empty = {
+        name: np.zeros((shown if per.shown else states, *(sizes[dim] for dim in per.dims)), per.dtype)
+        for name, per in OBSERVED.items()
+    }
+    return Observations(**empty)._replace(
         pulley_torque=loads.moment,
         shaft_torque=loads.shaft,
         hub_force=loads.hub,
-        pulley_center=np.zeros((count, pulleys, 2)),
         friction_power=loads.friction,
         contact_damping_power=loads.damping,
-        wrap_angle=np.zeros((count, pulleys)),
-        belt_tension=np.zeros((shown, curves)),
-        tension_variation=np.zeros((shown, curves)),
-        span_tension=np.zeros((count, pulleys)),
-        belt_speed=np.zeros((count, pulleys)),
-        normal_force=np.zeros((count, points)),
-        friction_force=np.zeros((count, points)),
-        slip_velocity=np.zeros((count, points)),
-        contact_position=np.zeros((count, points, 2)),
-        contact_pulley=np.full((count, points), -1, dtype=np.int8),
-        kinetic_energy=np.zeros(shown),
-        strain_energy=np.zeros(shown),
         penalty_energy=loads.stored[:, PENALTY_ENERGY].copy(),
         spring_energy=loads.stored[:, SPRING_ENERGY].copy(),
-        potential_energy=np.zeros(count),
     )
 
 
