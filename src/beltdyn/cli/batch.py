@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beltdyn.cli.console import show, show_error, show_table, show_warnings
-from beltdyn.cli.output import doubt, require_output, write_tables
+from beltdyn.cli.output import doubt, require_output, show_leftovers, write_tables
 from beltdyn.cli.progress import runs_bar
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
@@ -61,6 +61,8 @@ def run_several(
         endings = simulate_all({results[file]: drives[file] for file in files}, report, jobs, force)
     ends = {file: endings[results[file]] for file in files}
     _show_endings(ends, results)
+    for path in results.values():
+        show_leftovers(path)
     if csv:
         _write_all_tables(ends, results, force)
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
@@ -118,7 +120,7 @@ def _numbers(end: "Ending") -> tuple[str, str, str, str]:
     summary = end.summary
     if summary is None:
         return ("",) * 4
-    speed = f"{summary.pulleys[-1].speed:.4f} rad/s"
+    speed = f"{summary.pulleys[-1].speed:z.4f} rad/s"
     return speed, f"{summary.steps}", f"{summary.wall_time:.3g} s", f"{len(summary.warnings)}"
 
 

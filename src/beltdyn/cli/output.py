@@ -57,7 +57,6 @@ def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
         If the simulation cannot go on.
     """
     from beltdyn.results import describe_size
-    from beltdyn.results.atomic import leftovers
     from beltdyn.solve import simulate
 
     show(f"Results of about {describe_size(drive)}")
@@ -65,15 +64,31 @@ def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
         with progress_bar() as report:
             finished = simulate(drive, path, report, force)
     except SimulationError:
-        show(f"What was computed is in {path}")
+        show(_kept(path))
         raise
     show_summary(finished)
     if finished.status == "interrupted":
         show("\nInterrupted: what was computed is kept.")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
+    show_leftovers(path)
+    return finished
+
+
+def show_leftovers(path: Path) -> None:
+    """Name the files that killed runs have left beside a result file."""
+    from beltdyn.results.atomic import leftovers
+
     for file in leftovers(path):
         show(f"A killed run has left {file}, which nobody needs: remove it.")
-    return finished
+
+
+def _kept(path: Path) -> str:
+    """Say where the outputs of a failed run are, or that there are none."""
+    from beltdyn.results.dataset import open_dataset
+
+    with open_dataset(path) as dataset:
+        outputs = dataset.sizes["time"]
+    return f"What was computed is in {path}" if outputs else "Nothing was computed before that."
 
 
 def doubt(warnings: Sequence[str]) -> int:

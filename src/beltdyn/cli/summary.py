@@ -12,7 +12,7 @@ _LARGEST_MARGIN = 100.0
 _LEAST_SHARE = 0.01
 """Part of the power put in from which a shaft is named."""
 _NOTHING = 1e-9
-"""Newtons, watts and metres a second that are rounding."""
+"""Newtons, watts, metres a second and revolutions a minute that are rounding."""
 _RPM = 30.0 / math.pi
 
 
@@ -43,8 +43,8 @@ def show_summary(run: "Run") -> None:
 def _pulley(pulley: "PulleySummary") -> tuple[str, ...]:
     return (
         pulley.name,
-        f"{pulley.speed:.2f}",
-        f"{_RPM * pulley.speed:.5g}",
+        f"{pulley.speed:z.2f}",
+        _number(_RPM * pulley.speed, 5),
         _number(pulley.shaft_torque),
         _number(pulley.power),
         _share(pulley.slip),

@@ -63,7 +63,7 @@ def _strain_warnings(installation: Installation) -> list[str]:
     if installation.strain <= _LARGEST_STRAIN:
         return []
     return [
-        f"the installed strain is {installation.strain:.0%}, more than {_LARGEST_STRAIN:.0%}: the belt's material "
+        f"the installed strain is {installation.strain:.1%}, more than {_LARGEST_STRAIN:.0%}: the belt's material "
         "law is linear. Lengthen the belt, or move the pulleys together."
     ]
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
+from beltdyn.results.lock import lock_file
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, RUN, TIMES, VARIABLES, Variable
 
 if TYPE_CHECKING:
@@ -141,10 +142,10 @@ def unreadable(path: Path, error: Exception) -> str:
         The message.
     """
     reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
-    return (
-        f"{path} cannot be read as a result file: {reason or type(error).__name__}. Give a file written by "
-        "`beltdyn run`; if this is one, it is damaged: run the drive again."
-    )
+    said = f"{path} cannot be read as a result file: {reason or type(error).__name__}."
+    if lock_file(path.resolve()).exists():
+        return f"{said} A run is writing it, or was killed meanwhile: try again in a moment."
+    return f"{said} Give a file written by `beltdyn run`; if this is one, it is damaged: run the drive again."
 
 
 def _check_attributes(path: Path, dataset: "xr.Dataset") -> None:

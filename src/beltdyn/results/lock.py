@@ -31,7 +31,7 @@ class OutputLock:
     def __init__(self, path: Path) -> None:
         if not path.parent.is_dir():  # the lock would make it
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
-        self._file = path.with_name(f".{path.name}.lock")
+        self._file = lock_file(path)
         self._lock = FileLock(self._file, timeout=0, thread_local=False)
         try:
             self._lock.acquire()
@@ -47,3 +47,19 @@ class OutputLock:
             with suppress(PermissionError):  # Windows removes it itself, when it is no longer locked
                 self._file.unlink(missing_ok=True)
             self._lock.release()
+
+
+def lock_file(path: Path) -> Path:
+    """The file that is there while a run writes a result, and after a run that was killed.
+
+    Parameters
+    ----------
+    path : Path
+        The result file.
+
+    Returns
+    -------
+    Path
+        In the same folder.
+    """
+    return path.with_name(f".{path.name}.lock")

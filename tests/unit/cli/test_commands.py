@@ -6,12 +6,15 @@ from collections.abc import Callable
 from math import hypot
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 from beltdyn import __version__
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import advise, install, load
+from beltdyn.results import FileRecorder, Layout
 from beltdyn.solve import bring_to_rest, equilibrium
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
@@ -141,14 +144,30 @@ def test_schema_is_json(run_main: RunMain) -> None:
     assert "belt" in json.loads(output)["properties"]
 
 
-def test_a_simulation_that_cannot_go_on(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def simulate(*_: object) -> None:
+@pytest.mark.parametrize("outputs", [0, 3])
+def test_a_simulation_that_cannot_go_on(
+    run_main: RunMain,
+    drive_file: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    layout: Layout,
+    attributes: dict[str, str],
+    make_chunk: Callable[..., Any],
+    outputs: int,
+) -> None:
+    """It says where its outputs are; of an equilibrium that was not found there are none."""
+
+    def simulate(_: object, path: Path, *others: object) -> None:
+        recorder = FileRecorder(path, layout, attributes)
+        if outputs:
+            recorder.append(make_chunk(np.linspace(0.0, 0.1, outputs)))
+        recorder.close("failed", {})
         raise ConvergenceError("no convergence at t = 0.1 s. Lower simulation.max_step.")
 
     monkeypatch.setattr("beltdyn.solve.simulate", simulate)
     code, output, message = run_main(["run", str(drive_file)])
     assert code == 3
-    assert f"What was computed is in {drive_file.with_suffix('.nc')}" in output
+    assert (f"What was computed is in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
+    assert ("Nothing was computed before that." in output) != bool(outputs)
     assert "error: no convergence at t = 0.1 s. Lower simulation.max_step." in message
 
 

@@ -131,7 +131,7 @@ def test_advice_on_soft_pulleys(drive: Drive) -> None:
     belt = drive.belt.replace(length=1.1, elements=100)
     soft = drive.replace(belt=belt, contact=drive.contact.replace(stiffness=1e5))
     strain, tension, *penetration = advise(soft, install(soft))
-    assert "installed strain is 16%, more than 10%" in strain
+    assert "installed strain is 16.0%, more than 10%" in strain
     assert "of the belt's tension, more than 2%: raise contact.stiffness" in tension
     assert [name in warning for name, warning in zip(("driver", "driven"), penetration, strict=True)] == [True, True]
 

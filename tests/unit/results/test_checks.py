@@ -9,6 +9,7 @@ import pytest
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run, summarize
 from beltdyn.results.checks import CHECKS
+from beltdyn.results.checks.energy import unbalanced_powers
 from beltdyn.results.checks.mesh import unresolved_by_mesh
 
 MakeRun = Callable[..., Run]
@@ -16,9 +17,9 @@ TURN = 0.3
 
 
 @pytest.fixture(autouse=True)
-def _any_mesh_will_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The mesh of 20 elements is judged in test_resolution.py."""
-    others = tuple(check for check in CHECKS if check is not unresolved_by_mesh)
+def _some_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The mesh of 20 elements is judged in test_resolution.py; losses are made up, and do not balance."""
+    others = tuple(check for check in CHECKS if check not in (unresolved_by_mesh, unbalanced_powers))
     monkeypatch.setattr("beltdyn.results.checks.CHECKS", others)
 
 
@@ -61,6 +62,20 @@ def test_driven_pulley_faster_than_its_driver(turning: Callable[..., Run], run: 
     assert "compare a run with belt.elements = 40 (an element covers 45° of driver)" in finding.remedy
 
 
+def test_powers_that_do_not_balance(turning: Callable[..., Run], run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A torque of the driver that is met at its crests: 3 % too high where the energy account closes."""
+    monkeypatch.setattr("beltdyn.results.checks.CHECKS", (unbalanced_powers,))
+    balance = summarize(turning()).balance
+    torque = run.dataset["shaft_torque"].values.copy()
+    spent = balance.power_out + balance.lost + balance.stored
+    torque[:, 0] *= spent / balance.power_in
+    assert turning(shaft_torque=torque).warnings == []
+    torque[:, 0] *= 1.03
+    (warning,) = turning(shaft_torque=torque).warnings
+    assert "(2.9%) are neither taken out, lost nor stored" in warning
+    assert warning.endswith("Set simulation.output_interval = 0.0007.")
+
+
 def test_less_slip_than_elastic_creep(turning: Callable[..., Run], run: Run) -> None:
     (warning,) = turning(**with_slip(run, 0.001)).warnings
     assert warning.startswith("driven slips 0.100% behind driver, less than the 0.294% that elastic creep alone takes")
@@ -96,9 +111,14 @@ def test_slip_of_the_friction_law(
 
 
 def test_slip_of_the_friction_law_within_a_part_of_a_turn(make_run: MakeRun, run: Run) -> None:
-    """The belt may take up 6 mm by its stretch: 5 % of the 98 mm that pass may be that, and 20 % are not."""
-    assert said(make_run(**with_slip(run, 0.2)), "slope of the friction law")
-    assert not said(make_run(**with_slip(run, 0.05)), "slope of the friction law")
+    """At a constant tension no slip is stretch; 2 % of 98 mm may be where a tension rises by 17 N, and 20 % are not.
+
+    With EA = 10 kN a belt of 1.27 m gets longer by 2.2 mm.
+    """
+    assert said(make_run(**with_slip(run, 0.02)), "slope of the friction law")
+    rising = run.dataset["span_tension"].values + np.linspace(0.0, 170.0, 101)[:, None]
+    assert said(make_run(span_tension=rising, **with_slip(run, 0.2)), "slope of the friction law")
+    assert not said(make_run(span_tension=rising, **with_slip(run, 0.02)), "slope of the friction law")
 
 
 def test_slope_that_is_asked_for(turning: Callable[..., Run], run: Run) -> None:

@@ -44,6 +44,20 @@ def test_lock_of_a_killed_process_is_gone(tmp_path: Path, layout: Layout, attrib
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_file_that_is_read_amid_a_write_says_so(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    """What a reader meets there may be neither the old contents nor the new ones."""
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    whole = recorder.path.read_bytes()
+    recorder.path.write_bytes(whole[:100])
+    with pytest.raises(ModelError, match="A run is writing it, or was killed meanwhile: try again"):
+        open_run(recorder.path)
+    recorder.path.write_bytes(whole)
+    recorder.close("completed", {})
+    recorder.path.write_bytes(whole[:100])
+    with pytest.raises(ModelError, match="it is damaged: run the drive again"):
+        open_run(recorder.path)
+
+
 def test_rows_never_go_into_another_file(
     tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
 ) -> None:

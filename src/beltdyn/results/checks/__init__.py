@@ -8,7 +8,7 @@ from beltdyn.model import Drive
 from beltdyn.results.checks.contact import deep_penetration, large_strain, leaves_pulley, slack_spans
 from beltdyn.results.checks.creep import impossible_slip, regularised_slip
 from beltdyn.results.checks.ending import unfinished
-from beltdyn.results.checks.energy import numerical_damping, open_account
+from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
 from beltdyn.results.checks.finding import Check, Evidence, Finding
 from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved_by_mesh
@@ -24,6 +24,7 @@ CHECKS: tuple[Check, ...] = (
     unfinished,
     open_account,
     numerical_damping,
+    unbalanced_powers,
     slack_spans,
     leaves_pulley,
     deep_penetration,

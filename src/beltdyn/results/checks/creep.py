@@ -80,11 +80,11 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
 
 
 def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
-    """Whether rims come apart by more, within the window, than the belt is stretched: it does not only get tighter."""
+    """Whether rims come apart by more, within the window, than the belt's stretch changes with its tension."""
     drive, window = evidence.drive, evidence.window
     passed = abs(evidence.pulleys[0].speed) * float(drive.rolling_radii[0]) * (window.end - window.start)
-    tension = float(np.max(window.mean(evidence.recorded, "span_tension")))
-    return abs(slip) * passed > tension / drive.belt.axial_stiffness * drive.belt.length
+    change = float(np.ptp(np.asarray(evidence.recorded["span_tension"][window.first :]), axis=0).max())
+    return abs(slip) * passed > change / drive.belt.axial_stiffness * drive.belt.length
 
 
 def _steeper(evidence: Evidence) -> str:

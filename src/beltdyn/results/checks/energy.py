@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from beltdyn.results.balance import power_balance
 from beltdyn.results.checks.finding import Evidence, Finding
 from beltdyn.results.closure import largest_closure, largest_numerical_share
 
@@ -10,6 +11,12 @@ CLOSURE_LIMIT = 0.01
 
 NUMERICAL_LIMIT = 0.01
 """Largest part of the energy put in, at any time, that time integration may take without a warning."""
+
+POWER_LIMIT = 0.01
+"""Part of the power put in that may be missing in mean powers without a warning; they are means over outputs."""
+
+_OTHER_INTERVAL = 0.7
+"""The interval of outputs that the remedy names, over that of the run; elements are met at other places then."""
 
 
 def open_account(evidence: Evidence) -> Iterator[Finding]:
@@ -32,4 +39,24 @@ def numerical_damping(evidence: Evidence) -> Iterator[Finding]:
             f"{NUMERICAL_LIMIT:.0%}:",
             spoils="vibrations die out sooner than they should, and efficiency is too low.",
             remedy=f"Reduce simulation.rtol = {evidence.drive.simulation.rtol:g}.",
+        )
+
+
+def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
+    """Say that the powers of shafts do not balance over whole turns, though the account of their works does.
+
+    Torques of prescribed shafts ripple as elements pass. Outputs that meet each of them at the same place give a mean
+    torque and power that are off.
+    """
+    balance = power_balance(evidence.recorded, evidence.window)
+    missing = balance.power_in - balance.power_out - balance.lost - balance.stored
+    closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT
+    if evidence.window.turns and closes and abs(missing) > POWER_LIMIT * balance.power_in > 0.0:
+        interval = evidence.drive.simulation.output_interval
+        yield Finding(
+            f"of {balance.power_in:.4g} W put in, {missing:.3g} W ({missing / balance.power_in:.1%}) are neither taken "
+            "out, lost nor stored, though the energy account closes:",
+            f"outputs every {interval:g} s meet the ripple of a torque at the same place each time, and mean torques "
+            "and powers are wrong by as much; losses and efficiency are not concerned.",
+            f"Set simulation.output_interval = {_OTHER_INTERVAL * interval:.2g}.",
         )
