@@ -3,6 +3,7 @@
 import functools
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numba
@@ -46,7 +47,7 @@ def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
     while ByType.unregistered:
         _register(ByType.unregistered.pop())
     dispatcher = numba.njit(forceinline=inline, **OPTIONS)(function)
-    with setting("CACHE_DIR", str(kernel_cache())):
+    with setting("CACHE_DIR", str(kernel_cache())), suppress(RuntimeError):  # no file holds what was typed
         dispatcher.enable_caching()
     return dispatcher
 

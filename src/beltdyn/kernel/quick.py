@@ -7,6 +7,7 @@ with all that it calls, and kept on disk.
 
 import gc
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cached_property
 from typing import Any
 
@@ -65,7 +66,7 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
     def compile(self, sig: Any) -> Any:
         """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects."""
         if self._folder:
-            with setting("CACHE_DIR", self._folder):
+            with setting("CACHE_DIR", self._folder), suppress(RuntimeError):  # no file holds what was typed
                 self._cache = _Cache(self.py_func)
             self._folder = None
         collecting = gc.isenabled()

@@ -88,18 +88,6 @@ CASES = (
         'discretization = "trus"',
         ('belt.discretization = "trus"', 'Did you mean "truss"?'),
     ),
-    Case(
-        "odd number of links",
-        "elements = 20",
-        'elements = 20\ndiscretization = "truss"',
-        ("elements = 20 does not fit", '"truss"', "a multiple of 3, at least 9", "Choose 18 or 21"),
-    ),
-    Case(
-        "few beams",
-        "elements = 20",
-        'elements = 3\ndiscretization = "three-node-beam"',
-        ("elements = 3 does not fit", '"three-node-beam"', "a multiple of 3, at least 6", "Choose 6"),
-    ),
     Case("sampling", "damping = 10.0", 'sampling = "nodes"', ("contact.sampling", '"nodes"', 'Did you mean "nodal"?')),
     # numbers
     Case(

@@ -92,7 +92,7 @@ def test_chosen_figures_of_one_pulley(run_main: RunMain, result_file: Path) -> N
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--figures", "slips"], "figure 'slips' is not known. Choose out of configuration, speeds"),
+        (["--figures", "slips"], "figure 'slips' is not known. Choose out of configuration, contact_forces"),
         (["--figures", "slip,"], "figure '' is not known"),
         (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Its pulleys are: driver, driven."),
         (["--figures", "tensioners"], "this drive has no tensioner that moves"),

@@ -102,7 +102,8 @@ CASES: dict[str, tuple[list[dict[str, Any]], dict[str, Any], set[str]]] = {
     ),
     FALLING: (
         [CRANK, IDLER, loaded()],
-        {"belt": {"length": 1.099814}, "gravity": (0.0, -300.0), "simulation": {"start": "laid", "rtol": 5e-5}},
+        {"belt": {"length": 1.099814}, "gravity": (0.0, -300.0),
+         "simulation": {"start": "laid", "rtol": 5e-5, "output_interval": 2.5e-5}},
         set(),
     ),
     "material damping": (
@@ -136,7 +137,7 @@ def test_closes(make: Make, measured: Measured, case: str) -> None:
     parts = {name: float(run[name][-1]) for name in LOSSES if name in lost}
     measured(closure=closure, friction_power=errors["friction_loss"], damping_power=errors["damping_loss"], **parts)
     assert closure < 5e-4
-    assert max(map(abs, errors.values())) < (1e-2 if case == FALLING else 1e-4)
+    assert max(map(abs, errors.values())) < (1e-3 if case == FALLING else 1e-4)
     for name in LOSSES:
         loss = run[name].values
         assert np.all(np.diff(loss) >= -1e-12 * loss[-1])
