@@ -83,12 +83,15 @@ def show_leftovers(path: Path) -> None:
 
 
 def _kept(path: Path) -> str:
-    """Say where the outputs of a failed run are, or that there are none."""
+    """Say where the outputs of a failed run are, or that there are none; the file may be gone, which may be why."""
     from beltdyn.results.dataset import open_dataset
 
-    with open_dataset(path) as dataset:
-        outputs = dataset.sizes["time"]
-    return f"What was computed is in {path}" if outputs else "Nothing was computed before that."
+    try:
+        with open_dataset(path) as dataset:
+            outputs = dataset.sizes["time"]
+    except ModelError:
+        outputs = 0
+    return f"What was computed is in {path}" if outputs else "No outputs are kept."
 
 
 def doubt(warnings: Sequence[str]) -> int:

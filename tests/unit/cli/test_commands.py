@@ -144,7 +144,7 @@ def test_schema_is_json(run_main: RunMain) -> None:
     assert "belt" in json.loads(output)["properties"]
 
 
-@pytest.mark.parametrize("outputs", [0, 3])
+@pytest.mark.parametrize("outputs", [None, 0, 3])
 def test_a_simulation_that_cannot_go_on(
     run_main: RunMain,
     drive_file: Path,
@@ -152,22 +152,23 @@ def test_a_simulation_that_cannot_go_on(
     layout: Layout,
     attributes: dict[str, str],
     make_chunk: Callable[..., Any],
-    outputs: int,
+    outputs: int | None,
 ) -> None:
-    """It says where its outputs are; of an equilibrium that was not found there are none."""
+    """It says where its outputs are; of an equilibrium that was not found there are none, nor in a lost file."""
 
     def simulate(_: object, path: Path, *others: object) -> None:
-        recorder = FileRecorder(path, layout, attributes)
-        if outputs:
-            recorder.append(make_chunk(np.linspace(0.0, 0.1, outputs)))
-        recorder.close("failed", {})
+        if outputs is not None:
+            recorder = FileRecorder(path, layout, attributes)
+            if outputs:
+                recorder.append(make_chunk(np.linspace(0.0, 0.1, outputs)))
+            recorder.close("failed", {})
         raise ConvergenceError("no convergence at t = 0.1 s. Lower simulation.max_step.")
 
     monkeypatch.setattr("beltdyn.solve.simulate", simulate)
     code, output, message = run_main(["run", str(drive_file)])
     assert code == 3
     assert (f"What was computed is in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
-    assert ("Nothing was computed before that." in output) != bool(outputs)
+    assert ("No outputs are kept." in output) != bool(outputs)
     assert "error: no convergence at t = 0.1 s. Lower simulation.max_step." in message
 
 
