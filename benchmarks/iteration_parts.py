@@ -18,7 +18,7 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
-from beltdyn.solve import find_equilibrium
+from beltdyn.solve.installation import bring_to_rest
 from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble, fill_control
 from beltdyn.system.build import drive_system
@@ -26,7 +26,6 @@ from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import factorise_ring, substitute
-from beltdyn.system.state import laid
 
 ROUNDS, REPEATS = 15, 300
 
@@ -110,7 +109,7 @@ def main() -> None:
     elements = parser.parse_args().elements
     drive = better(two_pulley(elements))
     system = drive_system(drive)
-    state = find_equilibrium(system, laid(system, drive.path)).state.position
+    state = bring_to_rest(drive).state.position
     arguments = (system, state, np.zeros_like(state), new_equations(system), no_multipliers(system))
     table = Table("part", "µs per element", title=f"{elements} elements")
     parts = {

@@ -14,13 +14,12 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.model import Drive
 from beltdyn.published import two_pulley
-from beltdyn.solve import find_equilibrium
+from beltdyn.solve.installation import bring_to_rest
 from beltdyn.system.arrays import System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
 from beltdyn.system.motion import Equations, new_equations, no_multipliers
 from beltdyn.system.ring_matrix import solve_ring
-from beltdyn.system.state import laid
 
 ELEMENTS = (20, 40, 80, 160, 320, 640)
 ITERATIONS = 20_000
@@ -53,7 +52,7 @@ def iterate(
 def time_iterations(drive: Drive) -> list[float]:
     """Microseconds per iteration of each round, on the belt in equilibrium on its pulleys."""
     system = drive_system(drive)
-    state = find_equilibrium(system, laid(system, drive.path)).state
+    state = bring_to_rest(drive).state
     velocity = np.zeros_like(state.position)
     equations, none = new_equations(system), no_multipliers(system)
     count = ITERATIONS // system.nodes

@@ -115,7 +115,7 @@ def test_slack_span_is_said(make_run: MakeRun) -> None:
 def test_what_the_mesh_does_not_resolve_is_said(run: Run) -> None:
     (warning,) = Run(run.dataset, run.drive).warnings
     assert warning.startswith("the mesh does not resolve peak pressure (error above 100%)")
-    assert "Speeds converge earlier. Set belt.elements = " in warning
+    assert "Speeds need fewer elements. Set belt.elements = " in warning
 
 
 def test_resolved_run_says_nothing(run: Run, fine_drive: Drive) -> None:

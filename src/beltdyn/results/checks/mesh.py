@@ -11,4 +11,4 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
     said = unresolved(evidence.resolution.errors, evidence.resolution.needed)
     if said:
         fault, remedy = said
-        yield Finding(fault, "Speeds converge earlier.", remedy)
+        yield Finding(fault, "Speeds need fewer elements.", remedy)

@@ -28,7 +28,7 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
             fault = f"{pulley.name} slides through: the whole arc slides, at {sliding:.3g} m/s{share}."
             yield Finding(fault, remedy=remedy)
         elif 0.0 < pulley.margin < MARGIN_LIMIT and first > 0.0:
-            slips = f" slips {pulley.slip:.1%}," if pulley.slip != 0.0 else ":"
+            slips = f" slips {pulley.slip:.1%}," if np.isfinite(pulley.slip) and pulley.slip else ":"
             yield Finding(f"{pulley.name}{slips} gross slip at {pulley.margin:.1f} times this load.", remedy=remedy)
 
 
