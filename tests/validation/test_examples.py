@@ -11,6 +11,7 @@ from make_examples import EXAMPLES, simulated
 import beltdyn as bd
 from beltdyn import simulate
 from beltdyn.results import summarize
+from beltdyn.results.mechanics import capstan_margin
 
 CLOSURE = 5e-3
 """Of the energy put in, at any time."""
@@ -18,7 +19,7 @@ NAMES = list(EXAMPLES)
 WARNINGS = {
     "two_pulley": ["the mesh does not resolve peak pressure (error above 100%)"],
     "accessory_drive": [
-        "of the slip of alternator, 0.55%, elastic creep makes 0.26%, and the slope of the friction law 0.29%"
+        "of the slip of alternator, 0.54%, elastic creep makes 0.26%, and the slope of the friction law 0.28%"
     ],
     "crossed_belt": ["the mesh does not resolve peak pressure"],
     "flat_belt_idler": ["the mesh does not resolve peak pressure"],
@@ -79,10 +80,13 @@ def test_the_overloaded_conveyor_comes_to_a_stop() -> None:
 def test_the_idler_carries_what_slips_without_it() -> None:
     """The load of 160 N m is above what fixed centres transmit, and with the idler half as much again is below."""
     run = simulated("flat_belt_idler")
-    bare = summarize(simulate(without_idler(run.drive)))
+    slipping = simulate(without_idler(run.drive))
+    bare = summarize(slipping)
     assert any(text.startswith("motor slides through") for text in bare.warnings)
-    assert bare.pulleys[0].margin == pytest.approx(1.0, abs=0.02)
     assert bare.pulleys[1].slip > 0.1
+    sliding = slipping.dataset.sel(time=slice(1.1, 1.2))  # later the sliding arc flutters
+    arc = (sliding[name].values for name in ("span_tension", "belt_speed", "wrap_angle"))
+    assert capstan_margin(*arc, slipping.drive)[:, 0] == pytest.approx(1.0, abs=0.02)
     more = summarize(simulate(with_load(run.drive, 240.0)))
     assert not any("slides through" in text for text in more.warnings)
     assert more.pulleys[2].slip < 0.03
