@@ -1,6 +1,5 @@
 """Quadrature on the unit interval."""
 
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +15,6 @@ class Quadrature(NamedTuple):
     weights: FloatArray
 
 
-@cache
 def gauss_points(count: int) -> Quadrature:
     """Points and weights of Gauss-Legendre quadrature on [0, 1].
 
@@ -28,13 +26,12 @@ def gauss_points(count: int) -> Quadrature:
     Returns
     -------
     Quadrature
-        Arrays of shape (count,), dimensionless and read-only; the weights add up to 1.
+        Arrays of shape (count,), dimensionless; the weights add up to 1.
     """
     points, weights = leggauss(count)
-    return Quadrature(_read_only(0.5 * (points + 1.0)), _read_only(0.5 * weights))
+    return Quadrature(0.5 * (points + 1.0), 0.5 * weights)
 
 
-@cache
 def lobatto_points(count: int) -> Quadrature:
     """Points and weights of Gauss-Lobatto quadrature on [0, 1], which has a point at either end.
 
@@ -47,14 +44,9 @@ def lobatto_points(count: int) -> Quadrature:
     Returns
     -------
     Quadrature
-        Arrays of shape (count,), dimensionless and read-only; the weights add up to 1.
+        Arrays of shape (count,), dimensionless; the weights add up to 1.
     """
     polynomial = Legendre.basis(count - 1)
     points = np.concatenate([[-1.0], polynomial.deriv().roots().real, [1.0]])
     weights = 1.0 / (count * (count - 1) * polynomial(points) ** 2)
-    return Quadrature(_read_only(0.5 * (points + 1.0)), _read_only(weights))
-
-
-def _read_only(values: FloatArray) -> FloatArray:
-    values.flags.writeable = False
-    return values
+    return Quadrature(0.5 * (points + 1.0), weights)

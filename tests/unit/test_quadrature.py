@@ -23,12 +23,9 @@ def test_points_lie_inside_and_symmetric(count: int) -> None:
     np.testing.assert_allclose(weights, weights[::-1], atol=ROUNDING)
 
 
-def test_points_are_shared_and_cannot_be_changed() -> None:
-    points, weights = gauss_points(4)
-    assert gauss_points(4)[0] is points
-    for array in (points, weights):
-        with pytest.raises(ValueError, match="read-only"):
-            array[0] = 0.0
+def test_each_call_has_arrays_of_its_own() -> None:
+    gauss_points(4).points[:] = 0.0
+    assert np.all(gauss_points(4).points > 0.0)
 
 
 @pytest.mark.parametrize("count", range(2, 9))
@@ -46,5 +43,3 @@ def test_two_lobatto_points_are_the_trapezoidal_rule() -> None:
     points, weights = lobatto_points(2)
     np.testing.assert_array_equal(points, [0.0, 1.0])
     np.testing.assert_array_equal(weights, [0.5, 0.5])
-    assert not points.flags.writeable
-    assert not weights.flags.writeable

@@ -5,23 +5,25 @@ is a second core, a second process does that part.
 """
 
 import os
+import pickle
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from tempfile import TemporaryFile
 
 import numpy as np
 
 from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
-from beltdyn.model import Belt
 from beltdyn.results.friction_work import ARC_PARTS, Touch, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
 from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
-from beltdyn.system.state import State, straight
+from beltdyn.system.state import State
+
+_SECOND = f"import pickle, sys; from {__name__} import compile_solving; compile_solving(*pickle.load(sys.stdin.buffer))"
 
 
 def usable_cores() -> int:
@@ -39,9 +41,9 @@ def compile_kernels(system: System, state: State) -> None:
     state
         A state of it.
     """
-    with _second_process():
+    with _second_process(system, state):
         _compile_observing(system)
-    _compile_solving(system, state)
+    compile_solving(system, state)
 
 
 def _compile_observing(system: System) -> None:
@@ -53,32 +55,36 @@ def _compile_observing(system: System) -> None:
     fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, states)
 
 
-def compile_solving() -> None:
-    """Compile what solves the equations of motion alone, on a belt that stands for all others."""
-    belt = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3, elements=3)
-    system = belt_system(belt)
-    _compile_solving(system, straight(system))
-
-
-def _compile_solving(system: System, state: State) -> None:
+def compile_solving(system: System, state: State) -> None:
+    """Compile what solves the equations of motion alone; arguments as for `compile_kernels`."""
     velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
     accelerate(system, 0.0, state.position, velocity, acceleration, no_multipliers(system), new_equations(system))
 
 
 @contextmanager
-def _second_process() -> Iterator[None]:
-    """Compile that part in another process meanwhile, if that is of use; if it fails, this one does it later."""
+def _second_process(system: System, state: State) -> Iterator[None]:
+    """Compile that part in another process meanwhile, if that is of use; if it fails, this one does it later.
+
+    Kernels depend on the classes of elements, laws and surfaces, so that the other process needs the system.
+    """
     folder = kernel_cache()
     if any(folder.rglob("*.nbi")) or usable_cores() < 2 or not sys.executable:
         yield
         return
-    process = subprocess.Popen(
-        [sys.executable, "-c", f"from {__name__} import compile_solving; compile_solving()"],
-        env={**os.environ, CACHE_VARIABLE: str(folder.parent), "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
+    with TemporaryFile() as arguments:
+        pickle.dump((system, state), arguments)
+        arguments.seek(0)
+        process = subprocess.Popen(
+            [sys.executable, "-c", _SECOND],
+            env={
+                **os.environ,
+                CACHE_VARIABLE: str(folder.parent),
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            },
+            stdin=arguments,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
     try:
         yield
         process.wait()
