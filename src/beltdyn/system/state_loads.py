@@ -1,4 +1,4 @@
-"""BodyForces at states, without the equations of motion."""
+"""Forces on bodies, and powers, at states, without the equations of motion."""
 
 from typing import NamedTuple
 
@@ -72,7 +72,7 @@ def fill_loads(
 
 @kernel
 def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: BodyForces) -> None:
-    """BodyForces and powers at a state, without residual and tangent.
+    """Forces on bodies and powers at a state, without residual and tangent.
 
     Newton's method stops when the state is known well enough.  The loads that it leaves are those before its last
     change, which in stiff contact are off by much more: they have to be found anew.
