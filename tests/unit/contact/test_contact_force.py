@@ -10,6 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import ContactTotals, contact_force, contact_workspace
 from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.surface import Round
 from beltdyn.quadrature import gauss_points
 
 DEGREES = [1, 3, 5]
@@ -245,17 +246,34 @@ def test_without_a_tangent_the_forces_are_the_same(pulley: PulleyState, law: Con
     assert not any(np.any(without[name]) for name in ("by_turn", "moment", *BLOCKS))
 
 
-def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw) -> None:
-    """What an element leaves in the arrays does not count for the next one."""
+@pytest.mark.parametrize("follow_zone", [True, False], ids=["zone", "whole"])
+def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw, follow_zone: bool) -> None:
+    """What an element leaves in the arrays, its zone too, does not count for the next one."""
     vectors, rates = sunk(pulley, 3)
-    work, basis = contact_workspace(4, 4), np.eye(4)
-    curve = Curve(vectors, rates, basis, LENGTH)
-    first = contact_force(curve, pulley, law, RULE, 1.0, 300.0, work)
-    kept = work.copy()
-    again = contact_force(curve, pulley, law, RULE, 1.0, 300.0, work)
-    assert again == first
-    for name in ("force", "by_turn", "moment", *BLOCKS):
-        np.testing.assert_array_equal(work[name], kept[name])
+    first, totals = act(vectors, rates, np.eye(4), pulley, law._replace(follow_zone=follow_zone), 1.0, 300.0)
+    work = contact_workspace(4, 4)
+    for left in (work, work.zone):
+        for name in set(left.dtype.names or ()) - {"zone"}:
+            left[name] = 0.3
+    curve = Curve(vectors, rates, np.eye(4), LENGTH)
+    again = contact_force(curve, pulley, law._replace(follow_zone=follow_zone), RULE, 1.0, 300.0, work)
+    assert again == totals
+    for name in ("force", "by_turn", "moment", "moment_by_turn", *BLOCKS):
+        np.testing.assert_array_equal(work[name], first[name])
+
+
+@pytest.mark.parametrize("depth", [0.0, -1e-12])
+def test_a_belt_that_hits_the_rim_meets_the_damper_first(law: ContactLaw, depth: float) -> None:
+    """At no penetration the springs are not yet strained; just outside there is no force at all."""
+    pulley, speed = PulleyState(0.0, 0.0, Round(1.0), speed=0.0, friction=0.5), 2.0
+    control = np.array([[1.0 - depth, -0.01], [1.0 - depth, 0.01]])
+    curve = Curve(control, np.tile([-speed, 0.0], (2, 1)), np.eye(2), LENGTH)
+    work = contact_workspace(2, 2)
+    totals = contact_force(curve, pulley, law._replace(follow_zone=False), gauss_points(1), 0.0, 0.0, work)
+    damping = law.normal.damping if depth == 0.0 else 0.0
+    assert -totals.hub_x == pytest.approx(damping * speed * LENGTH)
+    assert totals.damping_power == pytest.approx(damping * speed**2 * LENGTH)
+    assert totals.penalty_energy == 0.0
 
 
 def test_an_element_that_touches_all_along_is_its_own_zone(pulley: PulleyState, law: ContactLaw) -> None:

@@ -109,6 +109,38 @@ def test_chord_of_a_straight_element(height: float, half: float) -> None:
     np.testing.assert_allclose(intervals(control), [[0.5 - half / 3, 0.5 + half / 3]], atol=1e-9)
 
 
+@pytest.mark.parametrize("place", [0.1, 0.3, 0.5, 0.86])
+def test_a_dip_too_short_to_be_seen_does_no_harm(place: float) -> None:
+    """A straight element that grazes a circle over less than 2^-12 of its length touches there or nowhere."""
+    half = np.sqrt(2e-9) / 3.0
+    along = 3.0 * (np.linspace(0.0, 1.0, 4) - place)
+    found = intervals(np.stack([along, np.full(4, 1.0 - 1e-9)], axis=1))
+    if len(found):
+        np.testing.assert_allclose(found, [[place - half, place + half]], atol=1e-9)
+
+
+@pytest.mark.parametrize(("end", "stop"), [((0.0, 0.0), 1.0), ((-3.0, 0.0), 0.5)], ids=["center", "through"])
+def test_an_element_that_begins_on_the_rim_and_goes_in_touches_from_there(
+    end: tuple[float, float], stop: float
+) -> None:
+    """Its overlap begins at zero exactly."""
+    np.testing.assert_allclose(intervals(np.array([(1.0, 0.0), end])), [[0.0, stop]], atol=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0], ids=["begins outside", "begins inside"])
+def test_a_wave_touches_at_each_crest(sign: float) -> None:
+    """A curve of degree 7 along the rim that swings through it seven times, like a Chebyshev polynomial."""
+    places = 0.5 - 0.5 * np.cos(np.pi * np.arange(8) / 7.0)
+    weights = np.empty((8, 8))
+    for xi, row in zip(places, weights, strict=True):
+        fill_bernstein(xi, row)
+    along = 0.01 * (places - 0.5)
+    swing = 1e-3 * sign * np.cos(np.pi * np.arange(8))
+    control = np.linalg.solve(weights, np.stack([along, 1.0 + swing], axis=1))
+    assert len(intervals(control)) == 4
+    assert_exact(control)
+
+
 @pytest.mark.parametrize(("shift", "expected"), [(0.0, [[0.0, 1.0]]), (5.0, np.empty((0, 2)))], ids=["inside", "away"])
 def test_whole_element(shift: float, expected: Any) -> None:
     control = np.stack([np.linspace(-0.5, 0.5, 4) + shift, np.full(4, 0.1)], axis=1)
@@ -142,3 +174,13 @@ def test_quick_rejection_sees_straight_elements_beyond_a_tangent(far: float) -> 
     control = np.array([[far, -0.6], [far, -0.2], [far, 0.2], [far, 0.6]])
     assert out_of_reach(control, UNIT)
     assert not out_of_reach(control * [0.998 / far, 1.0], UNIT)
+
+
+@pytest.mark.parametrize("angle", np.linspace(0.0, 2.0 * np.pi, 13))
+def test_quick_rejection_does_not_depend_on_where_the_element_lies(angle: float) -> None:
+    """An element 1 mm outside a tangent is rejected, one 2 mm deeper is not, wherever on the rim of 1 m they lie."""
+    turn, center = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]), np.array([3.0, -2.0])
+    moved = UNIT._replace(center_x=center[0], center_y=center[1])
+    for height, beyond in ((1.001, True), (0.999, False)):
+        control = np.stack([np.full(4, height), np.array([-0.3, -0.1, 0.1, 0.3])], axis=1)
+        assert out_of_reach(center + control @ turn.T, moved) == beyond

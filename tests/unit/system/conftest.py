@@ -30,6 +30,67 @@ VARIANTS = [
     *product(["force_slope"], ["zone", "nodal"], ["shared_node"], ["truss", "three-node-beam"]),
 ]
 
+COMMON: dict[str, Any] = {
+    "pulley": "idler",
+    "tensioning_friction": 3.0,
+    "yielding_friction": 5.0,
+    "stops": (-1e-4, 0.3),
+    "stop_stiffness": 1e4,
+    "stop_damping": 10.0,
+}
+ROTARY = COMMON | {
+    "kind": "rotary",
+    "pivot": (0.35, 0.05),
+    "inertia": 0.01,
+    "mass": 0.4,
+    "preload": 4.0,
+    "rate": 20.0,
+    "damping": 0.5,
+}
+SLIDING = COMMON | {
+    "kind": "sliding",
+    "direction": (0.2, -1.0),
+    "mass": 1.5,
+    "preload": 30.0,
+    "rate": 500.0,
+    "damping": 5.0,
+}
+
+
+@pytest.fixture(scope="session")
+def with_machines(drive: Drive) -> Callable[[str], Drive]:
+    """The paper's drive with an idler on a tensioner, a hub chain behind the driven pulley, and loads on its end."""
+
+    def make(tensioner: str) -> Drive:
+        data = drive.model_dump(by_alias=True, exclude_none=True)
+        data["belt"] |= {"length": 1.2965, "elements": 12}
+        data["contact"] = CONTACT | FRICTION["force_slope"]
+        driver, driven = data["pulley"]
+        driven |= {
+            "torque": {"kind": "constant", "value": -1.0},
+            "load": [
+                {
+                    "kind": "resistance",
+                    "constant": 1.0,
+                    "creep_speed": 0.5,
+                    "quadratic": 0.03,
+                    "harmonics": [{"order": 2, "amplitude": 0.3, "phase": 0.4}],
+                },
+            ],
+            "hub": [
+                {"kind": "one_way_clutch", "locking_damping": 20.0, "drag_torque": 1.0, "inertia": 0.05},
+                {"kind": "isolator", "stiffness": 50.0, "damping": 0.3, "inertia": 0.1},
+            ],
+        }
+        middle = 0.5 * (driver["center"][0] + driven["center"][0])
+        idler = {"name": "idler", "center": (middle, -0.2), "radius": 0.04, "inertia": 1e-3, "mass": 0.3}
+        data["pulley"] = [driver, idler, driven] if driver["center"][0] < middle else [driver, driven, idler]
+        data["tensioner"] = [{"rotary": ROTARY, "sliding": SLIDING}[tensioner]]
+        data["gravity"] = (0.0, -9.81)
+        return Drive(**data)
+
+    return make
+
 
 @pytest.fixture(scope="session")
 def make_drive(drive: Drive) -> Callable[..., Drive]:

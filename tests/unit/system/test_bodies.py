@@ -1,7 +1,6 @@
 """A drive with hub chains, loads and a tensioner: its tangent, the balance of its forces, its bodies as arrays."""
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,69 +16,13 @@ from beltdyn.system.state import State, laid
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
 
-COMMON: dict[str, Any] = {
-    "pulley": "idler",
-    "tensioning_friction": 3.0,
-    "yielding_friction": 5.0,
-    "stops": (-1e-4, 0.3),
-    "stop_stiffness": 1e4,
-    "stop_damping": 10.0,
-}
-ROTARY = COMMON | {
-    "kind": "rotary",
-    "pivot": (0.35, 0.05),
-    "inertia": 0.01,
-    "mass": 0.4,
-    "preload": 4.0,
-    "rate": 20.0,
-    "damping": 0.5,
-}
-SLIDING = COMMON | {
-    "kind": "sliding",
-    "direction": (0.2, -1.0),
-    "mass": 1.5,
-    "preload": 30.0,
-    "rate": 500.0,
-    "damping": 5.0,
-}
 IDLER, FIRST_HUB, SECOND_HUB, TENSIONER = 2, 3, 4, 5
 """Numbers of bodies."""
 
 
-@pytest.fixture(scope="module", params=[ROTARY, SLIDING], ids=lambda tensioner: tensioner["kind"])
-def drive(request: pytest.FixtureRequest, drive: Drive) -> Drive:
-    """The paper's drive with an idler on a tensioner, a hub chain behind the driven pulley, and loads on its end."""
-    data = drive.model_dump(by_alias=True, exclude_none=True)
-    data["belt"] |= {"length": 1.2965, "elements": 12}
-    data["contact"] = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2, "creep_rate_factor": 300.0}
-    driver, driven = data["pulley"]
-    driven |= {
-        "torque": {"kind": "constant", "value": -1.0},
-        "load": [
-            {
-                "kind": "resistance",
-                "constant": 1.0,
-                "creep_speed": 0.5,
-                "quadratic": 0.03,
-                "harmonics": [{"order": 2, "amplitude": 0.3, "phase": 0.4}],
-            },
-        ],
-        "hub": [
-            {"kind": "one_way_clutch", "locking_damping": 20.0, "drag_torque": 1.0, "inertia": 0.05},
-            {"kind": "isolator", "stiffness": 50.0, "damping": 0.3, "inertia": 0.1},
-        ],
-    }
-    middle = 0.5 * (driver["center"][0] + driven["center"][0])
-    idler = {"name": "idler", "center": (middle, -0.2), "radius": 0.04, "inertia": 1e-3, "mass": 0.3}
-    data["pulley"] = [driver, idler, driven] if driver["center"][0] < middle else [driver, driven, idler]
-    data["tensioner"] = [request.param]
-    data["gravity"] = (0.0, -9.81)
-    return Drive(**data)
-
-
-@pytest.fixture(scope="module")
-def system(drive: Drive) -> System:
-    return drive_system(drive)
+@pytest.fixture(scope="module", params=["rotary", "sliding"])
+def system(request: pytest.FixtureRequest, with_machines: Callable[[str], Drive]) -> System:
+    return drive_system(with_machines(request.param))
 
 
 @pytest.fixture(scope="module")
