@@ -58,3 +58,27 @@ def test_tolerances_are_lengths(system: System, equations: FirstOrder) -> None:
     np.testing.assert_allclose(velocity[-2:] * system.pulleys.radius, 1e-3)
     np.testing.assert_allclose(position, 0.1 * velocity)
     assert np.all(work > 1e5)
+
+
+def test_a_jump_brings_drivers_to_their_speed(system: System, moving: State) -> None:
+    """The driver gives the kinetic energy that its body gains; all else keeps its motion."""
+    driver, bodies = system.first_body, system.bodies.copy()
+    bodies.inertia[0] = 0.2
+    equations = FirstOrder(system._replace(bodies=bodies))
+    y = equations.pack(moving)
+    before = equations.unpack(y.copy())
+    equations.jump(TIME, y)
+    position, velocity, work = equations.unpack(y)
+    expected = equations.rates(TIME, y)[driver]
+    assert velocity[driver] == expected != before[1][driver]
+    gain = 0.5 * 0.2 * (velocity[driver] ** 2 - before[1][driver] ** 2)
+    np.testing.assert_allclose(work, np.where(np.array(POWERS) == "driver_work", gain, 0.0), rtol=1e-12)
+    for now, then in ((position, before[0]), (velocity, before[1])):
+        np.testing.assert_array_equal(np.delete(now, driver), np.delete(then, driver))
+
+
+def test_counts_its_evaluations(system: System, moving: State) -> None:
+    equations = FirstOrder(system)
+    for _ in range(3):
+        equations.rates(TIME, equations.pack(moving))
+    assert equations.evaluations == 3
