@@ -1,14 +1,18 @@
 """The first-order form: rates against `accelerate`, its Jacobian against central differences."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
+from beltdyn.model import Drive, Path, Pulley
 from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import POWERS, System
+from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.motion import new_equations, no_multipliers
-from beltdyn.system.state import State
+from beltdyn.system.state import State, laid
 
 TIME = 0.3
 
@@ -82,3 +86,25 @@ def test_counts_its_evaluations(system: System, moving: State) -> None:
     for _ in range(3):
         equations.rates(TIME, equations.pack(moving))
     assert equations.evaluations == 3
+
+
+def test_jacobian_where_a_tensioner_is_the_only_free_body(with_machines: Callable[[str], Drive]) -> None:
+    """All shafts run at given speeds; the arm turns, so that the centre it carries speeds up as it moves."""
+    drive = with_machines("rotary")
+    steady = {"speed": {"kind": "constant", "value": 5.0}, "inertia": 0.1, "mass": 0.3}
+    kept = ("name", "center", "radius")
+    pulleys = [Pulley(**steady | {key: getattr(pulley, key) for key in kept}) for pulley in drive.pulleys]
+    system = drive_system(drive.replace(pulley=pulleys))
+    rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4), np.array([2e-3])).position
+    velocity = 0.5 * np.random.default_rng(1).normal(size=rest.size)
+    equations = FirstOrder(system)
+    y = equations.pack(State(rest, velocity, velocity))
+    half, jacobian = rest.size, equations.jacobian(TIME, y)
+    assert system.bodies.unknown.tolist() == [-1, -1, -1, 0]
+    for unknown, step in ((half - 1, 1e-8), (2 * half - 1, 1e-5)):
+        change = np.zeros_like(y)
+        change[unknown] = step
+        found = (equations.rates(TIME, y + change) - equations.rates(TIME, y - change))[: 2 * half] / (2.0 * step)
+        for part in (slice(0, half), slice(half, 2 * half - 1), slice(2 * half - 1, 2 * half)):
+            size = max(np.abs(found[part]).max(), 1e-9 * np.abs(found).max())
+            np.testing.assert_allclose(jacobian[: 2 * half, unknown][part], found[part], atol=1e-6 * size)

@@ -6,6 +6,7 @@ Each link has three sampling points, at its middle and near its ends: row 3 l + 
 import numpy as np
 import pytest
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Pulley
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
@@ -36,21 +37,21 @@ def see(system: System) -> Observations:
     return observe(system, np.zeros(1), position, velocity)
 
 
-def tensions(system: System) -> np.ndarray:
+def tensions(system: System) -> FloatArray:
     """Force in the link of each point, uniform within a link."""
     return np.repeat(see(system).belt_tension[0], 3)
 
 
-def speeds() -> np.ndarray:
+def speeds() -> FloatArray:
     """Speed of the points along their links."""
     along = np.roll(CORNERS, -1, axis=0) - CORNERS
     unit = along / np.linalg.norm(along, axis=1)[:, None]
     after = np.roll(VELOCITIES, -1, axis=0)
     moving = (1.0 - PLACES[:, None]) * VELOCITIES[:, None] + PLACES[:, None] * after[:, None]
-    return np.einsum("lpi,li->lp", moving, unit).ravel()
+    return np.asarray(np.sum(moving * unit[:, None], axis=2)).ravel()
 
 
-def assert_span(system: System, pulley: int, rows: list[int], weights: np.ndarray | None = None) -> None:
+def assert_span(system: System, pulley: int, rows: list[int], weights: FloatArray | None = None) -> None:
     """The span behind a pulley is made of these points."""
     here, share = see(system), np.tile(SHARES, 4)[rows] if weights is None else weights
     assert here.span_tension[0, pulley] == pytest.approx(np.average(tensions(system)[rows], weights=share), rel=1e-12)
@@ -86,6 +87,14 @@ def test_neighbouring_points_on_two_pulleys(drive: Drive) -> None:
     np.testing.assert_array_equal(see(system).contact_pulley[0, :3], [-1, 0, 1])
     assert_span(system, 0, [1, 2], np.ones(2))
     assert_span(system, 1, [3, 4, 5, 6, 7, 8, 9, 10, 11, 0])
+
+
+def test_a_link_that_a_pulley_touches_before_its_first_point_is_free(drive: Drive) -> None:
+    """The pulley has a point of its own on the link before; the belt is free from the next one on."""
+    system = rectangle(drive, ((0.93, 0.0), 0.075), ((0.5, 0.86), 0.1))
+    np.testing.assert_array_equal(np.flatnonzero(see(system).contact_pulley[0] >= 0), [2, 7])
+    assert_span(system, 0, [3, 4, 5, 6])
+    assert_span(system, 1, [8, 9, 10, 11, 0, 1])
 
 
 def test_a_belt_that_leaves_a_pulley_and_comes_back(drive: Drive) -> None:

@@ -40,7 +40,7 @@ def solved(system: System) -> Equations:
     return equations
 
 
-@pytest.mark.parametrize("closure", ["open", "shared_node"])
+@pytest.mark.parametrize("closure", ["open", "shared_node", "multipliers"])
 def test_fixed_coordinates_do_not_move(belt: Belt, dense: Dense, closure: str) -> None:
     system = belt_system(belt, closure=closure, fixed=FIXED, forces=[(1, (3.0, 4.0))])  # type: ignore[arg-type]
     equations = solved(system)

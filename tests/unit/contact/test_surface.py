@@ -1,0 +1,132 @@
+"""Surfaces of pulleys: gaps against geometry and differences, reach, and intervals of a belt on them."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import fill_bernstein
+from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
+from beltdyn.contact.law import PulleyState
+from beltdyn.contact.surface import KINDS, SHAPE, Gap, Round, Shaped, ShapedRims, outer_radius, shaped_gap, surface_at
+from beltdyn.records import records
+
+RADIUS, ECCENTRICITY, DIRECTION = 0.1, 4e-3, 0.3
+POINTS = [(0.103, 0.02), (-0.06, 0.07), (0.01, -0.099), (-0.09, -0.05)]
+TURNS = [0.0, 0.9, 4.0]
+ROUNDING = 1e-15
+
+
+@pytest.fixture(scope="module")
+def rims() -> ShapedRims:
+    """An eccentric pulley behind a round one."""
+    kinds = [list(KINDS).index(name) for name in ("circle", "eccentric")]
+    shapes = {"eccentricity": [0.0, ECCENTRICITY], "eccentric_angle": [0.0, DIRECTION], "reach": [0.0, ECCENTRICITY]}
+    return ShapedRims(np.array([0.05, RADIUS]), records(SHAPE, kind=kinds, **shapes))
+
+
+@pytest.fixture
+def eccentric_at(rims: ShapedRims) -> Callable[[float], Shaped]:
+    return lambda turn: surface_at(rims, 1, turn)
+
+
+def center(turn: float) -> FloatArray:
+    return ECCENTRICITY * np.array([np.cos(turn + DIRECTION), np.sin(turn + DIRECTION)])
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("point", POINTS)
+def test_a_circle_among_shapes(rims: ShapedRims, turn: float, point: tuple[float, float]) -> None:
+    distance = float(np.hypot(*point))
+    expected = Gap(0.05 - distance, point[0] / distance, point[1] / distance, 1.0 / distance)
+    assert shaped_gap(surface_at(rims, 0, turn), *point) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("point", POINTS)
+def test_depth_in_an_eccentric_rim(
+    eccentric_at: Callable[[float], Shaped], turn: float, point: tuple[float, float]
+) -> None:
+    arm = np.array(point) - center(turn)
+    gap = shaped_gap(eccentric_at(turn), *point)
+    assert gap.penetration == pytest.approx(RADIUS - np.linalg.norm(arm), abs=ROUNDING)
+    np.testing.assert_allclose([gap.normal_x, gap.normal_y], arm / np.linalg.norm(arm), atol=1e-13)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+@pytest.mark.parametrize("point", POINTS)
+def test_normal_is_the_way_out_and_turns_by_the_curvature(
+    eccentric_at: Callable[[float], Shaped], turn: float, point: tuple[float, float]
+) -> None:
+    surface, here, step = eccentric_at(turn), np.array(point), 1e-6
+    gap = shaped_gap(surface, *here)
+    normal, tangent = np.array([gap.normal_x, gap.normal_y]), np.array([-gap.normal_y, gap.normal_x])
+    deeper, less = (shaped_gap(surface, *(here + side * step * normal)) for side in (-1.0, 1.0))
+    assert (deeper.penetration - less.penetration) / (2.0 * step) == pytest.approx(1.0, rel=1e-8)
+    back, on = (shaped_gap(surface, *(here + side * step * tangent)) for side in (-1.0, 1.0))
+    assert on.penetration == pytest.approx(back.penetration, abs=1e-14)
+    turned = np.array([on.normal_x - back.normal_x, on.normal_y - back.normal_y]) / (2.0 * step)
+    np.testing.assert_allclose(turned, gap.curvature * tangent, atol=1e-7)
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_all_of_a_rim_lies_within_its_reach(eccentric_at: Callable[[float], Shaped], turn: float) -> None:
+    surface = eccentric_at(turn)
+    assert outer_radius(surface) == pytest.approx(RADIUS + ECCENTRICITY)
+    farthest = center(turn) * (1.0 + RADIUS / ECCENTRICITY)
+    assert shaped_gap(surface, *farthest).penetration == pytest.approx(0.0, abs=1e-15)
+    assert np.linalg.norm(farthest) == pytest.approx(outer_radius(surface))
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_quick_rejection_counts_with_the_reach(eccentric_at: Callable[[float], Shaped], turn: float) -> None:
+    """A straight belt just within the farthest point of the rim is looked at, one beyond it is not."""
+    pulley = PulleyState(0.0, 0.0, eccentric_at(turn), 0.0, 0.5)
+    out, along = center(turn) / ECCENTRICITY, np.array([-center(turn)[1], center(turn)[0]]) / ECCENTRICITY
+    for height, beyond in ((1.001, True), (0.999, False)):
+        places = height * (RADIUS + ECCENTRICITY) * out + np.array([-0.03, 0.0, 0.03])[:, None] * along
+        assert out_of_reach(places, pulley) == beyond
+
+
+def intervals(control: FloatArray, pulley: PulleyState) -> FloatArray:
+    zone = zone_scratch(len(control))
+    zone.intervals[:] = 0.3
+    return np.array(zone.intervals[: touching_intervals(control, pulley, zone)])
+
+
+def wave(sign: float) -> FloatArray:
+    """A curve of degree 7 along the top of a rim of radius 1, which swings through it seven times."""
+    places = 0.5 - 0.5 * np.cos(np.pi * np.arange(8) / 7.0)
+    weights = np.empty((8, 8))
+    for xi, row in zip(places, weights, strict=True):
+        fill_bernstein(xi, row)
+    swing = 1e-3 * sign * np.cos(np.pi * np.arange(8))
+    return np.asarray(np.linalg.solve(weights, np.stack([0.01 * (places - 0.5), 1.0 + swing], axis=1)))
+
+
+BELTS = {
+    "through": np.array([(-2.0, 0.3), (1.5, 0.2)]),
+    "in": np.array([(-2.0, 0.3), (0.3, 0.2)]),
+    "out": np.array([(0.1, 0.3), (0.3, 2.0)]),
+    "inside": np.array([(-0.5, 0.3), (0.3, 0.2)]),
+    "away": np.array([(-0.5, 1.3), (0.3, 1.2)]),
+    "around": np.array([(-1.2, 0.5), (-0.5, 1.2), (0.6, 0.95), (1.1, 0.3)]),
+    "waves from outside": wave(1.0),
+    "waves from inside": wave(-1.0),
+}
+
+
+@pytest.mark.parametrize("belt", BELTS)
+@pytest.mark.parametrize("turn", TURNS)
+def test_an_eccentric_rim_touches_where_a_circle_about_its_centre_does(
+    eccentric_at: Callable[[float], Shaped], belt: str, turn: float
+) -> None:
+    shaft = np.array([0.3, -0.2])
+    middle = shaft + center(turn)
+    control = middle + RADIUS * BELTS[belt]
+    shaped = intervals(control, PulleyState(shaft[0], shaft[1], eccentric_at(turn), 0.0, 0.5))
+    circle = intervals(control, PulleyState(middle[0], middle[1], Round(RADIUS), 0.0, 0.5))
+    expected = {"away": 0, "waves from outside": 4, "waves from inside": 4}.get(belt, 1)
+    assert len(circle) == expected
+    np.testing.assert_allclose(shaped, circle, atol=1e-11)  # both to 1e-13, with cancellation in the squares
