@@ -11,8 +11,8 @@ from beltdyn.system.arrays import POWERS, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.joint_constraint import mass_matrix
-from beltdyn.system.observations import Observations
-from beltdyn.system.observe import observe
+from beltdyn.system.observations import OBSERVED, Observations
+from beltdyn.system.observe import observe, observe_motion
 from beltdyn.system.state import State, laid
 from beltdyn.system.state_loads import loads_at
 
@@ -147,3 +147,17 @@ def test_loads_of_several_states(machines: tuple[System, State]) -> None:
     np.testing.assert_allclose(
         seen.contact_damping_power.sum(axis=1), together.power[:, POWERS.index("damping_loss")], rtol=1e-12
     )
+
+
+def test_energies_of_the_states_that_are_shown(machines: tuple[System, State]) -> None:
+    """Energies and tensions of the belt are there for these states alone, all else for every state."""
+    system, state = machines
+    times, shown = np.array([0.1, TIME, 0.5]), np.array([False, True, True])
+    position = np.stack([state.position + shift for shift in (0.0, 1e-4, -1e-4)])
+    velocity = np.stack([factor * state.velocity for factor in (1.0, 2.0, -1.0)])
+    whole = observe(system, times, position, velocity)
+    loads = loads_at(system, times, position, velocity)
+    some = observe_motion(system, position, velocity, loads, shown)
+    for name, per in OBSERVED.items():
+        expected = getattr(whole, name)[shown] if per.shown else getattr(whole, name)
+        np.testing.assert_array_equal(getattr(some, name), expected, err_msg=name)
