@@ -7,6 +7,8 @@ import pytest
 
 from beltdyn.signals import ENDING, ending_in_order, exit_code, uninterrupted
 
+pytestmark = pytest.mark.usefixtures("signal_defaults")
+
 
 def send(number: int) -> None:
     signal.raise_signal(number)

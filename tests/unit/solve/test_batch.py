@@ -104,8 +104,8 @@ def test_side_by_side_as_one_by_one(change: Change, failing: Drive, tmp_path: Pa
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("signal_defaults")
 def test_an_interruption_keeps_what_was_computed(change: Change, tmp_path: Path, soon: Callable[..., None]) -> None:
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background may have inherited none
     endless = change(simulation={"duration": 200.0, "output_interval": 0.01})
     one, two, three = (tmp_path / f"{name}.nc" for name in ("one", "two", "three"))
     soon(lambda: outputs(one) > 0 and outputs(two) > 0, lambda: os.kill(os.getpid(), signal.SIGINT))
