@@ -80,6 +80,14 @@ def test_power_goes_into_the_spring_or_is_lost(chain: Chain, name: str, rate: fl
     assert torque * rate == pytest.approx(stored + loss, abs=100 * FLOOR)
 
 
+@pytest.mark.parametrize("rate", [*RATES, 0.0])
+def test_only_a_spring_stores_energy(chain: Chain, rate: float) -> None:
+    """k twist^2 / 2, whatever the rate; clutches have no spring."""
+    energies = {name: torque_of(chain, name, 0.7, 0.2, rate).energy for name in LINKS}
+    assert energies.pop("isolator") == pytest.approx(0.5 * 30.0 * 0.2**2, rel=1e-15)
+    assert set(energies.values()) == {0.0}
+
+
 @pytest.mark.parametrize(("name", "sense"), [("one_way", 1.0), ("backward", -1.0), ("no_drag", 1.0)])
 def test_a_one_way_clutch_drives_in_one_sense_only(chain: Chain, name: str, sense: float) -> None:
     torques = np.array([torque_of(chain, name, 0.0, 0.0, sense * rate)[0] for rate in (-9, -0.1, 0.2)])

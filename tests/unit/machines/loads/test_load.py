@@ -57,3 +57,13 @@ def test_a_table_from_a_file(tmp_path: Path) -> None:
     file.write_text("speed,torque\n0,0\n100, -3.5\n")
     table = LoadTable.model_validate({"kind": "table", "file": file})
     assert (table.speeds, table.torques) == ((0.0, 100.0), (0.0, -3.5))
+
+
+def test_a_motor_drives_up_to_its_synchronous_speed_and_a_resistance_drives_nothing() -> None:
+    assert Motor(**MOTOR | {"synchronous_speed": -40.0}).driven_speed == -40.0
+    assert Resistance(kind="resistance", linear=0.1).driven_speed == 0.0
+
+
+def test_the_least_table_is_a_line() -> None:
+    table = LoadTable(kind="table", speeds=(0.0, 10.0), torques=(1.0, -1.0))
+    assert table.points == ((0.0, 1.0), (10.0, -1.0))

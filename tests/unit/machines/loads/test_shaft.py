@@ -10,9 +10,9 @@ from beltdyn.machines.loads.motor import MOTOR as MOTOR_CONSTANTS
 from beltdyn.machines.loads.motor import kloss as kloss_torque
 from beltdyn.machines.loads.resistance import RESISTANCE as RESISTANCE_CONSTANTS
 from beltdyn.machines.loads.resistance import resistance as resistance_torque
-from beltdyn.machines.loads.shaft import ShaftLoads, load_bend, shaft_torque
-from beltdyn.machines.profiles.functions import Profiles
-from beltdyn.model import Pulley
+from beltdyn.machines.loads.shaft import ShaftLoads, load_bend, shaft_loads, shaft_torque
+from beltdyn.machines.profiles.functions import Profiles, profile_rows
+from beltdyn.model import Pulley, Resistance, Step
 from beltdyn.records import row
 from beltdyn.system.build_machines import machine_arrays
 
@@ -92,6 +92,16 @@ def test_a_clockwise_motor_is_the_mirror_image(speed: float) -> None:
     assert kloss(-speed, 10.0, 0.2, -150.0) == (-torque, 0.0, slope)
 
 
+@pytest.mark.parametrize("synchronous", [0.02, 0.7, 3000.0, -0.02, -0.7])
+def test_the_torque_of_a_motor_depends_on_its_slip_alone(synchronous: float) -> None:
+    """In the sense of its synchronous speed, slow or fast; its slope falls as the speed that makes the slip grows."""
+    share = 0.9  # a slip of 0.1
+    torque, _, slope = kloss(share * 150.0, 10.0, 0.2, 150.0)
+    found = kloss(share * synchronous, 10.0, 0.2, synchronous)
+    expected = np.sign(synchronous) * torque, 0.0, abs(150.0 / synchronous) * slope
+    assert found == pytest.approx(expected, rel=1e-13)
+
+
 @pytest.mark.parametrize("speed", [-9.0, -5.0, -2.0, 1.0, 2.0, 4.0, 11.0, 20.0, 50.0])
 def test_table_is_linear_between_its_points(speed: float) -> None:
     expected = float(np.interp(speed, [-5.0, 1.0, 4.0, 20.0], [2.0, 0.0, -3.0, -2.0]))
@@ -133,6 +143,20 @@ def test_a_table_bends_next_at_the_point_that_its_speed_reaches_first(speed: flo
 @pytest.mark.parametrize(("speed", "rate"), [(20.0, 1.0), (-5.0, -1.0), (0.0, 0.0)])
 def test_a_table_whose_speed_reaches_no_point_does_not_bend(speed: float, rate: float) -> None:
     assert load_bend(*machines(TABLE), 1, 0.5, speed, rate)[0] == np.inf
+
+
+@pytest.mark.parametrize("kind", LOADS)
+def test_a_load_without_harmonics_has_no_waves(kind: str) -> None:
+    assert load_bend(*machines(LOADS[kind]), 1, 0.5, 3.0, 0.0) == (np.inf, 0.0)
+
+
+def test_the_first_profile_may_be_a_schedule() -> None:
+    """Here one that is the torque of the pulley, too: after 0.7 s it halves that, and the load of -0.3 N m."""
+    switched = Step(time=0.7, before=1.0, value=0.5)
+    load = Resistance(kind="resistance", linear=0.1, schedule=switched)
+    found = profile_rows([switched], [()]), shaft_loads([[load]], [0])
+    assert [shaft_torque(*found, 0, time, 0.0, 3.0).torque for time in (0.5, 0.8)] == pytest.approx([0.7, 0.35])
+    assert load_bend(*found, 0, 0.5, 3.0, 0.0)[0] == 0.7
 
 
 def test_a_smooth_load_bends_with_its_schedule_and_waves_with_its_harmonics() -> None:

@@ -10,6 +10,7 @@ from beltdyn.machines.profiles.functions import (
     prescribed_motion,
     profile_bend,
     profile_integral,
+    profile_rows,
     profile_value,
 )
 from beltdyn.model import Constant, CosineRamp, CosineRampPublished, Harmonic, Profile, Pulley, Ramp, Step, Table
@@ -24,7 +25,7 @@ PROFILES: dict[str, Profile] = {
     "cosine_ramp": CosineRamp(**RISE),
     "cosine_ramp_published": CosineRampPublished(**RISE),
     "table": Table(times=(0.0, 0.05, 0.2, 0.6), values=(1.0, -2.0, 5.0, 4.0)),
-    "early table": Table(times=(-0.5, -0.2, 0.15), values=(1.0, -2.0, 5.0)),
+    "early table": Table(times=(-0.5, -0.2, 0.15), values=(1.0, -2.0, 4.0)),
 }
 TIMES = [-1.0, 0.0, 0.05, 0.05 + 1e-9, 0.1, 0.2, 0.33, 0.6 - 1e-9, 0.6, 0.6 + 1e-9, 5.0]
 HARMONICS = (Harmonic(order=2, amplitude=0.1, phase=0.3), Harmonic(order=0.5, amplitude=-0.05))
@@ -143,3 +144,10 @@ def test_next_kink_and_the_wave_until_then(profiles: Profiles, name: str, time: 
     assert kink == (min(later) if later else np.inf)
     rising = START <= time < END
     assert frequency == pytest.approx(WAVES.get(name, 0.0) if rising else 0.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", [CosineRamp, CosineRampPublished])
+@pytest.mark.parametrize("value", [-2.0, 1e-3, 2.0])
+def test_the_wave_of_a_rise_is_as_quick_however_high_it_is(kind: type[CosineRamp], value: float) -> None:
+    rise = profile_rows([kind(start=START, end=END, value=value)], [()])
+    assert profile_bend(rise, 0, 0.3)[1] == pytest.approx(WAVES[kind.model_fields["kind"].default], rel=1e-12)

@@ -79,6 +79,20 @@ def test_segments_give_the_value_as_documented(profile: Profile[float], time: fl
     assert profile.at(time) == pytest.approx(expected, abs=1e-12)
 
 
+@pytest.mark.parametrize("end", [0.0, -0.5])
+def test_equation_29_needs_an_end_after_time_zero(end: float) -> None:
+    """Its cosine has the period 2 end."""
+    with pytest.raises(ModelError, match=f"end = {end:g} s must be later than time zero"):
+        CosineRampPublished(start=-1.0, end=end, value=1.0)
+
+
+@pytest.mark.parametrize("kind", [Ramp, CosineRamp, CosineRampPublished])
+@pytest.mark.parametrize("end", [0.2, 0.1])
+def test_a_rise_takes_time(kind: type[Ramp[float]], end: float) -> None:
+    with pytest.raises(ModelError, match=r"must be later than start = 0\.2 s"):
+        kind(start=0.2, end=end, value=1.0)
+
+
 def test_quantities_depend_on_the_use() -> None:
     speed = {"kind": "constant", "value": "60 rpm"}
     torque = {"kind": "constant", "value": "60 N mm"}

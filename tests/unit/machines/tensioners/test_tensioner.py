@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
-from beltdyn.machines.tensioners.spring import SPRING as SPRING_CONSTANTS
-from beltdyn.machines.tensioners.spring import dry_friction
 from beltdyn.model import Belt, Path, Pulley, RotaryTensioner, SlidingTensioner
 from beltdyn.model.layout import lay_path
-from beltdyn.records import Records, row
+from beltdyn.records import Records
 from beltdyn.system.build_machines import machine_arrays
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)
@@ -140,14 +139,37 @@ def test_stops_never_pull(q: float, rate: float) -> None:
     assert stop * np.sign(q) <= 0.0
 
 
-def test_dry_friction_has_two_sides() -> None:
-    rates = (-9.0, -0.1, 0.0, 0.1, 9.0)
-    spring = row(SPRING_CONSTANTS, tensioning_friction=1.5, yielding_friction=5.0, creep_speed=0.1)
-    found = [dry_friction(spring, rate)[0] for rate in rates]
-    assert found == pytest.approx([-5.0, -5.0 * np.tanh(1), 0.0, 1.5 * np.tanh(1), 1.5], rel=1e-15)
-
-
 def test_the_force_of_a_spring() -> None:
     """20 N less 30 N/m over 0.1 m, less 2 N s/m at 0.5 m/s, less 1.5 N tanh(5) of dry friction."""
     expected = 20.0 - 3.0 - 1.0 - 1.5 * np.tanh(5.0)
     assert tensioner_force(arrays("sliding")[0], 0.1, 0.5)[0] == pytest.approx(expected, rel=1e-15)
+
+
+STOPS = "stops = .* must be a lower and an upper one with zero between"
+
+
+@pytest.mark.parametrize("stops", [(-0.2, 0.0), (0.0, 0.3), (-0.2, 0.3)])
+@pytest.mark.parametrize("name", ["sliding", "ccw"])
+def test_stops_lie_on_either_side_of_the_nominal_place(name: str, stops: tuple[float, float]) -> None:
+    spring = TENSIONERS[name].replace(stops=stops).spring
+    assert (spring["lower"], spring["upper"]) == stops
+
+
+@pytest.mark.parametrize("stops", [(0.0, 0.0), (0.1, 0.3), (-0.3, -0.1), (0.3, -0.2)])
+@pytest.mark.parametrize("name", ["sliding", "ccw"])
+def test_stops_elsewhere_are_refused(name: str, stops: tuple[float, float]) -> None:
+    with pytest.raises(ModelError, match=STOPS):
+        TENSIONERS[name].replace(stops=stops)
+
+
+@pytest.mark.parametrize(
+    ("changes", "missing"),
+    [
+        ({"stop_stiffness": None}, "stop_stiffness is missing"),
+        ({"stops": None, "stop_damping": 0.0}, "stops is missing"),
+        ({"stops": None, "stop_stiffness": None}, "stops is missing"),
+    ],
+)
+def test_stops_and_their_stiffness_belong_together(changes: dict[str, Any], missing: str) -> None:
+    with pytest.raises(ModelError, match=missing):
+        TENSIONERS["sliding"].replace(**changes)
