@@ -4,8 +4,8 @@
 
 Kernels run as plain Python, so that a change needs no compilation.  The tests run once to find which of them execute
 which line, and how long they take; those that fail as plain Python or take too long are left out.  Each mutant then
-meets the tests of its line, the quickest first.  It is killed if one of them fails or runs without end.  Needs
-an operating system that can fork.
+meets the tests of its line, the quickest first; one of what runs at import meets all tests.  It is killed if one of
+them fails or runs without end.  Needs an operating system that can fork.
 """
 
 import argparse
@@ -84,16 +84,12 @@ def _try_in_functions(items: list[pytest.Item], asked: argparse.Namespace, answe
 
 
 def _try_at_import(mutants: list[Mutant], asked: argparse.Namespace, kept: Path) -> None:
-    """Try the mutants of what runs at import, with all tests that execute a line of the file."""
+    """Try the mutants of what runs at import, with all tests: any of them may see a default or a bound of a field."""
     known = read_traces(kept)
-    users: defaultdict[str, list[str]] = defaultdict(list)
-    for test, trace in known.items():
-        for file in trace.lines:
-            users[file].append(test)
     outside = [each for each in mutants if each.at_import]
     _try(
         outside,
-        lambda mutant: users[mutant.file],
+        lambda _: list(known),
         lambda mutant, code, tests: partial(attempt_at_import, mutant, code, tests),
         known,
         asked,

@@ -129,6 +129,13 @@ def test_what_is_not_stored_is_lost(tensioners: Records, q: float, rate: float) 
     assert loss + stored == pytest.approx(-force * rate, abs=1e-7)
 
 
+@pytest.mark.parametrize(("q", "depth"), [(-0.25, -0.05), (-0.1, 0.0), (0.3, 0.0), (0.34, 0.04)])
+@pytest.mark.parametrize("name", ["sliding", "ccw", "cw"])
+def test_stops_push_back_by_their_stiffness(name: str, q: float, depth: float) -> None:
+    """Beside 20 N - 30 N/m q of the spring; forces and lengths of an arm are torques and angles."""
+    assert tensioner_force(arrays(name)[0], q, 0.0).force == pytest.approx(20.0 - 30.0 * q - 500.0 * depth, rel=1e-12)
+
+
 @pytest.mark.parametrize("q", [-0.25, 0.34])
 @pytest.mark.parametrize("rate", [-50.0, 0.0, 50.0])
 def test_stops_never_pull(q: float, rate: float) -> None:
