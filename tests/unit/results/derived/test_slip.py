@@ -89,6 +89,17 @@ def test_the_first_pulley_alone_decides_what_stands(make_run: MakeRun, run: Run,
     np.testing.assert_allclose(slips(make_run(pulley_speed=speed), turns=False)["slip"][60:, 1], slip, rtol=1e-9)
 
 
+@pytest.mark.parametrize(("share", "known"), [(0.009, False), (0.015, True)])
+def test_a_drive_stands_below_a_hundredth_of_its_largest_speed(
+    make_run: MakeRun, run: Run, share: float, known: bool
+) -> None:
+    speed = run.dataset["pulley_speed"].values.copy()
+    speed[80:] = share * speed[70]
+    slack = 1e-3 * run.dataset["span_tension"].values
+    slip = slips(make_run(pulley_speed=speed, span_tension=slack), turns=False)["slip"][80:, 1]
+    np.testing.assert_allclose(slip, 0.5 if known else np.nan, atol=1e-9)
+
+
 def test_elastic_creep_is_the_difference_of_stretch(run: Run) -> None:
     """The tight span of 60 N reaches the driver, the slack one of 30 N the driven pulley: 30 N / EA."""
     elastic = slips(run, start=0.7)["elastic_creep"]

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.results.derived import mid_span_displacements, span_tensions
 
@@ -59,3 +60,16 @@ def test_displacement_is_measured_from_where_the_pulleys_are(make_run: MakeRun, 
 def test_a_belt_that_touches_nothing_has_no_spans(make_run: MakeRun, run: Run) -> None:
     free = np.full_like(run.dataset["contact_pulley"].values, -1)
     assert np.isnan(mid_span_displacements(make_run(contact_pulley=free))).all()
+
+
+def test_a_single_output_is_a_window(run: Run) -> None:
+    tensions, instant = span_tensions(run, start=0.5, end=0.5), run.dataset["span_tension"].sel(time=0.5)
+    for name in ("mean", "min", "max"):
+        np.testing.assert_array_equal(tensions[name], instant)
+
+
+def test_displacements_that_were_not_recorded(run: Run) -> None:
+    """As in files of the first versions."""
+    older = Run(run.dataset.drop_vars("mid_span_displacement"), run.drive)
+    with pytest.raises(ModelError, match="holds no `mid_span_displacement`: it was written by another version"):
+        mid_span_displacements(older)

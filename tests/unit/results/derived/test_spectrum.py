@@ -58,9 +58,30 @@ def test_no_spectrum_over_a_time_in_which_the_belt_was_lost() -> None:
     assert float(amplitude_spectrum(series(time, values)[:1000]).max()) == pytest.approx(3.0)
 
 
-def test_too_few_outputs_have_no_spectrum() -> None:
-    with pytest.raises(ModelError, match="10 outputs are too few for a spectrum: 16 or more"):
-        amplitude_spectrum(series(np.arange(10.0), np.ones(10)))
+@pytest.mark.parametrize("outputs", [1, 10, 15])
+def test_too_few_outputs_have_no_spectrum(outputs: int) -> None:
+    few = series(np.arange(1.0 * outputs), np.ones(outputs))
+    for spectrum in (amplitude_spectrum, lambda values: waterfall(values, few), lambda values: orders(values, few)):
+        with pytest.raises(ModelError, match=f"{outputs} outputs are too few for a spectrum: 16 or more"):
+            spectrum(few)
+
+
+def test_sixteen_outputs_are_enough_for_a_spectrum() -> None:
+    """Of four waves: their amplitude stands at a quarter of the sampling rate."""
+    time = np.arange(16) / 16.0
+    assert float(amplitude_spectrum(series(time, np.cos(8.0 * np.pi * time))).sel(frequency=4.0)) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("outputs", "spectra"), [(16, 1), (19, 1), (20, 2), (24, 3)])
+def test_a_run_up_is_two_spectra_or_more(outputs: int, spectra: int) -> None:
+    """The shortest are of 16 outputs, one every four; with one there is no telling how the amplitude changes."""
+    time = np.arange(1.0 * outputs)
+    record, speed = series(time, np.cos(0.5 * np.pi * time)), series(time, 10.0 + time)
+    if spectra > 1:
+        np.testing.assert_allclose(waterfall(record, speed)["speed"], 18.0 + 4.0 * np.arange(spectra), rtol=1e-12)
+    else:
+        with pytest.raises(ModelError, match="there is no run-up to look at"):
+            waterfall(record, speed)
 
 
 @pytest.fixture
@@ -90,6 +111,44 @@ def test_waterfall_shows_the_line_of_an_order_and_that_of_a_hum(
     np.testing.assert_allclose(ridge.values[slow], 2.5 * found["speed"].values[slow] / (2.0 * np.pi), atol=width)
 
 
+def test_speeds_of_a_waterfall_are_those_in_the_middle_of_its_spectra(run_up: Signals) -> None:
+    """Spectra of 1064 outputs, every 266 of them, that lie wholly inside."""
+    values, speed, _ = run_up
+    middle = 0.5 * 1064 + 266.0 * np.arange((16000 - 1064) // 266 + 1)
+    np.testing.assert_allclose(waterfall(values, speed)["speed"], 20.0 + 25.0 * middle * 5e-4, rtol=1e-9)
+
+
+def test_a_waterfall_shows_speeds_that_are_higher_than_all_before(run_up: Signals) -> None:
+    """A speed that dips at the beginning and holds for a second: the spectra of neither count twice."""
+    values, speed, _ = run_up
+    time = speed["time"].values
+    wavering = speed.copy(data=np.where(time < 4.0, np.abs(40.0 * time - 20.0), np.maximum(140.0, 20.0 * time + 40.0)))
+    found = waterfall(values, wavering)
+    assert np.all(np.diff(found["speed"]) > 1e-9)
+    assert found.sizes["speed"] < waterfall(values, speed).sizes["speed"]
+    highest = 0.5 * 1064 * 5e-4 * 20.0
+    assert float(found["speed"][-1]) == pytest.approx(200.0 - highest, abs=266 * 5e-4 * 20.0)
+
+
+def test_a_run_up_may_be_small_but_not_a_ripple(run_up: Signals) -> None:
+    """A hundredth of the speed is the least, so that what a drive's speed swings by is none."""
+    values, _, _ = run_up
+    time = values["time"].values
+    slow = series(time, 100.0 + time / 8.0 * 1.8)
+    assert np.all(np.diff(waterfall(values, slow)["speed"]) > 0.0)
+    for speed in (100.0 + 0.1 * time, 100.0 + 0.3 * np.sin(2.0 * np.pi * 0.3 * time)):
+        with pytest.raises(ModelError, match=r"the speed stays at 100(\.\d)? rad/s: there is no run-up"):
+            waterfall(values, series(time, speed))
+
+
+def test_one_unknown_output_takes_the_spectra_that_hold_it(run_up: Signals) -> None:
+    values, speed, _ = run_up
+    lost = values.copy()
+    lost[100] = np.nan
+    unknown = np.isnan(waterfall(lost, speed).values).all(axis=1)
+    assert unknown.tolist() == [True] + [False] * (len(unknown) - 1)
+
+
 LOST = slice(8000, 8200)
 """Outputs of the run-up without a value, 0.1 s from 4 s on."""
 
@@ -115,7 +174,7 @@ def test_waterfall_and_orders_have_a_gap_where_the_belt_was_lost(
 def test_orders_follow_the_rotation_either_way(run_up: Signals, way: float) -> None:
     """The amplitude within 3 %: it changes by that within eight revolutions at the lowest speed that is shown."""
     values, _, angle = run_up
-    found = orders(values, way * angle)
+    found = orders(values, way * angle + 500.0)
     at = found.sel(order=2.5)
     away = np.abs(2.0 * np.pi * 90.0 / found["speed"] - 2.5) > 0.5
     np.testing.assert_allclose(at[away], 0.05 * found["speed"][away], rtol=0.03)
@@ -131,6 +190,7 @@ def test_a_run_down_has_the_same_orders(run_up: Signals) -> None:
         values.copy(data=values.values[::-1]), angle.copy(data=float(angle[-1]) - angle.values[::-1]), largest=10.0
     )
     assert np.all(np.diff(back["speed"]) > 0.0)
+    assert back.sizes["speed"] == orders(values, angle).sizes["speed"]
     assert float(back["order"][1:].values[int(np.argmax(back.mean("speed").values[1:]))]) == pytest.approx(2.5)
 
 
@@ -188,6 +248,37 @@ def test_speeds_are_those_of_the_revolution_in_the_middle_of_a_spectrum(run_up: 
     middle = 2.0 * np.pi * (4.0 + 2.0 * np.arange(len(found)))
     before, behind = (np.sqrt(22.0**2 + 2.0 * 25.0 * (middle + side)) for side in (-np.pi, np.pi))
     np.testing.assert_allclose(found, 0.5 * (before + behind), rtol=3e-4)  # it begins within an output, 0.011 rad
+
+
+def test_speeds_of_orders_are_means_over_a_revolution() -> None:
+    """Of constant acceleration from a speed that counts from the first output on: w^2 = w_0^2 + 2 a phi."""
+    time = np.arange(0.0, 8.0, 5e-4)
+    angle = 30.0 * time + 12.5 * time**2
+    found = orders(series(time, np.cos(2.0 * angle)), series(time, angle))
+    middle = 2.0 * np.pi * (4.0 + 2.0 * np.arange(found.sizes["speed"]))
+    before, behind = (np.sqrt(30.0**2 + 2.0 * 25.0 * (middle + side)) for side in (-np.pi, np.pi))
+    np.testing.assert_allclose(found["speed"], 0.5 * (before + behind), rtol=1e-6)  # straight between outputs
+
+
+def test_a_stop_after_a_run_up_does_not_count(run_up: Signals) -> None:
+    values, _, angle = run_up
+    rest = np.arange(8.0, 10.0, 5e-4)
+    whole = series(np.append(values["time"], rest), np.append(values.values, np.full(rest.size, 100.0)))
+    turned = series(np.append(angle["time"], rest), np.append(angle.values, np.full(rest.size, float(angle[-1]))))
+    found, expected = orders(whole, turned), orders(values, angle)
+    np.testing.assert_allclose(found["speed"], expected["speed"], rtol=1e-6)
+    np.testing.assert_allclose(found.sel(order=2.5), expected.sel(order=2.5), rtol=1e-3)
+
+
+@pytest.mark.parametrize(("turns", "enough"), [(16.0 + 1e-6, True), (16.0 - 1e-6, False)])
+def test_orders_need_twice_the_turns_of_a_spectrum(turns: float, enough: bool) -> None:
+    time = np.linspace(0.0, 2.0, 2001)
+    angle = 2.0 * np.pi * turns * (time + time**2) / 6.0
+    if enough:
+        assert orders(series(time, np.cos(angle)), series(time, angle)).sizes["speed"] > 1
+    else:
+        with pytest.raises(ModelError, match="orders need 16 or more"):
+            orders(series(time, np.cos(angle)), series(time, angle))
 
 
 def test_slow_turning_before_a_run_up_does_not_count(run_up: Signals) -> None:
@@ -250,3 +341,16 @@ def test_elements_pass_a_pulley_as_often_as_its_turn_is_longer(run: Run) -> None
     share = 1.0 - path.span_lengths.sum() / path.length
     for pulley in (0, 1):
         assert element_order(run.drive, pulley) == pytest.approx(run.drive.belt.elements * share)
+
+
+def test_the_pass_band_belongs_to_the_rate_of_the_outputs() -> None:
+    """400 of them at 50 Hz: 18.75 Hz, which one output more or less would shift by 0.05 Hz."""
+    time = np.arange(0.0, 8.0, 2e-2)
+    angle = 20.0 * time + 1.25 * time**2
+    wave = series(time, np.cos(angle)).rename(time="filtered_time")
+    found = orders(wave, series(time, angle))
+    frequency = np.outer(found["speed"], found["order"]) / (2.0 * np.pi)
+    np.testing.assert_array_equal(np.isfinite(found), frequency <= PASS_BAND * 50.0)
+    close = np.abs(frequency - PASS_BAND * 50.0) < 0.05
+    assert (close & np.isfinite(found.values)).any()
+    assert (close & np.isnan(found.values)).any()

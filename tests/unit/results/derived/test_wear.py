@@ -4,7 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import xarray as xr
 
+from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.results.derived import wear_by_arc, wear_by_belt
 from beltdyn.results.mechanics import cells
@@ -56,3 +58,28 @@ def test_belt_wears_where_it_has_been_on_a_pulley(steady: Run) -> None:
     wear = wear_by_belt(steady)
     touched = (steady.dataset["contact_pulley"].values == 1).any(axis=0).reshape(-1, 5).any(axis=1)
     np.testing.assert_array_equal(wear.values[1] > 0.0, touched)
+
+
+@pytest.mark.parametrize("wear", [wear_by_arc, wear_by_belt])
+def test_work_is_done_between_two_outputs(steady: Run, wear: Callable[..., xr.DataArray]) -> None:
+    """One tenth of a second holds a tenth of the work of a second; an instant holds none."""
+    tenth, whole = (float(wear(steady, start=0.2, end=end).sum()) for end in (0.3, 1.0))
+    assert tenth == pytest.approx(whole / 8.0, rel=0.03)  # contact comes and goes by whole points
+    hundredth = float(wear(steady, start=0.2, end=0.21).sum())
+    assert hundredth == pytest.approx(whole / 80.0, rel=0.03)
+    with pytest.raises(ModelError, match=r"there are no two outputs of fields from 0\.2 to 0\.2 s: their work cannot"):
+        wear(steady, start=0.2, end=0.2)
+
+
+@pytest.mark.parametrize("wear", [wear_by_arc, wear_by_belt])
+def test_work_that_was_not_recorded(steady: Run, wear: Callable[..., xr.DataArray]) -> None:
+    older = Run(steady.dataset.drop_vars(["friction_work_on_arc", "friction_work_on_belt"]), steady.drive)
+    with pytest.raises(ModelError, match="holds no `friction_work_on_"):
+        wear(older)
+
+
+def test_parts_of_an_arc_make_one_and_a_half_of_it(steady: Run) -> None:
+    """A quarter of it before the inlet and behind the outlet."""
+    wear, drive = wear_by_arc(steady), steady.drive
+    np.testing.assert_allclose(wear["part_length"].sum("share"), 1.5 * np.pi * drive.radii, rtol=1e-12)
+    np.testing.assert_allclose(wear["angle"], np.pi * np.stack([wear["share"]] * 2), rtol=1e-12)
