@@ -109,7 +109,7 @@ def test_chord_of_a_straight_element(height: float, half: float) -> None:
     np.testing.assert_allclose(intervals(control), [[0.5 - half / 3, 0.5 + half / 3]], atol=1e-9)
 
 
-@pytest.mark.parametrize("place", [0.1, 0.3, 0.5, 0.86])
+@pytest.mark.parametrize("place", [1e-4, 0.1, 0.3, 0.5, 0.86])
 def test_a_dip_too_short_to_be_seen_does_no_harm(place: float) -> None:
     """A straight element that grazes a circle over less than 2^-12 of its length touches there or nowhere."""
     half = np.sqrt(2e-9) / 3.0

@@ -4,12 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, install
+from beltdyn.quadrature import gauss_points
 from beltdyn.solve import find_equilibrium
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
+from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
@@ -135,3 +137,28 @@ def test_forces_at_points_add_up_to_hub_forces_and_torques(fixed_points: System)
         torque = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
         np.testing.assert_allclose(seen.hub_force[0, number], -share[here] @ force, rtol=1e-10)
         assert seen.pulley_torque[0, number] == pytest.approx(-share[here] @ torque, rel=1e-10)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7, 3.0])
+def test_tension_along_elements_that_stretch_unevenly(drive: Drive, angle: float) -> None:
+    """Straight elements with a stretch q: the force is EA (q^2 - 1) q / 2, and EA tau q^2 dq/dt by damping."""
+    belt = drive.belt.replace(elements=3, stretch_damping_time=1e-3)
+    system, along = belt_system(belt), np.array([np.cos(angle), np.sin(angle)])
+    random = np.random.default_rng(2)
+    places = system.length[0] * np.arange(4) * 1.02 + 1e-3 * random.normal(size=4)
+    stretches, speeds, rates = 1.0 + 0.02 * random.normal(size=4), random.normal(size=4), random.normal(size=4)
+    flat = np.zeros((4, 2))
+    position = np.hstack([np.outer(places, along), np.outer(stretches, along), np.roll(along, 1) + flat])
+    velocity = np.hstack([np.outer(speeds, along), np.outer(rates, along), flat])
+    seen = see(system, position.ravel(), velocity.ravel())
+    points, weights = gauss_points(belt.quadrature_points)
+    for element, length in enumerate(system.length):
+        ends = slice(element, element + 2)
+        q, dq = (
+            CubicHermiteSpline([0.0, length], value[ends], slope[ends]).derivative()(length * points)
+            for value, slope in ((places, stretches), (speeds, rates))
+        )
+        force = belt.axial_stiffness * (0.5 * (q**2 - 1.0) * q + 1e-3 * q**2 * dq)
+        mean = weights @ force
+        assert seen.belt_tension[0, element] == pytest.approx(mean, rel=1e-10)
+        assert seen.tension_variation[0, element] == pytest.approx(np.sqrt(weights @ (force - mean) ** 2), rel=1e-8)
