@@ -7,6 +7,7 @@ import pytest
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import fill_bernstein
 from beltdyn.contact.friction import LAWS, CoefficientSlope, ForceSlope, FrictionParameters
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
@@ -99,3 +100,21 @@ def belt_like(make_curve: Callable[..., FloatArray]) -> st.SearchStrategy[FloatA
         st.floats(0.05, 3.14),
         st.floats(0.6, 1.1),
     )
+
+
+@pytest.fixture(scope="session")
+def wave() -> Callable[[float], FloatArray]:
+    """Control points of a curve of degree 7 along the unit circle that swings through it seven times.
+
+    It does so like a Chebyshev polynomial, and begins outside for a positive sign.
+    """
+    places = 0.5 - 0.5 * np.cos(np.pi * np.arange(8) / 7.0)
+    weights = np.empty((8, 8))
+    for xi, row in zip(places, weights, strict=True):
+        fill_bernstein(xi, row)
+
+    def along_the_rim(sign: float) -> FloatArray:
+        swing = 1e-3 * sign * np.cos(np.pi * np.arange(8))
+        return np.asarray(np.linalg.solve(weights, np.stack([0.01 * (places - 0.5), 1.0 + swing], axis=1)))
+
+    return along_the_rim

@@ -128,15 +128,8 @@ def test_an_element_that_begins_on_the_rim_and_goes_in_touches_from_there(
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0], ids=["begins outside", "begins inside"])
-def test_a_wave_touches_at_each_crest(sign: float) -> None:
-    """A curve of degree 7 along the rim that swings through it seven times, like a Chebyshev polynomial."""
-    places = 0.5 - 0.5 * np.cos(np.pi * np.arange(8) / 7.0)
-    weights = np.empty((8, 8))
-    for xi, row in zip(places, weights, strict=True):
-        fill_bernstein(xi, row)
-    along = 0.01 * (places - 0.5)
-    swing = 1e-3 * sign * np.cos(np.pi * np.arange(8))
-    control = np.linalg.solve(weights, np.stack([along, 1.0 + swing], axis=1))
+def test_a_wave_touches_at_each_crest(wave: Callable[[float], FloatArray], sign: float) -> None:
+    control = wave(sign)
     assert len(intervals(control)) == 4
     assert_exact(control)
 
