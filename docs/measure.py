@@ -389,7 +389,7 @@ def contact_force_spread() -> Iterator[Row]:
     yield "elements", "(largest − smallest) / mean", "standard deviation / mean", "mean", "share of zeros", "misses by"
     for elements in (20, 30, 60, 120):
         run = bd.simulate(case_1(elements, duration=3.0, output_interval=2e-3))
-        angle = run.drive.belt.length / (elements * run.drive.pulleys[DRIVER].radius)
+        angle = run.drive.belt_length / (elements * run.drive.pulleys[DRIVER].radius)
         yield f"{elements}", *force_spread(run), f"{run.drive.pulleys[DRIVER].radius * angle**4 / 384:.1e} m"
     yield "case 2, 30", *force_spread(bd.simulate(case_2())), ""
 
@@ -515,7 +515,7 @@ def tutorial_elements() -> Iterator[Row]:
     yield "elements", "angle of an element", "slip", "tight span", "hub load", "computing time"
     for elements in (20, 30, 60, 120):
         run = bd.simulate(tutorial(belt={"elements": elements}, duration=2.0))
-        angle = np.degrees(run.drive.belt.length / (elements * run.drive.pulleys[DRIVER].radius))
+        angle = np.degrees(run.drive.belt_length / (elements * run.drive.pulleys[DRIVER].radius))
         speed = mean(run, "pulley_speed", 500)
         tight, hub = mean(run, "span_tension", 500)[1], abs(mean(run, "hub_force", 500)[:, 0]).mean()
         slip = 1.0 - speed[DRIVEN] / speed[DRIVER]

@@ -61,7 +61,7 @@ class Judged(NamedTuple):
 def judge(seed: int) -> list[Judged]:
     """Compare what three meshes of a random drive estimate with a converged mesh."""
     drive = random_drive(seed)
-    radian = drive.belt.length / float(drive.radii.min())
+    radian = drive.belt_length / float(drive.radii.min())
     coarse = bd.simulate(meshed(drive, math.ceil(_COARSE * radian)))
     named = coarse.resolution.needed
     finest = max(named.values())

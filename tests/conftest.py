@@ -93,7 +93,7 @@ def fine_drive(drive: Drive) -> Drive:
 
 @pytest.fixture(scope="session")
 def layout(drive: Drive) -> Layout:
-    elements, length = drive.belt.elements, drive.belt.length
+    elements, length = drive.belt.elements, drive.belt_length
     return Layout(
         pulleys=("driver", "driven"),
         spans=("driver-driven", "driven-driver"),
@@ -150,7 +150,7 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
     speed = 12.0 * ramp
     angle = np.where(time < 0.6, 3.3 * ramp**2, 3.3 + 12.0 * (time - 0.6))
     pulleys = np.array([1.0, 1.0 - CREEP])
-    stretch = path.length / drive.belt.length
+    stretch = path.length / drive.belt_length
     pull = (TIGHT - SLACK) * ramp
     span, arc = path.span_lengths[0], np.pi * radius
     corners = np.cumsum([0.0, span, arc, span, arc])
@@ -219,7 +219,7 @@ def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
     """What contact along the belt amounts to; with fields at every output."""
     names = ("contact_pulley", "normal_force", "slip_velocity", "contact_position", "pulley_center")
     touched, normal, slip, places, centers = (outputs[name] for name in names)
-    work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt.length), layout.elements)
+    work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt_length), layout.elements)
     touch = Touch(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
     done = work.take(touch, np.ones(len(touched), dtype=bool))
     scalars = sliding_of_pulleys(drive, layout.belt_coordinate, touched, normal, slip)

@@ -127,7 +127,7 @@ class _Model:
         belt, pulleys = self._drive.belt, self._drive.pulleys
         circles = [[list(pulley.center), pulley.radius, "L"] for pulley in pulleys]
         curve = CreateReevingCurve(circles, numberOfANCFnodes=belt.elements, closedCurve=True)
-        stretch = curve["totalLength"] / belt.length
+        stretch = curve["totalLength"] / belt.given_length
         nodes = [np.array([x, y, dx * stretch, dy * stretch]) for x, y, dx, dy in curve["ancfPointsSlopes"]]
         cable = Cable2D(
             massPerLength=belt.mass_per_length,
@@ -138,7 +138,7 @@ class _Model:
         made = PointsAndSlopes2ANCFCable2D(
             self._system,
             nodes,
-            [belt.length / belt.elements] * belt.elements,
+            [belt.given_length / belt.elements] * belt.elements,
             cable,
             fixedConstraintsNode0=[1, 0, 0, 0],
             firstNodeIsLastNode=True,
@@ -177,7 +177,7 @@ class _Model:
 
     def _add_contacts(self, pulley: Pulley, body: Any) -> None:
         belt, contact, count = self._drive.belt, self._drive.contact, self._settings.segments
-        segment = belt.length / (belt.elements * count)
+        segment = belt.given_length / (belt.elements * count)
         circle = self._system.AddMarker(MarkerBodyRigid(bodyNumber=body))
         for cable in self._cables:
             shape = self._system.AddMarker(MarkerBodyCable2DShape(bodyNumber=cable, numberOfSegments=count))
@@ -188,7 +188,7 @@ class _Model:
                 markerNumbers=[circle, shape],
                 nodeNumber=self._system.AddNode(memory),
                 numberOfContactSegments=count,
-                contactStiffness=contact.stiffness * segment,
+                contactStiffness=contact.given_stiffness * segment,
                 contactDamping=contact.damping * segment,
                 frictionVelocityPenalty=(contact.creep_rate_factor or 0.0) * segment,
                 frictionStiffness=0.0,

@@ -125,8 +125,8 @@ def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
     by up to 8 um where the path changes by 2 mm or more.
     """
     dataset, drive = run().dataset, run().drive
-    lengths = element_lengths(dataset, drive.belt.length)
-    cell = cells(dataset["belt_coordinate"].values, drive.belt.length)
+    lengths = element_lengths(dataset, drive.belt_length)
+    cell = cells(dataset["belt_coordinate"].values, drive.belt_length)
     paths, belts, stretched = [], [], []
     for instant in (0.0, 0.3, 0.47, 0.7, 1.19, 1.27, 2.0):
         output = run().fields_at(instant)
@@ -134,7 +134,7 @@ def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
         path = replace(drive.path, centers=output["pulley_center"].values)
         touched = output["contact_pulley"].values.astype(int)
         sunk = np.where(
-            touched >= 0, output["normal_force"].values / drive.contact.stiffness / drive.radii[touched], 0.0
+            touched >= 0, output["normal_force"].values / drive.contact_stiffness / drive.radii[touched], 0.0
         )
         belts.append(float(np.linalg.norm(pieces, axis=2).sum()))
         paths.append(path.length - float(np.sum(sunk * cell)))
@@ -142,7 +142,7 @@ def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
         stretched.append(float(np.sum(lengths * [stretch(one, drive.belt.axial_stiffness) for one in tension])))
     assert np.ptp(paths) > 2e-3
     assert np.ptp(np.array(belts) - paths) < 16e-6
-    assert np.array(stretched) - drive.belt.length == pytest.approx(np.array(belts) - drive.belt.length, rel=0.01)
+    assert np.array(stretched) - drive.belt_length == pytest.approx(np.array(belts) - drive.belt_length, rel=0.01)
 
 
 def test_there_is_no_false_alarm() -> None:

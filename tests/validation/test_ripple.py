@@ -91,7 +91,7 @@ def lines_of(run: Run) -> Lines:
     g, span, driven = stretch(tension, belt.axial_stiffness), run.drive.path.span_lengths[0], run.drive.pulleys[1]
     wave = np.sqrt(tension * g / belt.mass_per_length)
     transverse = (wave**2 - speed**2) / (2.0 * span * wave)
-    nodes = float(np.mean(speed / g)) * belt.elements / belt.length
+    nodes = float(np.mean(speed / g)) * belt.elements / belt.given_length
     stiffness = driven.radius**2 * np.sum(tangent_stiffness(g, belt.axial_stiffness) * g / span)
     torsion = float(np.sqrt(stiffness / driven.inertia)) / (2.0 * np.pi)
     return Lines(np.multiply(nodes, np.arange(1.0, 7.0)), np.outer(transverse, [1, 2, 3]).ravel(), torsion)

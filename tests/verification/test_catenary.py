@@ -54,7 +54,7 @@ def half_shape(pull: float, weight: float, axial: float, upto: float) -> FloatAr
 def catenary(belt: Belt, span: float) -> tuple[float, FloatArray, FloatArray]:
     """Horizontal pull, places of the nodes over the lowest point, and their tangents' angles."""
     axial, weight = belt_section(belt).axial, belt.mass_per_length * GRAVITY
-    half = 0.5 * belt.length
+    half = 0.5 * belt.given_length
     pull = float(
         brentq(lambda h: half_shape(h, weight, axial, half)[0] - 0.5 * span, 1e-3 * weight, 1e2 * weight, xtol=1e-16)
     )
@@ -112,7 +112,7 @@ def test_a_sagging_belt_swings_as_irvine_has_it(
         for values in vibrations.tangents(0.0, state.position, np.zeros_like(state.position))
     )
     found = float(np.sqrt(eigh(stiffness, mass, eigvals_only=True)[0])) / (2.0 * np.pi)
-    stretched = belt.mass_per_length * belt.length / span
+    stretched = belt.mass_per_length * belt.given_length / span
     parameter = sag_parameter(stretched * GRAVITY, span, pull, belt.axial_stiffness)
     expected = lowest_frequency(span, pull, stretched, sag_parameter=parameter)
     straight = lowest_frequency(span, pull, stretched)

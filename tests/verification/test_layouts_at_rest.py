@@ -61,7 +61,7 @@ def test_tension_and_hub_loads(circles: Circles, measured: Callable[..., None]) 
     drive = make(circles)
     hand, found = install(drive), equilibrium(drive.replace(belt=drive.belt)).fields_at()  # of the length by hand
     rise = 5 / 12 * hand.penetrations * np.sqrt(hand.penetrations / drive.radii)
-    expected = 400.0 * 2 * float(rise.sum()) / (hand.path.length - drive.belt.length)
+    expected = 400.0 * 2 * float(rise.sum()) / (hand.path.length - drive.belt_length)
     tension = found["span_tension"].values
     measured(tension=float(tension.mean()), spread=float(np.ptp(tension)), by_hand=400.0 + expected)
     assert tension.mean() == pytest.approx(400.0 + expected, rel=5e-4)

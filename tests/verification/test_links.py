@@ -64,11 +64,11 @@ class TestReleasedBelt:
     def test_regular_polygon(self, released: Callable[..., tuple[Belt, System, State]], links: int) -> None:
         """Springs of equal angles are in balance without any force in the links, whose lengths stay."""
         belt, system, state = released(links)
-        expected = belt.length / links / (2.0 * sin(pi / links))
+        expected = belt.given_length / links / (2.0 * sin(pi / links))
         np.testing.assert_allclose(self.radii(system, state), expected, rtol=1e-7)
         place = points(system, state)
         sides = np.linalg.norm(np.roll(place, -1, axis=0) - place, axis=1)
-        np.testing.assert_allclose(sides, belt.length / links, rtol=1e-9)
+        np.testing.assert_allclose(sides, belt.given_length / links, rtol=1e-9)
 
     @pytest.mark.parametrize("links", LINKS)
     def test_energy_is_that_of_the_circle(
@@ -77,7 +77,7 @@ class TestReleasedBelt:
         """With any number of links: n (EI / 2 l) (2 pi / n)^2 = EI (2 pi / length)^2 length / 2."""
         belt, system, state = released(links)
         seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
-        circle = 0.5 * belt.bending_stiffness * (2.0 * pi / belt.length) ** 2 * belt.length
+        circle = 0.5 * belt.bending_stiffness * (2.0 * pi / belt.given_length) ** 2 * belt.given_length
         measured(error=float(seen.strain_energy[0]) / circle - 1.0)
         assert float(seen.strain_energy[0]) == pytest.approx(circle, rel=1e-9)
 
@@ -87,7 +87,7 @@ class TestReleasedBelt:
         errors = []
         for links in self.LINKS:
             belt, system, state = released(links)
-            errors.append(float(np.mean(self.radii(system, state))) * 2.0 * pi / belt.length - 1.0)
+            errors.append(float(np.mean(self.radii(system, state))) * 2.0 * pi / belt.given_length - 1.0)
         fitted = order(self.LINKS, errors)
         measured(**{f"error_{n}": error for n, error in zip(self.LINKS, errors, strict=True)}, order=fitted)
         assert fitted == pytest.approx(2.0, abs=0.01)
@@ -140,7 +140,7 @@ class TestInstalledBelt:
         coarse, fine = np.diff(found)
         limit = found[-1] + fine / 3.0
         radius, wrap = drive.pulleys[0].radius, sum(drive.path.wrap_angles)
-        angles = drive.belt.length / (radius * np.array(self.LINKS))
+        angles = drive.belt_length / (radius * np.array(self.LINKS))
         predicted = side * drive.belt.axial_stiffness * wrap * radius / drive.path.length * angles**2 / 24.0
         fitted = float(np.log2(coarse / fine))
         measured(order=fitted, limit=limit / converged - 1.0, over_prediction=float((found - limit)[0] / predicted[0]))
@@ -157,7 +157,7 @@ class TestSpinningRing:
     def spin(self, belt: Belt) -> tuple[System, State, float]:
         """Ring in steady rotation, by its stretch, and its tension."""
         links = belt.element_kind.curves * belt.elements
-        length = belt.length / links
+        length = belt.given_length / links
         half = sin(pi / links)
 
         def tension(stretch: float) -> float:
@@ -200,7 +200,7 @@ class TestSpinningRing:
 
     def test_tension_converges_to_that_of_the_hoop(self, belt: Belt, order: Order, measured: Measured) -> None:
         """T = rho A (omega length / 2 pi)^2 s at stretch s, where E A (s^2 - 1) s / 2 = T."""
-        hoop = belt.mass_per_length * (self.SPEED * belt.length / (2.0 * pi)) ** 2
+        hoop = belt.mass_per_length * (self.SPEED * belt.given_length / (2.0 * pi)) ** 2
         exact = hoop * (1.0 + 2.0 * hoop / belt.axial_stiffness) ** 0.5
         errors = [self.spin(linked(belt, "truss", links))[2] / exact - 1.0 for links in self.LINKS]
         fitted = order(self.LINKS, errors)

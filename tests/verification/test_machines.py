@@ -13,7 +13,7 @@ from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.profiles.functions import prescribed_motion, profile_integral
 from beltdyn.machines.tensioners.registry import tensioner_force
 from beltdyn.model import Belt, Pulley, SlidingTensioner
-from beltdyn.model.layout import lay_path
+from beltdyn.model.routing import lay_path
 from beltdyn.system.build_machines import Machines, body_inertias, machine_arrays
 
 BELT = Belt(length=1.0, width=0.01, thickness=0.01, density=1e3, youngs_modulus=1e8, poissons_ratio=0.3)

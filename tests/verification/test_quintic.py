@@ -45,7 +45,7 @@ def bent(elements: int) -> tuple[float, float, float]:
     belt = cantilever(elements)
     state = straight(belt_system(belt))
     for step in range(1, STEPS + 1):
-        moment = belt.bending_stiffness * TURN / belt.length * step / STEPS
+        moment = belt.bending_stiffness * TURN / belt.given_length * step / STEPS
         system = belt_system(belt, fixed=CLAMP, moments=[(-1, moment)])
         state = find_equilibrium(system, state).state
     x, y, tx, ty = state.nodes(system)[-1, :4]
@@ -54,14 +54,18 @@ def bent(elements: int) -> tuple[float, float, float]:
 
 def exact() -> tuple[float, float, float]:
     belt = cantilever(1 + 2)
-    bending, axial, moment = belt.bending_stiffness, belt.axial_stiffness, belt.bending_stiffness * TURN / belt.length
+    bending, axial, moment = (
+        belt.bending_stiffness,
+        belt.axial_stiffness,
+        belt.bending_stiffness * TURN / belt.given_length,
+    )
 
     def metric(curvature: float) -> float:
         return 1.0 - 2.0 * bending * curvature**2 / axial
 
     curvature = float(brentq(lambda k: bending * metric(k) * k - moment, 0.0, 2.0 * TURN, xtol=1e-15))
     radius = metric(curvature) ** 0.5 / curvature
-    angle = curvature * belt.length
+    angle = curvature * belt.given_length
     return radius * sin(angle), radius * (1.0 - cos(angle)), angle
 
 

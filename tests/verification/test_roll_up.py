@@ -46,7 +46,7 @@ def pure_bending(belt: Belt, moment: float) -> tuple[float, float]:
 
 def arc_error(belt: Belt, nodes: FloatArray, metric: float, turning: float) -> float:
     """Largest distance of a node from its place on an arc that leaves the origin along x, m."""
-    x = np.linspace(0.0, belt.length, len(nodes))
+    x = np.linspace(0.0, belt.given_length, len(nodes))
     arc = sqrt(metric) / turning * np.stack([np.sin(turning * x), 1.0 - np.cos(turning * x)], axis=1)
     return float(np.linalg.norm(nodes[:, :2] - arc, axis=1).max())
 

@@ -50,7 +50,7 @@ def check(
     except ConvergenceError as error:
         failure, installation = error, estimate
         show("No static equilibrium was found. These are estimates by hand, without bending and weight.\n")
-    show_facts(_facts(drive, installation))
+    show_facts(_facts(drive, installation, given.belt.installed_tension is not None))
     show_table(
         "\nPulleys",
         ("", "motion", "turns", "wrap angle", "effective radius", "speed ratio"),
@@ -76,16 +76,16 @@ def check(
         raise failure
 
 
-def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]]:
+def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> list[tuple[str, str]]:
     from beltdyn.results import describe_size
 
     return [
         ("path length", f"{installation.path.length:.5g} m"),
-        ("belt length", f"{drive.belt.length:.5g} m unstretched, {drive.belt.elements} elements"),
+        ("belt length", f"{drive.belt_length:.5g} m unstretched, {drive.belt.elements} elements"),
         ("installed strain", f"{installation.strain:.4%}"),
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
-        ("element length", f"{drive.belt.length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
-        ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation)}"),
+        ("element length", f"{drive.belt_length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
+        ("tension at rest", f"{installation.tension:.4g} N{_origin(installation, asked_for)}"),
         *_taken_up(drive),
         ("results of a run", f"about {describe_size(drive)}"),
     ]
@@ -94,12 +94,12 @@ def _facts(drive: "Drive", installation: "Installation") -> list[tuple[str, str]
 def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
     """Where fixed tensioners have put their pulleys: what a user asked for who gave length and tension."""
     fixed = [tensioner for tensioner in drive.tensioners if tensioner.kind == "fixed"]
-    places = [(one.pulley, drive.pulleys[drive.carried(one)].center) for one in fixed]
+    places = [(one.pulley, drive.centers[drive.carried(one)]) for one in fixed]
     return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
 
 
-def _origin(drive: "Drive", installation: "Installation") -> str:
-    asked = ", as asked for" * (drive.installed_tension is not None)
+def _origin(installation: "Installation", asked_for: bool) -> str:
+    asked = ", as asked for" * asked_for
     if installation.tensioner_positions.size:
         return f"{asked}, which tensioners set"
     gained = installation.tension / installation.laid_tension - 1

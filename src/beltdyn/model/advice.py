@@ -74,12 +74,12 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
     if lost <= _MOST_TENSION_LOST or installation.tensioner_positions.size:
         return []
     tension, laid = installation.tension, installation.laid_tension
-    if drive.installed_tension is None:
+    if drive.belt.installed_tension is None:
         return [
             f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
             f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}."
         ]
-    shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt.length
+    shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt_length
     return [
         f"the belt is {shorter:.1e} m shorter than hard pulleys would need for {tension:.4g} N, since sinking in takes "
         f"{lost:.1%} of what it is laid with, more than {_MOST_TENSION_LOST:.0%}: where its length matters, "
@@ -176,7 +176,7 @@ def _mesh_warnings(drive: Drive, installation: Installation) -> list[str]:
 def _time_warnings(drive: Drive) -> list[str]:
     """Say beforehand that a run will take long, and what makes it so."""
     settings, belt = drive.simulation, drive.belt
-    element = belt.length / belt.elements
+    element = drive.belt_length / belt.elements
     passage = element / math.sqrt(belt.axial_stiffness / belt.mass_per_length)
     rates = {
         f"simulation.rtol = {settings.rtol:g} with elements that an axial wave passes in {passage:.1e} s": 1.0

@@ -5,13 +5,14 @@ from math import pi, sin
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field, PrivateAttr, ValidationInfo, model_validator
+from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
+from beltdyn.errors import ModelError
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
-from beltdyn.parts.part import Part, computed
+from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
@@ -29,8 +30,8 @@ class Belt(Part):
     """A closed belt of rectangular section, made of equal elements.
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
-    or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is None until the belt is part
-    of a drive, which computes it; copies of that belt (`replace`) ask for the tension again.
+    or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is open, None: the drive that
+    the belt is part of finds it (`Drive.belt_length`).
 
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
@@ -38,8 +39,9 @@ class Belt(Part):
     """
 
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
+    either = ("length", "installed_tension")
 
-    length: Length = computed(gt=0, description="the unstretched length of the closed belt, in m")
+    length: Length | None = Field(None, gt=0, description="the unstretched length of the closed belt, in m")
     installed_tension: Force | None = Field(
         None, gt=0, description="the tension of the belt at rest in the drive, in place of its length, in N"
     )
@@ -85,7 +87,6 @@ class Belt(Part):
     quadrature_points: Count = Field(
         4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
     )
-    _given: Self | None = PrivateAttr(None)
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
@@ -115,47 +116,20 @@ class Belt(Part):
         return self
 
     @property
-    def given(self) -> Self:
-        """The belt as it was given, where a drive computed its length, or itself."""
-        return self if self._given is None else self._given
-
-    def replace(self, **changes: Any) -> Self:
-        """Make a copy with some values changed, and validate it; a tension that was asked for is asked for again.
-
-        Parameters
-        ----------
-        **changes
-            The constructor's arguments that differ. A `length` takes the place of an `installed_tension`, and an
-            `installed_tension` that of a `length`, where one of them alone was given.
-
-        Returns
-        -------
-        Belt
+    def given_length(self) -> float:
+        """The length that is given, m.
 
         Raises
         ------
         ModelError
-            If the changed belt is not valid.
+            If it is left open: the drive finds it, `Drive.belt_length`.
         """
-        arguments = self.given.arguments
-        for new, old in (("length", "installed_tension"), ("installed_tension", "length")):
-            if changes.get(new) is not None and new not in arguments:
-                arguments.pop(old, None)
-        return type(self)(**arguments | changes)
-
-    def definite(self, length: float, *, found: bool = False) -> Self:
-        """Make a copy of a certain length, which has its tension from that.
-
-        Parameters
-        ----------
-        length : float
-            m.
-        found : bool
-            Whether it is the length that gives the tension asked for, and not an estimate: copies then keep it.
-        """
-        belt = self.model_copy(update={"length": length, "installed_tension": None})
-        belt._given = None if found or self.installed_tension is None else self
-        return belt
+        if self.length is None:
+            raise ModelError(
+                f"belt.length is open: a drive finds it for installed_tension = {self.installed_tension:g} N. "
+                "Take belt_length of the drive, or give length."
+            )
+        return self.length
 
     def offset(self, side: Side) -> float:
         """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""

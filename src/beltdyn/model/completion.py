@@ -1,28 +1,27 @@
-"""What a drive file may leave open: the length of the belt, the take-up, the stiffness of contact."""
+"""What follows from a drive as it is given: the length of the belt, the take-up, the stiffness of contact."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
-from beltdyn.model.carrier import Carrier, carriers_of, check_tensioners
+from beltdyn.model.carrier import carriers_of, check_tensioners
 from beltdyn.model.contact import Contact
-from beltdyn.model.layout import lay_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.rest import Rest
-from beltdyn.model.tensioner_balance import come_to_rest
+from beltdyn.model.routing import lay_path
+from beltdyn.model.static_estimate import StaticEstimate
+from beltdyn.model.tensioner_balance import balance_tensioners
 
 _LARGEST_STRAIN = 0.5
 _SMALLEST_STRAIN = 1e-10
 _MOST_STEPS = 60
-_ROUNDING = 1e-14
-"""Of a length, within which a take-up is not looked for: a drive that has found its own keeps it."""
 
 
-class _Open(NamedTuple):
+class Given(NamedTuple):
     """Parts of a drive, as a user gives them."""
 
     belt: Belt
@@ -30,38 +29,59 @@ class _Open(NamedTuple):
     contact: Contact
     tensioners: tuple[Tensioner, ...]
 
-    def rest(self) -> Rest:
+    def estimate(self, path: Path) -> StaticEstimate:
         """The belt at rest, with spring-loaded tensioners in balance."""
-        path = lay_path(self.pulleys, self.belt)
-        return come_to_rest(path, self.belt, self.contact, self.carriers(path))[0]
-
-    def carriers(self, path: Path) -> list[Carrier]:
-        """Its spring-loaded tensioners."""
-        return carriers_of(self.tensioners, self.names, path)
+        carriers = carriers_of(self.tensioners, self.names, path)
+        return balance_tensioners(path, self.belt, self.contact, carriers)[0]
 
     @property
     def names(self) -> list[str]:
         """Names of the pulleys."""
         return [pulley.name for pulley in self.pulleys]
 
+    @property
+    def has_springs(self) -> bool:
+        """Whether a spring-loaded tensioner moves a pulley."""
+        return any(isinstance(tensioner, MovingTensioner) for tensioner in self.tensioners)
 
-def complete(
-    belt: Belt, pulleys: tuple[Pulley, ...], contact: Contact, tensioners: tuple[Tensioner, ...]
-) -> dict[str, Any]:
-    """Make parts of a drive definite.
+    @property
+    def pulleys_in_place(self) -> tuple[Pulley, ...]:
+        """The pulleys, moved by the take-up of fixed tensioners."""
+        pulleys = self.pulleys
+        for tensioner in self.tensioners:
+            if isinstance(tensioner, FixedTensioner) and tensioner.take_up != 0:
+                pulleys = _moved(pulleys, tensioner)
+        return pulleys
+
+
+class Completed(NamedTuple):
+    """The same with nothing left open, and what follows."""
+
+    belt: Belt
+    """With its length."""
+    pulleys: tuple[Pulley, ...]
+    """Where fixed tensioners hold them, and spring-loaded ones at zero."""
+    contact: Contact
+    """With its stiffness."""
+    tensioners: tuple[Tensioner, ...]
+    """With their take-up."""
+    path: Path
+    """Around these pulleys."""
+
+
+def complete(given: Given) -> Completed:
+    """Find what a drive leaves open.
 
     Fixed tensioners move their pulleys; a belt with an installed tension gets its length, or, if it has one, the
     fixed tensioner its take-up; an allowed penetration becomes a stiffness of contact.
 
     Parameters
     ----------
-    belt, pulleys, contact, tensioners
-        As a user gives them.
+    given : Given
 
     Returns
     -------
-    dict
-        The four parts by their names, definite.
+    Completed
 
     Raises
     ------
@@ -69,73 +89,75 @@ def complete(
         If a belt cannot run around the pulleys, would be slack or overstretched, a tensioner does not fit the pulleys,
         none can bring the belt to its tension, or they find no balance.
     """
-    given = _taken_up(_Open(belt, pulleys, contact, tensioners))
-    path = lay_path(given.pulleys, belt)
-    check_tensioners(tensioners, given.pulleys, path)
+    pulleys = given.pulleys_in_place
+    path = lay_path(pulleys, given.belt)
+    check_tensioners(given.tensioners, pulleys, path)
+    belt, contact = given.belt, given.contact
     if belt.length is not None and belt.installed_tension is not None:
-        _check_take_up_is_open(tensioners)
+        _check_take_up_is_open(given.tensioners)
         given = _tightened(given, path)
-        path = lay_path(given.pulleys, belt)
-    carriers = given.carriers(path)
-    if not carriers and belt.installed_tension is None:
-        _check_length(belt.length, path.length)
+        pulleys = given.pulleys_in_place
+        path = lay_path(pulleys, belt)
+    if belt.installed_tension is None and not given.has_springs:
+        _check_length(belt.given_length, path.length)
         if contact.stiffness is not None:
-            return given._asdict()
-    rest = come_to_rest(path, belt, contact, carriers)[0]
-    _check_rest(given, rest)
-    length = rest.length if belt.length is None else belt.length
-    definite = given._replace(
-        belt=belt.definite(length),
-        contact=contact.model_copy(update={"stiffness": rest.stiffness, "allowed_penetration": None}),
-    )
-    return definite._asdict()
-
-
-def _taken_up(given: _Open) -> _Open:
-    """Pulleys moved by the take-up of their fixed tensioners."""
-    for tensioner in given.tensioners:
-        if isinstance(tensioner, FixedTensioner) and tensioner.take_up != 0:
-            given = _shifted(given, tensioner, tensioner.take_up)
-    return given
-
-
-def _shifted(given: _Open, tensioner: FixedTensioner, distance: float) -> _Open:
-    """The same with the pulley of a fixed tensioner moved, and its take-up done."""
-    done = tensioner.model_copy(update={"take_up": 0.0})
-    return given._replace(
-        pulleys=_moved(given.pulleys, tensioner, distance),
-        tensioners=tuple(done if one is tensioner else one for one in given.tensioners),
+            return Completed(belt, pulleys, contact, given.tensioners, path)
+    estimate = given.estimate(path)
+    _check_estimate(given, pulleys, estimate)
+    length = estimate.length if belt.length is None else belt.length
+    return Completed(
+        belt=belt.replace(length=length, installed_tension=None),
+        pulleys=pulleys,
+        contact=_with_stiffness(contact, estimate.stiffness),
+        tensioners=given.tensioners,
+        path=path,
     )
 
 
-def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner, distance: float) -> tuple[Pulley, ...]:
-    """Pulleys with that of a fixed tensioner moved along its direction, m."""
-    step = (distance * tensioner.direction[0], distance * tensioner.direction[1])
+def _with_stiffness(contact: Contact, stiffness: float) -> Contact:
+    """Contact of a certain stiffness, N/m^2."""
+    try:
+        return contact.replace(stiffness=stiffness)
+    except ModelError as error:
+        raise ValueError(
+            f"contact.allowed_penetration = {contact.allowed_penetration:g} m takes a stiffness that cannot be given: "
+            f"{error} Allow more"
+        ) from error
+
+
+def take_up(completed: Completed, distance: float) -> tuple[Tensioner, ...]:
+    """Take up more by the one fixed tensioner, so that the path becomes longer by a small distance.
+
+    Parameters
+    ----------
+    completed : Completed
+    distance : float
+        m.
+
+    Returns
+    -------
+    tuple of Tensioner
+    """
+    fixed = _fixed(completed.tensioners)
+    number = [pulley.name for pulley in completed.pulleys].index(fixed.pulley)
+    return _set(completed.tensioners, fixed.take_up + distance / _leverage(completed.path, number, fixed))
+
+
+def _set(tensioners: tuple[Tensioner, ...], distance: float) -> tuple[Tensioner, ...]:
+    """The same with another take-up of the one fixed tensioner, m."""
+    fixed = _fixed(tensioners)
+    return tuple(one.replace(take_up=distance) if one is fixed else one for one in tensioners)
+
+
+def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner) -> tuple[Pulley, ...]:
+    """Pulleys with that of a fixed tensioner moved by its take-up."""
+    x, y = (tensioner.take_up * part for part in tensioner.direction)
     return tuple(
-        pulley.model_copy(update={"center": (pulley.center[0] + step[0], pulley.center[1] + step[1])})
+        pulley.replace(center=(pulley.center[0] + x, pulley.center[1] + y))
         if pulley.name == tensioner.pulley
         else pulley
         for pulley in pulleys
     )
-
-
-def take_up(
-    pulleys: tuple[Pulley, ...], tensioners: tuple[Tensioner, ...], path: Path, distance: float
-) -> tuple[Pulley, ...]:
-    """Move the pulley of the one fixed tensioner, so that the path becomes longer by a small distance, m.
-
-    Parameters
-    ----------
-    pulleys, tensioners
-        Of a drive.
-    path : Path
-        Around the pulleys.
-    distance : float
-        m.
-    """
-    fixed = _fixed(tensioners)
-    number = [pulley.name for pulley in pulleys].index(fixed.pulley)
-    return _moved(pulleys, fixed, distance / _leverage(path, number, fixed))
 
 
 def _fixed(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
@@ -163,43 +185,44 @@ def _check_take_up_is_open(tensioners: tuple[Tensioner, ...]) -> None:
         )
 
 
-def _tightened(given: _Open, path: Path) -> _Open:
-    """The same with the pulley of the one fixed tensioner where the belt of given length has the given tension."""
+def _tightened(given: Given, path: Path) -> Given:
+    """The same with the take-up of the one fixed tensioner that gives a belt of given length its tension."""
     from scipy.optimize import brentq
 
-    fixed = _fixed(given.tensioners)
+    fixed, length = _fixed(given.tensioners), given.belt.given_length
+
+    def taken_up(distance: float) -> Given:
+        return given._replace(tensioners=_set(given.tensioners, distance))
 
     def excess(distance: float) -> float:
-        return _shifted(given, fixed, distance).rest().length - given.belt.length
+        there = taken_up(distance)
+        return there.estimate(lay_path(there.pulleys_in_place, given.belt)).length - length
 
     leverage = _leverage(path, given.names.index(fixed.pulley), fixed)
     if abs(leverage) < LEAST_LEVERAGE:
         raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
     here, first = 0.0, excess(0.0)
-    if abs(first) <= _ROUNDING * given.belt.length:
-        return given
     step = -float(np.sign(leverage * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
     for _ in range(_MOST_STEPS):
         try:
             if excess(here + step) * first <= 0:
-                found = float(brentq(excess, here, here + step, xtol=1e-15))
-                return _shifted(given, fixed, found)
+                return taken_up(float(brentq(excess, here, here + step, xtol=1e-15)))
         except ValueError as error:
             raise _no_take_up(given, fixed, str(error)) from error
         here, step = here + step, 1.3 * step
     raise _no_take_up(given, fixed, f"not within {abs(here):.3g} m")
 
 
-def _no_take_up(given: _Open, tensioner: FixedTensioner, reason: str) -> ValueError:
+def _no_take_up(given: Given, tensioner: FixedTensioner, reason: str) -> ValueError:
     return ValueError(
         f'no take-up of "{tensioner.pulley}" brings a belt of {given.belt.length:.5g} m to '
         f"{given.belt.installed_tension:.5g} N: {reason}. Change belt.length, or the direction of the tensioner"
     )
 
 
-def _check_rest(given: _Open, rest: Rest) -> None:
+def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticEstimate) -> None:
     """Refuse a belt at rest that is slack, or stretched beyond what its law describes."""
-    wanted, length, path = given.belt.installed_tension, rest.length, rest.path.length
+    wanted, length, path = given.belt.installed_tension, estimate.length, estimate.path.length
     if wanted is not None and not 0 < path <= (1 + _LARGEST_STRAIN) * length:
         raise ValueError(
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
@@ -211,25 +234,23 @@ def _check_rest(given: _Open, rest: Rest) -> None:
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of "
             f"its length, which is lost in rounding. Give at least {least:.1g} N"
         )
-    moving = any(isinstance(tensioner, MovingTensioner) for tensioner in given.tensioners)
-    _check_length(length, path, tensioned=moving)
-    if moving:
-        _check_place(given, rest.path)
-    if not rest.tension > 0:
+    _check_length(length, path, tensioned=given.has_springs)
+    if given.has_springs:
+        _check_place(pulleys, given.belt, estimate.path)
+    if not estimate.tension > 0:
         raise ValueError(
             "the belt loses all tension by sinking into the pulleys: it is only "
             f"{path - length:.3g} m shorter than its path. Shorten it, or let it sink in less"
         )
 
 
-def _check_place(given: _Open, path: Path) -> None:
+def _check_place(pulleys: tuple[Pulley, ...], belt: Belt, path: Path) -> None:
     """Refuse a place to which springs press their pulleys, but at which the belt could not run."""
     moved = [
-        pulley.model_copy(update={"center": tuple(center)})
-        for pulley, center in zip(given.pulleys, path.centers.tolist(), strict=True)
+        pulley.replace(center=tuple(center)) for pulley, center in zip(pulleys, path.centers.tolist(), strict=True)
     ]
     try:
-        lay_path(moved, given.belt)
+        lay_path(moved, belt)
     except ValueError as error:
         raise ValueError(
             f"the tensioners balance the belt only where no belt can run: {error}. Change the preload or the belt's "

@@ -10,15 +10,18 @@ from beltdyn.contact.friction import FrictionLaw, FrictionParameters
 from beltdyn.contact.normal import LAWS as NORMAL_LAWS
 from beltdyn.contact.normal import NormalLaw, NormalParameters
 from beltdyn.contact.parameter import Parameter
-from beltdyn.parts.part import Part, computed
+from beltdyn.errors import ModelError
+from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness, Ratio, quantity
 
 
 class Penalty(Part):
     """Stiffness and damping of contact, which every law of the normal force has."""
 
-    stiffness: LineStiffness = computed(
-        gt=0, description="the normal force per metre of belt and metre of penetration, in N/m^2"
+    either = ("stiffness", "allowed_penetration")
+
+    stiffness: LineStiffness | None = Field(
+        None, gt=0, description="the normal force per metre of belt and metre of penetration, in N/m^2"
     )
     allowed_penetration: Length | None = Field(
         None,
@@ -117,10 +120,26 @@ class Contact(_Laws, Penalty):
         return self
 
     @property
+    def given_stiffness(self) -> float:
+        """The stiffness that is given, N/m^2.
+
+        Raises
+        ------
+        ModelError
+            If it is left open: the drive finds it, `Drive.contact_stiffness`.
+        """
+        if self.stiffness is None:
+            raise ModelError(
+                "contact.stiffness is open: a drive finds it for allowed_penetration = "
+                f"{self.allowed_penetration:g} m. Take contact_stiffness of the drive, or give stiffness."
+            )
+        return self.stiffness
+
+    @property
     def normal_parameters(self) -> NormalParameters:
-        """Parameters of the law of the normal force, whose type says which law it is."""
+        """Parameters of the law of the normal force, whose type says which law it is; the stiffness must be given."""
         law = NORMAL_LAWS[self.normal_law]
-        parameters: NormalParameters = law.record(self.stiffness, self.damping, *self._values(law.parameters))
+        parameters: NormalParameters = law.record(self.given_stiffness, self.damping, *self._values(law.parameters))
         return parameters
 
     @property

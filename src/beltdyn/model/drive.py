@@ -13,11 +13,11 @@ from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of
-from beltdyn.model.completion import complete, take_up
+from beltdyn.model.completion import Completed, Given, complete, take_up
 from beltdyn.model.contact import Contact
-from beltdyn.model.layout import radii, trace
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
+from beltdyn.model.routing import radii
 from beltdyn.model.simulation import Simulation
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration
@@ -25,13 +25,14 @@ from beltdyn.parts.text_file import parse_toml
 
 
 class Drive(Part):
-    """A belt drive, complete and consistent.
+    """A belt drive: what is given, checked, and what follows from it.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`
     (a list) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
 
-    What may be left open is computed: the length of a belt of given tension, the take-up of a fixed tensioner, which
-    moves its pulley, and the stiffness of contact that keeps to an allowed penetration.
+    The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
+    the drive: `belt_length`, also of a belt of given tension; `contact_stiffness`, also where a penetration is allowed;
+    `path` and `centers`, where fixed tensioners hold their pulleys.
     """
 
     belt: Belt = Field(description="the group [belt]")
@@ -43,18 +44,14 @@ class Drive(Part):
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
     )
     _source: str | None = PrivateAttr(None)
-    _installed_tension: float | None = PrivateAttr(None)
-    _length_given: bool = PrivateAttr(True)
-    _tightened: bool = PrivateAttr(False)
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file."""
         return _from_text, (self.text,)
 
     @model_validator(mode="after")
-    def _becomes_definite(self) -> Self:
-        self._installed_tension, self._length_given = self.belt.installed_tension, self.belt.length is not None
-        self.__dict__.update(complete(self.belt, self.pulleys, self.contact, self.tensioners))
+    def _leaves_nothing_open(self) -> Self:
+        _ = self.completed
         return self
 
     @model_validator(mode="after")
@@ -67,9 +64,27 @@ class Drive(Part):
         return self
 
     @cached_property
+    def completed(self) -> Completed:
+        """The parts with nothing left open, as an analysis takes them."""
+        return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners))
+
+    @property
+    def belt_length(self) -> float:
+        """Unstretched length of the closed belt, m: as given, or such that the belt has its installed tension.
+
+        The latter is an estimate without bending, weight and mesh, until `bring_to_rest` has found the length itself.
+        """
+        return self.completed.belt.given_length
+
+    @property
+    def contact_stiffness(self) -> float:
+        """Normal force per metre of belt and metre of penetration, N/m^2: as given, or with the allowed penetration."""
+        return self.completed.contact.given_stiffness
+
+    @property
     def path(self) -> Path:
         """The path of the line that carries the belt's tension, with spring-loaded tensioners at zero."""
-        return trace(self.pulleys, self.belt)
+        return self.completed.path
 
     @cached_property
     def radii(self) -> FloatArray:
@@ -84,43 +99,16 @@ class Drive(Part):
         """
         return np.asarray(self.radii / (1.0 + self.belt.bent_strain(self.radii)))
 
-    @cached_property
+    @property
     def centers(self) -> FloatArray:
-        """Centers of the pulleys, shape (n, 2), m, with spring-loaded tensioners at zero."""
-        return np.array([pulley.center for pulley in self.pulleys])
+        """Centers of the pulleys, shape (n, 2), m: where fixed tensioners hold them, spring-loaded ones at zero."""
+        return self.path.centers
 
     def _repr_html_(self) -> str:
         """Show the drive in a notebook."""
         from beltdyn.model.notebook import drive_html
 
         return drive_html(self)
-
-    def replace(self, **changes: Any) -> Self:
-        """Make a copy with some values changed, and validate it.
-
-        A tension that was asked for is asked for again, with the length or the take-up computed anew; the drive of a
-        run keeps the length that was found for it.
-
-        Parameters
-        ----------
-        **changes
-            The constructor's arguments that differ.
-
-        Returns
-        -------
-        Drive
-
-        Raises
-        ------
-        ModelError
-            If the changed drive is not valid.
-
-        Examples
-        --------
-        >>> drive.replace(simulation=drive.simulation.replace(duration=0.5)).simulation.duration
-        0.5
-        """
-        return super().replace(**{"belt": self.belt.given} | changes)
 
     @property
     def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
@@ -147,54 +135,41 @@ class Drive(Part):
         """Coefficients of friction of the pulleys, with the wedge factor on those that touch the inside; shape (n,)."""
         return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])
 
-    @property
-    def installed_tension(self) -> float | None:
-        """Tension at rest that was asked for, N: the length of the belt, or a take-up, is computed from it."""
-        return self._installed_tension
-
     def tightened(self, distance: float) -> "Drive":
-        """Shorten the belt, or, where its length was given along with the tension, lengthen its path by the take-up.
+        """Settle what an installed tension leaves open: the length, or, where that is given, the take-up.
 
         Parameters
         ----------
         distance : float
-            By how much, m; negative to loosen it.
+            By how much to shorten the belt that is estimated, or to lengthen its path, m; negative to loosen it.
+
+        Returns
+        -------
+        Drive
+            With that length or take-up in place of the tension, and with its stiffness of contact.
 
         Raises
         ------
         ModelError
             If no such belt can run around the pulleys.
         """
-        pulleys, length = self.pulleys, self.belt.length
-        if self._length_given:
-            pulleys = take_up(pulleys, self.tensioners, self.path, distance)
+        completed = self.completed
+        belt, tensioners = completed.belt, self.tensioners
+        if self.belt.length is None:
+            belt = belt.replace(length=self.belt_length - distance)
         else:
-            length -= distance
-        drive = self.replace(belt=self.belt.definite(length, found=True), pulley=pulleys)
-        drive._installed_tension, drive._length_given = self._installed_tension, self._length_given
-        drive._tightened = True
-        return drive
+            tensioners = take_up(completed, distance)
+        return self.replace(belt=belt, contact=completed.contact, tensioner=tensioners)
 
     @property
     def text(self) -> str:
-        """The TOML text that the drive came from, or one that gives the same drive.
-
-        A tension that is asked for stays so, until the length or the take-up for it was found (`tightened`).
-        """
+        """The TOML text that the drive came from, or one that gives the same drive."""
         return self._source or tomli_w.dumps(self.data, multiline_strings=False)
 
     @property
     def data(self) -> dict[str, Any]:
-        """The groups and keys of a drive file, in SI units and with every default spelled out.
-
-        A tension that is asked for stays so, until the length or the take-up for it was found (`tightened`).
-        """
-        data = self.model_dump(mode="json", by_alias=True, exclude_none=True)
-        if self._installed_tension is not None and not self._tightened:
-            data["belt"]["installed_tension"] = self._installed_tension
-            if not self._length_given:
-                del data["belt"]["length"]
-        return data
+        """The groups and keys of a drive file, in SI units and with every default spelled out."""
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True)
 
 
 def _from_text(text: str) -> Drive:

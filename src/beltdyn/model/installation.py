@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.carrier import moved
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
-from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, come_to_rest
+from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, balance_tensioners
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 from beltdyn.theory.stretch import tension as tension_of
 
@@ -59,14 +59,14 @@ def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
     bending, sinking : float
         sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
     """
-    return math.sqrt(drive.belt.bending_stiffness / tension), math.sqrt(tension / drive.contact.stiffness)
+    return math.sqrt(drive.belt.bending_stiffness / tension), math.sqrt(tension / drive.contact_stiffness)
 
 
 def install(drive: Drive) -> Installation:
     """Estimate tension, penetration and the place of tensioners for the belt at rest.
 
-    `beltdyn.model.rest` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending stiffness and
-    weight; `beltdyn.solve.bring_to_rest` finds static equilibrium.
+    `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
+    stiffness and weight; `beltdyn.solve.bring_to_rest` finds static equilibrium.
 
     Parameters
     ----------
@@ -81,11 +81,12 @@ def install(drive: Drive) -> Installation:
     >>> round(bd.install(drive).tension, 1)  # N
     26.6
     """
-    rest, positions = come_to_rest(drive.path, drive.belt, drive.contact, drive.carriers)
-    path = rest.path
+    completed = drive.completed
+    estimate, positions = balance_tensioners(drive.path, completed.belt, completed.contact, drive.carriers)
+    path = estimate.path
     turned = path.span_directions - np.roll(path.span_directions, 1, axis=0)
-    tensions = np.full(path.count, rest.tension)
-    return describe(drive, tensions, rest.penetrations, rest.tension * turned, positions)
+    tensions = np.full(path.count, estimate.tension)
+    return describe(drive, tensions, estimate.penetrations, estimate.tension * turned, positions)
 
 
 def describe(
@@ -104,7 +105,7 @@ def describe(
     Installation
     """
     path = moved(drive.path, drive.carriers, positions)
-    laid = path.length / drive.belt.length
+    laid = path.length / drive.belt_length
     return Installation(
         strain=laid - 1,
         laid_tension=float(tension_of(laid, drive.belt.axial_stiffness)),
@@ -132,7 +133,8 @@ def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[
     tuple of tuples of TensionerBalance
         For each tensioner, in ascending order of the positions; without bending stiffness and weight.
     """
-    return all_balances(drive.path, drive.belt, drive.contact, drive.carriers, installation.tensioner_positions)
+    completed = drive.completed
+    return all_balances(drive.path, completed.belt, completed.contact, drive.carriers, installation.tensioner_positions)
 
 
 def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatArray:
@@ -142,7 +144,7 @@ def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatAr
     """
     if not tensions.min() > 0.0:
         return np.zeros(path.count)
-    belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt.length / path.length
+    belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt_length / path.length
     across = np.abs(path.span_directions @ np.array([-drive.gravity[1], drive.gravity[0]]))
     found = [
         lowest_frequency(

@@ -55,7 +55,7 @@ class Running:
 
 def element_angles(drive: Drive, elements: int) -> FloatArray:
     """Angle of each pulley that one element covers, rad; of others, that of the cubic that misses as much."""
-    return drive.belt.element_kind.cubic_angle(drive.belt.length / (elements * drive.radii))
+    return drive.belt.element_kind.cubic_angle(drive.belt_length / (elements * drive.radii))
 
 
 def mesh_errors(drive: Drive, running: Running, elements: int | None = None) -> dict[str, float]:
@@ -81,7 +81,7 @@ def mesh_errors(drive: Drive, running: Running, elements: int | None = None) -> 
     strain = running.tension / drive.belt.axial_stiffness
     depth = fineness**2 / (1.0 + (fineness / _COARSE) ** 2)
     turning = angles**3 * depth
-    tension = _TENSION * float(np.sum(radii * turning)) / (strain * drive.belt.length)
+    tension = _TENSION * float(np.sum(radii * turning)) / (strain * drive.belt_length)
     peak = float(np.max(fineness * depth))
     creep = float(np.max(turning)) / math.sqrt(strain)
     errors = tension, tension + _MEAN * peak, _PEAK * peak, _SLIP * creep, _LOSSES * creep

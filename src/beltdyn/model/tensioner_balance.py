@@ -10,7 +10,7 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, moved
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
-from beltdyn.model.rest import Rest, settle
+from beltdyn.model.static_estimate import StaticEstimate, static_estimate
 
 _FIRST_STEP, _GROWTH = 1e-3, 1.3
 """Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
@@ -49,11 +49,11 @@ class _Situation(NamedTuple):
         """The tensioner that is looked at."""
         return self.carriers[self.number]
 
-    def rest(self, position: float) -> Rest:
+    def at(self, position: float) -> StaticEstimate:
         """The belt with that tensioner at a position."""
         changed = self.positions.copy()
         changed[self.number] = position
-        return settle(moved(self.path, self.carriers, changed), self.belt, self.contact)
+        return static_estimate(moved(self.path, self.carriers, changed), self.belt, self.contact)
 
     def excess(self, position: float) -> float:
         """What spring and stops press more than the belt with that tensioner at a position, F - T dL/dq.
@@ -63,13 +63,13 @@ class _Situation(NamedTuple):
         ValueError
             If the belt leaves a pulley there, or the pulley meets another one.
         """
-        one, rest = self.carrier, self.rest(position)
-        if abs(rest.path.total_turning - self.path.total_turning) > 1.0:
+        one, there = self.carrier, self.at(position)
+        if abs(there.path.total_turning - self.path.total_turning) > 1.0:
             raise ValueError("the belt leaves a pulley")
-        if _covers_another(rest.path, one.pulley):
+        if _covers_another(there.path, one.pulley):
             raise ValueError("the pulley meets another one")
-        leverage = rest.path.gradient(one.pulley) @ one.place(position)[1]
-        return one.force(position) - rest.tension * float(leverage)
+        leverage = there.path.gradient(one.pulley) @ one.place(position)[1]
+        return one.force(position) - there.tension * float(leverage)
 
     @property
     def scale(self) -> float:
@@ -85,10 +85,10 @@ class _Situation(NamedTuple):
 
     def is_stable(self, position: float) -> bool:
         """Tell whether a balance is stable: the excess falls on its way, with the belt as long as it is there."""
-        rest, step = self.rest(position), 1e-4 * self.scale
+        there, step = self.at(position), 1e-4 * self.scale
         fixed = self._replace(
-            belt=self.belt.model_copy(update={"length": rest.length, "installed_tension": None}),
-            contact=self.contact.model_copy(update={"stiffness": rest.stiffness, "allowed_penetration": None}),
+            belt=self.belt.replace(length=there.length, installed_tension=None),
+            contact=self.contact.replace(stiffness=there.stiffness),
         )
         try:
             return fixed.excess(position + step) < fixed.excess(position - step)
@@ -96,7 +96,9 @@ class _Situation(NamedTuple):
             return False
 
 
-def come_to_rest(path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier]) -> tuple[Rest, FloatArray]:
+def balance_tensioners(
+    path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier]
+) -> tuple[StaticEstimate, FloatArray]:
     """Find where spring-loaded tensioners stand, by virtual work: force of spring and stops = T dL/dq for each.
 
     Of several balances each takes the stable one that is nearest to its nominal place, and an unstable one only where
@@ -108,13 +110,13 @@ def come_to_rest(path: Path, belt: Belt, contact: Contact, carriers: Sequence[Ca
     path : Path
         Path with all tensioners at zero.
     belt, contact
-        As for `settle`.
+        As for `static_estimate`.
     carriers : sequence of Carrier
         The tensioners, shape (K,).
 
     Returns
     -------
-    rest : Rest
+    estimate : StaticEstimate
     positions : ndarray, shape (K,)
         Positions q of the tensioners, m or rad.
 
@@ -136,7 +138,7 @@ def come_to_rest(path: Path, belt: Belt, contact: Contact, carriers: Sequence[Ca
     else:
         if situations[1:]:
             raise ValueError("the tensioners find no balance together. Make their springs stiffer, or give stops")
-    return settle(moved(path, carriers, positions), belt, contact), positions
+    return static_estimate(moved(path, carriers, positions), belt, contact), positions
 
 
 def all_balances(
@@ -147,7 +149,7 @@ def all_balances(
     Parameters
     ----------
     path, belt, contact, carriers
-        As for `come_to_rest`.
+        As for `balance_tensioners`.
     positions : ndarray, shape (K,)
         Where the tensioners stand, m or rad.
 

@@ -11,7 +11,7 @@ def dumps(drive: Drive) -> str:
     Parameters
     ----------
     drive : Drive
-        The drive. A tension that was asked for is asked for again, unless the length for it was found in a run.
+        The drive: what is given is written. That of a run has the length, or the take-up, that was found for it.
 
     Returns
     -------

@@ -1,34 +1,15 @@
 """The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
 
 from collections.abc import Mapping
-from typing import Any, Self
+from itertools import permutations
+from typing import Any, ClassVar, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.errors import ModelError
 from beltdyn.parts.documentation import document, signature
 from beltdyn.parts.messages import explain
-
-
-def computed(**constraints: Any) -> Any:
-    """Field that a user may leave open where something else is given: None until a drive computes it.
-
-    Parameters
-    ----------
-    **constraints
-        Arguments of pydantic's ``Field``.
-
-    Returns
-    -------
-    Any
-        The field, without a default in the JSON schema.
-    """
-    return Field(None, json_schema_extra=_without_default, **constraints)
-
-
-def _without_default(schema: dict[str, Any]) -> None:
-    schema.pop("default", None)
 
 
 class Part(BaseModel):
@@ -37,6 +18,8 @@ class Part(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True, defer_build=True
     )
+    either: ClassVar[tuple[str, str] | None] = None
+    """Two arguments, of which one determines the other."""
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -93,7 +76,8 @@ class Part(BaseModel):
         Parameters
         ----------
         **changes
-            The constructor's arguments that differ.
+            The constructor's arguments that differ. Where one argument is given in place of another, as a tension
+            of the belt in place of its length, the new one takes the place of the old one.
 
         Returns
         -------
@@ -110,4 +94,8 @@ class Part(BaseModel):
         >>> drive.belt.replace(elements=30).elements
         30
         """
-        return type(self)(**self.arguments | changes)
+        arguments = self.arguments
+        for new, old in permutations(self.either or (), 2):
+            if changes.get(new) is not None and new not in arguments:
+                arguments.pop(old, None)
+        return type(self)(**arguments | changes)

@@ -78,7 +78,7 @@ def contact_forces(
     wrap = unwrap(
         instant["belt_coordinate"].values,
         instant["contact_pulley"].values == number,
-        run.drive.belt.length,
+        run.drive.belt_length,
         run.drive.pulleys[number].turning * float(instant["pulley_speed"][number]),
     )
     if kind == "friction":

@@ -44,10 +44,10 @@ class DrivePicture:
 
     def __init__(self, run: Run, ax: Axes, norm: Normalize) -> None:
         self._kind = run.drive.belt.element_kind
-        self._lengths = element_lengths(run.dataset, run.drive.belt.length)
+        self._lengths = element_lengths(run.dataset, run.drive.belt_length)
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
         self._centers = run.drive.centers
-        self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.drive.pulleys)]
+        self._bodies = [_draw_pulley(ax, pulley, number) for number, pulley in enumerate(run.drive.completed.pulleys)]
         extent = float(np.ptp(extent_of(run.drive, run.drive.path), axis=0).max())
         for number, pulley in enumerate(run.drive.pulleys):
             write_pulley(ax, run.drive.path, number, pulley.name, extent, color(number))
@@ -187,7 +187,7 @@ def _draw_pulley(ax: Axes, pulley: Pulley, number: int) -> _Body:
 def _frame(ax: Axes, run: Run) -> None:
     """Make room for the pulleys, and for the belt at any time."""
     positions = run.dataset["node_position"]
-    centers = np.array([pulley.center for pulley in run.drive.pulleys])
+    centers = run.drive.centers
     radii = np.array([[pulley.radius] for pulley in run.drive.pulleys])
     low = np.min([positions.min(("field_time", "node")), *(centers - radii)], axis=0)
     high = np.max([positions.max(("field_time", "node")), *(centers + radii)], axis=0)

@@ -59,7 +59,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     _write_spans(ax, path)
     ax.set(xlabel="x [m]", ylabel="y [m]")
     ax.set_title(
-        f"belt {drive.belt.length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
+        f"belt {drive.belt_length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
     )
     make_room(ax, extent)
     return ax

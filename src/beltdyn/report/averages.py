@@ -89,9 +89,9 @@ def contact_samples(run: Run) -> list[ContactSamples]:
 
 
 def _on_pulley(run: Run, window: xr.Dataset, weights: FloatArray, pulley: int) -> ContactSamples:
-    path, wheel = run.drive.path, run.drive.pulleys[pulley]
-    arm = window["contact_position"].values - np.array(wheel.center)
-    start = path.span_points[pulley - 1, 1] - wheel.center
+    path, center = run.drive.path, run.drive.centers[pulley]
+    arm = window["contact_position"].values - center
+    start = path.span_points[pulley - 1, 1] - center
     turned = np.arctan2(start[0] * arm[..., 1] - start[1] * arm[..., 0], arm @ start) % (2.0 * pi)
     place = turned / path.wrap_angles[pulley]
     near = np.abs(np.linalg.norm(arm, axis=-1) / run.drive.radii[pulley] - 1.0) < _NEAR

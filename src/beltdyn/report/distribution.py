@@ -61,8 +61,8 @@ def distribution(run: Run, pulley: int) -> Distribution:
         Number of the pulley.
     """
     data, drive = run.dataset, run.drive
-    wrap = unwrap(data["belt_coordinate"].values, data["contact_pulley"].values == pulley, drive.belt.length, 1.0)
-    center = np.array(drive.pulleys[pulley].center)
+    wrap = unwrap(data["belt_coordinate"].values, data["contact_pulley"].values == pulley, drive.belt_length, 1.0)
+    center = drive.centers[pulley]
     start = drive.path.span_points[pulley - 1, 1] - center
     points = data["contact_position"].values[wrap.points] - center
     angle = np.arctan2(start[0] * points[:, 1] - start[1] * points[:, 0], points @ start)

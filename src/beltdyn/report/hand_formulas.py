@@ -60,7 +60,7 @@ def creeping_torsional_swing(drive: Drive) -> Swing:
     for _ in range(_ROUNDS):
         longer = length
         for radius, angle in zip(drive.radii, drive.path.wrap_angles, strict=True):
-            sinking = 1.0 + stiffness / (radius**2 * drive.contact.stiffness)
+            sinking = 1.0 + stiffness / (radius**2 * drive.contact_stiffness)
             depth = np.sqrt(1j * omega * factor * sinking / stiffness)
             longer += sinking / (depth * np.tanh(0.5 * depth * angle * radius))
         omega = 0.5 * (omega + _span_frequency(drive, longer))

@@ -89,7 +89,7 @@ def _belt_turns(recorded: Recorded, drive: Drive, time: FloatArray) -> Cycle:
     """Turns of the belt: the way that it goes, by the mean speed in its spans, over its length."""
     speed = np.asarray(recorded["belt_speed"]).mean(axis=1)
     way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
-    return Cycle(np.sign(way[-1] - way[0]) * way / drive.belt.length, 1)
+    return Cycle(np.sign(way[-1] - way[0]) * way / drive.belt_length, 1)
 
 
 def _waves(recorded: Recorded, drive: Drive, turn: Cycle) -> Iterator[Cycle]:

@@ -30,5 +30,5 @@ def sliding_of_pulleys(
     pressed = pressing(normal, touched, len(drive.pulleys))
     return {
         "sliding_speed": gross_sliding(sliding, pressed, drive),
-        "sliding_share": sliding_shares(sliding, pressed, cells(belt_coordinate, drive.belt.length)),
+        "sliding_share": sliding_shares(sliding, pressed, cells(belt_coordinate, drive.belt_length)),
     }

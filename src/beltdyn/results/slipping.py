@@ -36,7 +36,7 @@ def slip_parts(
         Parts of the first rim's speed, of which the first is the sum of the others. NaN while the first rim stands
         still: while it goes no further than the belt is stretched.
     """
-    stretched = np.max(tension, axis=-1) / drive.belt.axial_stiffness * drive.belt.length
+    stretched = np.max(tension, axis=-1) / drive.belt.axial_stiffness * drive.belt_length
     runs = np.abs(rim[..., 0]) * elapsed > np.maximum(stretched, 0.0)
     rim = np.where(runs[..., None], rim, 0.0)
     before, after = across(tension)

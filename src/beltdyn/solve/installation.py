@@ -69,8 +69,9 @@ class Rest(NamedTuple):
 def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     """Find the static equilibrium of a drive, with the installed tension that was asked for if one was.
 
-    The closed form of `beltdyn.model.rest`, from which the drive has its length, leaves out bending and weight. The
-    length, or the take-up where the length is given too, follows from the tension at rest by the secant method.
+    The closed form of `beltdyn.model.static_estimate`, from which the drive has its length, leaves out bending and
+    weight. The length, or the take-up where the length is given too, follows from the tension at rest by the secant
+    method.
 
     Parameters
     ----------
@@ -94,8 +95,8 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     compile_kernels(system, laid(system, drive.path))
     _tell(drive, progress, "equilibrium")
     rest = _at_rest(drive)
-    if drive.installed_tension is not None:
-        rest = _tighten(rest, drive.installed_tension)
+    if drive.belt.installed_tension is not None:
+        rest = _tighten(rest, drive.belt.installed_tension)
     return rest._replace(unstable=_unstable(rest))
 
 
@@ -117,7 +118,7 @@ def _unstable(rest: Rest) -> tuple[str, ...]:
 
 def _tighten(first: Rest, wanted: float) -> Rest:
     """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted."""
-    length = first.drive.belt.length
+    length = first.drive.belt_length
     rest, done = first, 0.0
     slope = first.drive.belt.axial_stiffness / length
     for _ in range(_MOST_TRIALS):
@@ -130,7 +131,7 @@ def _tighten(first: Rest, wanted: float) -> Rest:
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
     raise _out_of_reach(
         first.drive,
-        f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt.length:.6g} m, and "
+        f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt_length:.6g} m, and "
         f"{first.tension:.5g} N with {length:.6g} m, since tensioners hold it.",
     )
 
@@ -142,14 +143,14 @@ def _shortened(drive: Drive, done: float, change: float) -> tuple[Rest, float]:
             return _at_rest(drive.tightened(done + change)), change
         except (ConvergenceError, ModelError) as error:
             change *= 0.5
-            if abs(change) < _LEAST_CHANGE * drive.belt.length:
+            if abs(change) < _LEAST_CHANGE * drive.belt_length:
                 raise _out_of_reach(drive, str(error)) from error
 
 
 def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
     return ConvergenceError(
-        f"belt.installed_tension = {drive.installed_tension:.5g} N is not reached with {drive.belt.elements} elements: "
-        f"{reason} Change the tension, or give belt.length in its place."
+        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N is not reached with {drive.belt.elements} "
+        f"elements: {reason} Change the tension, or give belt.length in its place."
     )
 
 
@@ -229,9 +230,9 @@ def _cause(drive: Drive, installation: Installation) -> str:
     worst = int(np.argmax(parts))
     if not parts[worst] > _SOUND:
         return ""
-    enough = drive.contact.stiffness * parts[worst] / _SOUND
+    enough = drive.contact_stiffness * parts[worst] / _SOUND
     return (
         f' Contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by {parts[worst]:.0%} of the '
-        f"radius. Raise contact.stiffness from {drive.contact.stiffness:.2g} to {enough:.2g} N/m^2, or lower the "
+        f"radius. Raise contact.stiffness from {drive.contact_stiffness:.2g} to {enough:.2g} N/m^2, or lower the "
         "tension, or make the pulley larger."
     )

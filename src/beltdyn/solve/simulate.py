@@ -67,7 +67,7 @@ def simulate(
     with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress, overwrite) as recording:
         recording.prepare()
         rest = None
-        if drive.installed_tension is not None or settings.start == "equilibrium":
+        if drive.belt.installed_tension is not None or settings.start == "equilibrium":
             rest = bring_to_rest(drive, progress)
             drive, system = rest.drive, rest.system
         state = rest.state if rest and settings.start == "equilibrium" else laid(system, drive.path)

@@ -13,8 +13,8 @@ from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
-from beltdyn.model.layout import radii as effective_radii
 from beltdyn.model.pulley import friction_on
+from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import Records, records
@@ -46,13 +46,14 @@ def drive_system(drive: Drive) -> System:
     System
         Its belt, closed as ``drive.simulation.joint`` says, and its pulleys.
     """
+    completed = drive.completed
     return belt_system(
-        drive.belt,
-        drive.pulleys,
-        drive.contact,
+        completed.belt,
+        completed.pulleys,
+        completed.contact,
         drive.simulation.joint,
-        tensioners=drive.tensioners,
-        path=drive.path,
+        tensioners=completed.tensioners,
+        path=completed.path,
         gravity=drive.gravity,
     )
 

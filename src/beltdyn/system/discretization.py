@@ -43,7 +43,7 @@ def discretize(belt: Belt) -> Discretization:
         Elements of the kind ``belt.element_kind``.
     """
     kind, section = belt.element_kind, belt_section(belt)
-    length = np.full(belt.elements, belt.length / belt.elements)
+    length = np.full(belt.elements, belt.given_length / belt.elements)
     return Discretization(
         element=kind.element(section, _elastic_points(belt)),
         points=kind.points,

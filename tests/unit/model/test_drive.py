@@ -73,7 +73,7 @@ def test_installed_belt_balances(drive: Drive) -> None:
     """The path shortened by the penetrations is as long as the belt at this tension."""
     installation = install(drive)
     shortened = drive.path.length - drive.path.wrap_angles @ installation.penetrations
-    stretch = shortened / drive.belt.length
+    stretch = shortened / drive.belt_length
     assert installation.tension == pytest.approx(1e4 * (stretch**2 - 1) * stretch / 2)
 
 
@@ -102,18 +102,17 @@ def test_advice_on_the_tension_lost(drive: Drive) -> None:
 
 def test_advice_on_a_belt_of_given_tension_is_about_its_length(drive: Drive) -> None:
     """It has the tension that was asked for; what sinking in costs is length, which other contact gives back."""
-    soft = {key: value for key, value in drive.belt.arguments.items() if key != "length"} | {"installed_tension": 26.56}
-    other = {key: value for key, value in drive.contact.arguments.items() if key != "stiffness"}
+    soft = drive.belt.replace(installed_tension=26.56)
     given = drive.replace(belt=soft)
     hard = drive.replace(belt=soft, contact=drive.contact.replace(stiffness=1e14))
     (warning,) = (text for text in advise(given, install(given)) if "hard pulleys" in text)
     assert warning == (
-        f"the belt is {hard.belt.length - given.belt.length:.1e} m shorter than hard pulleys would need for 26.56 N, "
+        f"the belt is {hard.belt_length - given.belt_length:.1e} m shorter than hard pulleys would need for 26.56 N, "
         "since sinking in takes 5.8% of what it is laid with, more than 2%: where its length matters, raise "
         "contact.stiffness to 3.1e+07 N/m^2 or more (contact.allowed_penetration = 1.0e-05 m)."
     )
     for remedy in ({"stiffness": 3.1e7}, {"allowed_penetration": 1.0e-5}):
-        better = drive.replace(belt=soft, contact=other | remedy)
+        better = drive.replace(belt=soft, contact=drive.contact.replace(**remedy))
         installation = install(better)
         assert not any("hard pulleys" in text for text in advise(better, installation))
         assert installation.tension == pytest.approx(26.56)

@@ -47,7 +47,7 @@ def test_a_link_counts_as_the_element_that_misses_the_circle_as_much(drive: Driv
     """R a^2 / 8 of a link over the angle a is R b^4 / 384 of an element over b."""
     trusses = with_belt(drive, elements=60, discretization="truss")
     beams = with_belt(drive, elements=30, discretization="three-node-beam")
-    link = drive.belt.length / (60 * drive.radii)
+    link = drive.belt_length / (60 * drive.radii)
     for links in (trusses, beams):
         angles = element_angles(links, links.belt.elements)
         assert angles**4 / 384 == pytest.approx(link**2 / 8)

@@ -8,9 +8,9 @@ from beltdyn.results import Run
 
 
 def test_lengths_add_up_to_the_belt(run: Run) -> None:
-    lengths = element_lengths(run.dataset, run.drive.belt.length)
+    lengths = element_lengths(run.dataset, run.drive.belt_length)
     assert lengths.shape == (20,)
-    assert lengths.sum() == pytest.approx(run.drive.belt.length)
+    assert lengths.sum() == pytest.approx(run.drive.belt_length)
 
 
 def test_circle_is_missed_by_no_more_than_the_cubic_must() -> None:

@@ -32,7 +32,7 @@ def test_two_pulley_takes_what_the_paper_varies() -> None:
 def test_the_loaded_drive_is_that_of_eq_29() -> None:
     drive = loaded_two_pulley(1e5, 7)
     driver, driven = drive.pulleys
-    assert (drive.belt.length, drive.belt.bending_factor, drive.belt.elements) == (1.2443, 0.001, 30)
+    assert (drive.belt_length, drive.belt.bending_factor, drive.belt.elements) == (1.2443, 0.001, 30)
     assert (drive.contact.creep_rate_factor, drive.contact.quadrature_points) == (1e5, 7)
     assert driver.speed is not None
     assert driven.torque is not None

@@ -28,7 +28,7 @@ def turning(make_run: MakeRun, run: Run) -> Callable[..., Run]:
     """A run of the drive, or of one like it, whose belt goes round in 0.3 s."""
 
     def make(drive: Drive = run.drive, **changed: Any) -> Run:
-        speed = np.full((101, 2), drive.belt.length / TURN)
+        speed = np.full((101, 2), drive.belt_length / TURN)
         return Run(make_run(**({"belt_speed": speed} | changed)).dataset, drive)
 
     return make

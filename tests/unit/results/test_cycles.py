@@ -16,7 +16,7 @@ HARMONICS = "harmonics = [{ order = 2, amplitude = 0.1 }, { order = 3, amplitude
 
 def running(make_run: MakeRun, drive: Drive, turn: float, **changed: np.ndarray) -> Run:
     """A belt that takes so long for a turn, s."""
-    speed = np.full((OUTPUTS, 2), drive.belt.length / turn)
+    speed = np.full((OUTPUTS, 2), drive.belt_length / turn)
     made = make_run(outputs=OUTPUTS, belt_speed=speed, **changed)
     return Run(made.dataset, drive)
 

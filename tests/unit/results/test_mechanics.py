@@ -80,9 +80,9 @@ def test_margin_without_load_or_grip() -> None:
 
 
 def test_cells_share_out_the_belt(drive: Drive) -> None:
-    coordinate = np.sort(np.random.default_rng(1).uniform(0.0, drive.belt.length, 50))
-    cell = cells(coordinate, drive.belt.length)
-    assert cell.sum() == pytest.approx(drive.belt.length)
+    coordinate = np.sort(np.random.default_rng(1).uniform(0.0, drive.belt_length, 50))
+    cell = cells(coordinate, drive.belt_length)
+    assert cell.sum() == pytest.approx(drive.belt_length)
     assert cell[7] == pytest.approx(0.5 * (coordinate[8] - coordinate[6]))
 
 

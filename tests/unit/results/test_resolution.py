@@ -55,4 +55,4 @@ def test_layers(run: Run) -> None:
     bending, contact = run.resolution.layers
     tension = install(run.drive).tension
     assert bending == pytest.approx(math.sqrt(run.drive.belt.bending_stiffness / tension), rel=1e-3)
-    assert contact == pytest.approx(math.sqrt(tension / run.drive.contact.stiffness), rel=1e-3)
+    assert contact == pytest.approx(math.sqrt(tension / run.drive.contact_stiffness), rel=1e-3)

@@ -14,7 +14,7 @@ from beltdyn.results.window import plain_window
 
 def test_means_are_taken_over_whole_elements_where_no_turn_fits(make_run: Callable[..., Run], drive: Drive) -> None:
     """One of 20 passes in L / (20 * 12 rad/s * R) = 65 ms; of a jump for the second half of it the mean has a half."""
-    element = drive.belt.length / (20 * 12.0 * drive.pulleys[0].radius)
+    element = drive.belt_length / (20 * 12.0 * drive.pulleys[0].radius)
     tension = np.full((1001, 2), [1.0, 3.0])
     tension[round(1000 * (1.0 - 0.5 * element)) :] += 2.0
     summary = summarize(make_run(outputs=1001, span_tension=tension))

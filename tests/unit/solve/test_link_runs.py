@@ -47,7 +47,7 @@ def test_dimensions(run: Run, sampling: str) -> None:
 
 
 def test_coordinates_along_the_belt(run: Run, sampling: str) -> None:
-    length = run.drive.belt.length / LINKS
+    length = run.drive.belt_length / LINKS
     data = run.dataset
     np.testing.assert_allclose(data.node_coordinate, length * np.arange(LINKS), atol=1e-12)
     np.testing.assert_allclose(data.element_coordinate, length * (np.arange(LINKS) + 0.5), atol=1e-12)
@@ -59,7 +59,7 @@ def test_coordinates_along_the_belt(run: Run, sampling: str) -> None:
 
 def test_tension_of_every_link_is_that_of_its_length(run: Run) -> None:
     place = run.dataset.node_position.values[-1]
-    stretch = np.linalg.norm(np.roll(place, -1, axis=0) - place, axis=1) * LINKS / run.drive.belt.length
+    stretch = np.linalg.norm(np.roll(place, -1, axis=0) - place, axis=1) * LINKS / run.drive.belt_length
     expected = run.drive.belt.axial_stiffness * (stretch**2 - 1.0) * stretch / 2.0
     np.testing.assert_allclose(run.dataset.belt_tension[-1], expected, rtol=1e-9)
 
@@ -67,7 +67,7 @@ def test_tension_of_every_link_is_that_of_its_length(run: Run) -> None:
 def test_contact_points_lie_on_the_links(run: Run, sampling: str) -> None:
     place = run.dataset.node_position.values[0]
     points = run.dataset.contact_position.values[0].reshape(LINKS, SAMPLING[sampling], 2)
-    along = (run.dataset.belt_coordinate.values * LINKS / run.drive.belt.length).reshape(LINKS, -1, 1)
+    along = (run.dataset.belt_coordinate.values * LINKS / run.drive.belt_length).reshape(LINKS, -1, 1)
     along = along - np.arange(LINKS)[:, None, None]
     expected = place[:, None] + along * (np.roll(place, -1, axis=0) - place)[:, None]
     np.testing.assert_allclose(points, expected, atol=1e-12)

@@ -69,7 +69,7 @@ def test_empty_chunks_only_tell(change: Change, system: System) -> None:
 def test_layout(change: Change, joint: str, nodes: int) -> None:
     drive = change(simulation={"joint": joint})
     layout = result_layout(drive, drive_system(drive))
-    length = drive.belt.length / 10
+    length = drive.belt_length / 10
     assert layout.pulleys == ("driver", "driven")
     assert layout.spans == ("driver-driven", "driven-driver")
     np.testing.assert_allclose(layout.node_coordinate, length * np.arange(nodes))

@@ -17,7 +17,7 @@ SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
 @pytest.fixture
 def cantilever(drive: Drive) -> System:
     """A belt held at one end and bent to some 30 degrees by a moment at the other."""
-    moment = 0.5 * drive.belt.bending_stiffness / drive.belt.length
+    moment = 0.5 * drive.belt.bending_stiffness / drive.belt_length
     return belt_system(drive.belt, fixed=SECTION_HELD, moments=[(-1, moment)])
 
 
@@ -44,7 +44,7 @@ def test_a_pull_stretches_by_p_over_ea(drive: Drive) -> None:
     section = belt_section(drive.belt)
     system = belt_system(drive.belt, fixed=SECTION_HELD, forces=[(-1, (1e-5 * section.axial, 0.0))])
     tip = find_equilibrium(system, straight(system)).state.nodes(system)[-1]
-    assert tip[0] / drive.belt.length - 1.0 == pytest.approx(1e-5, rel=1e-4)  # the strain is Green's
+    assert tip[0] / drive.belt_length - 1.0 == pytest.approx(1e-5, rel=1e-4)  # the strain is Green's
 
 
 def test_fixed_coordinates_stay(drive: Drive) -> None:

@@ -50,7 +50,7 @@ def test_stops_are_the_kinks_of_both_profiles_once_and_the_end(
 
 def test_velocity_scale(drive: Drive, change: Change) -> None:
     """The rim runs at 0.975 m/s at the end; a belt end that is let go runs at strain times wave speed."""
-    strain = drive.path.length / drive.belt.length - 1.0
+    strain = drive.path.length / drive.belt_length - 1.0
     recoil = strain * np.sqrt(1e8 / 1036.0)
     assert velocity_scale(drive) == pytest.approx(max(12.0 * 0.08125, recoil))
     fast: list[dict[str, Any]] = [pulley.model_dump(exclude_none=True) for pulley in drive.pulleys]

@@ -8,7 +8,7 @@ from beltdyn.machines.links.registry import KINDS as LINKS
 from beltdyn.machines.loads.registry import KINDS as LOADS
 from beltdyn.machines.profiles.functions import NO_SCHEDULE, profile_value
 from beltdyn.model import Belt, FixedTensioner, Pulley, RotaryTensioner, SlidingTensioner
-from beltdyn.model.layout import lay_path
+from beltdyn.model.routing import lay_path
 from beltdyn.system.build_machines import (
     body_inertias,
     carried_masses,

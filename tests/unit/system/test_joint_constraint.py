@@ -38,7 +38,7 @@ def test_mass_matrix_holds_the_mass_of_the_belt(drive: Drive, closure: str) -> N
     system = belt_system(drive.belt, closure=closure)  # type: ignore[arg-type]
     mass = mass_matrix(system)
     shift = np.tile([1.0, 0, 0, 0, 0, 0], system.nodes)
-    assert shift @ mass @ shift == pytest.approx(drive.belt.mass_per_length * drive.belt.length, rel=1e-12)
+    assert shift @ mass @ shift == pytest.approx(drive.belt.mass_per_length * drive.belt_length, rel=1e-12)
     np.testing.assert_allclose(mass, mass.T, atol=0)
 
 

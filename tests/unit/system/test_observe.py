@@ -93,7 +93,7 @@ def test_belt_speed_is_measured_along_the_belt(seen: tuple[float, Observations])
 
 
 def test_kinetic_energy_of_a_translation(fine: Drive, seen: tuple[float, Observations]) -> None:
-    mass = fine.belt.mass_per_length * fine.belt.length
+    mass = fine.belt.mass_per_length * fine.belt_length
     np.testing.assert_allclose(seen[1].kinetic_energy, 0.5 * mass * seen[0] ** 2, rtol=1e-12)
 
 

@@ -12,8 +12,8 @@ def test_laid_belt_lies_on_its_path(drive: Drive) -> None:
     system = drive_system(drive)
     state = laid(system, drive.path)
     nodes = state.nodes(system)
-    stretch = drive.path.length / drive.belt.length
-    along = stretch * drive.belt.length / system.nodes * np.arange(system.nodes)
+    stretch = drive.path.length / drive.belt_length
+    along = stretch * drive.belt_length / system.nodes * np.arange(system.nodes)
     np.testing.assert_allclose(nodes[:, :2], drive.path.position(along), atol=EXACT)
     np.testing.assert_allclose(nodes[:, 2:4], stretch * drive.path.tangent(along), atol=EXACT)
     np.testing.assert_allclose(np.linalg.norm(nodes[:, 4:], axis=1), 1.0, atol=EXACT)
@@ -32,7 +32,7 @@ def test_a_belt_closed_by_multipliers_ends_where_it_begins(drive: Drive) -> None
 def test_straight_belt(drive: Drive) -> None:
     system = belt_system(drive.belt)
     nodes = straight(system).nodes(system)
-    assert nodes[-1, 0] == pytest.approx(drive.belt.length)
+    assert nodes[-1, 0] == pytest.approx(drive.belt_length)
     np.testing.assert_allclose(np.diff(nodes[:, 0]), system.length)
     np.testing.assert_array_equal(nodes[:, 1:], np.tile([0.0, 1.0, 0.0, 0.0, 1.0], (system.nodes, 1)))
 
@@ -48,4 +48,4 @@ def test_a_state_owns_its_coordinates(drive: Drive) -> None:
 
 def test_crossing_time_is_length_over_wave_speed(drive: Drive) -> None:
     speed = np.sqrt(drive.belt.youngs_modulus * drive.belt.axial_factor / drive.belt.density)
-    assert crossing_time(drive_system(drive)) == pytest.approx(drive.belt.length / speed)
+    assert crossing_time(drive_system(drive)) == pytest.approx(drive.belt_length / speed)

@@ -171,7 +171,7 @@ def test_integrators_agree_and_approach_each_other(
     for rtol in rtols:
         run = simulate(change(short, simulation={"integrator": integrator, "rtol": rtol})).dataset
         speed = float(np.max(np.abs(run.pulley_speed - converged.pulley_speed))) / 12.0
-        place = float(np.max(np.abs(run.node_position - converged.node_position))) / short.belt.length
+        place = float(np.max(np.abs(run.node_position - converged.node_position))) / short.belt_length
         errors[rtol] = max(speed, place)
     measured(**{f"rtol_{rtol:.0e}": error for rtol, error in errors.items()})
     curve("integrators", list(errors), list(errors.values()), integrator)

@@ -97,4 +97,4 @@ def difference(values: NDArray[Any], expected: NDArray[Any]) -> float:
 def test_nodes_follow_a_turn(paced: Drive, pulleys: Pulleys, change: Change, reference: xr.Dataset) -> None:
     run = simulate(change(paced, pulley=turned(pulleys))).dataset
     expected = reference.node_position.values @ TURN.T + SHIFT
-    np.testing.assert_allclose(run.node_position, expected, atol=ROUNDING * paced.belt.length)
+    np.testing.assert_allclose(run.node_position, expected, atol=ROUNDING * paced.belt_length)

@@ -85,7 +85,7 @@ def test_trajectories(small: Drive, change: Change, measured: Measured, start: s
         for joint in ("shared_node", "multipliers")
     ]
     first, tied = (run.node_position.values for run in runs)
-    place = float(np.max(np.abs(tied[:, :-1] - first))) / small.belt.length
+    place = float(np.max(np.abs(tied[:, :-1] - first))) / small.belt_length
     speed = float(np.max(np.abs(runs[1].pulley_speed - runs[0].pulley_speed))) / 12.0
     parting = float(np.max(np.abs(tied[:, -1] - tied[:, 0])))
     measured(place=place, speed=speed, parting=parting)

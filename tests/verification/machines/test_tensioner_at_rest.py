@@ -72,7 +72,7 @@ def path(drive: Drive, place: FloatArray, tension: float) -> Path:
     """Path that the spans take under a tension, with the tensioner's pulley at a place."""
     centers, radii = drive.centers.copy(), np.abs(drive.radii)
     centers[drive.carried(drive.tensioners[0])] = place
-    depth = tension / (drive.contact.stiffness * radii)
+    depth = tension / (drive.contact_stiffness * radii)
     offset = drive.belt.bending_stiffness / (2 * radii * tension)
     signs = [1.0 if pulley.side == "inside" else -1.0 for pulley in drive.pulleys]
     return Path(centers, np.array(signs) * (radii - 0.5 * depth + offset))

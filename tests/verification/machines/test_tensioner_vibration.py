@@ -72,11 +72,11 @@ def tension(drive: Drive, carrier: Carrier, q: float) -> float:
 
     def excess(stretch: float) -> float:
         pull = float(tension_of(stretch, belt.axial_stiffness))
-        depth = pull * stretch / (drive.contact.stiffness * path.radii)
+        depth = pull * stretch / (drive.contact_stiffness * path.radii)
         sunk = path.wrap_angles @ depth - 10 / 12 * float(np.sum(np.sqrt(depth * path.radii) * depth / path.radii))
-        return stretch * belt.length - path.length + float(sunk)
+        return stretch * belt.given_length - path.length + float(sunk)
 
-    found = float(brentq(excess, 1.0, path.length / belt.length, xtol=1e-14))
+    found = float(brentq(excess, 1.0, path.length / belt.given_length, xtol=1e-14))
     return float(tension_of(found, belt.axial_stiffness))
 
 

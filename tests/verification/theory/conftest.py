@@ -74,7 +74,7 @@ def running() -> Callable[[Drive, float, float], RunningDrive]:
         driver, driven = drive.pulleys
         assert contact.creep_rate_factor is not None
         return RunningDrive(
-            length=drive.belt.length,
+            length=drive.belt_length,
             axial=section.axial,
             bending=section.bending,
             shear=section.shear,
@@ -82,7 +82,7 @@ def running() -> Callable[[Drive, float, float], RunningDrive]:
             rotary_inertia=section.rotary_inertia,
             distance=driven.center[0] - driver.center[0],
             radii=(driver.radius, driven.radius),
-            stiffness=contact.stiffness,
+            stiffness=contact.given_stiffness,
             friction=contact.friction,
             creep_rate_factor=contact.creep_rate_factor,
             speed=speed,

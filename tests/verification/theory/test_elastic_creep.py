@@ -45,11 +45,11 @@ def capacity(thin: Callable[[float], Drive]) -> float:
     belt, (driver, driven) = drive.belt, drive.pulleys
     distance = driven.center[0] - driver.center[0]
     installed = static_tension(
-        belt.length,
+        belt.given_length,
         distance,
         (driver.radius, driven.radius),
         axial_stiffness=belt.axial_stiffness,
-        contact_stiffness=drive.contact.stiffness,
+        contact_stiffness=drive.contact_stiffness,
         bending_stiffness=belt.bending_stiffness,
     )
     tight, slack = gross_slip_tensions(

@@ -27,7 +27,7 @@ SPEED, TURNS = 200.0, 2.0
 
 def theory(belt: Belt) -> tuple[float, float]:
     """Stretch and tension."""
-    section, turning = belt_section(belt), 2.0 * pi / belt.length
+    section, turning = belt_section(belt), 2.0 * pi / belt.given_length
     g = hoop_stretch(SPEED / turning, section.axial, section.mass, bending_stiffness=section.bending, turning=turning)
     return g, float(tension(g, section.axial))
 
@@ -38,7 +38,7 @@ def spin(belt: Belt, g: float, rtol: float) -> tuple[FloatArray, Observations]:
     angle = 2.0 * pi * np.arange(system.nodes) / system.nodes
     out = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     forward = np.stack([-out[:, 1], out[:, 0]], axis=1)
-    radius = g * belt.length / (2.0 * pi)
+    radius = g * belt.given_length / (2.0 * pi)
     place = np.hstack([radius * out, g * forward, -out]).ravel()
     velocity = SPEED * np.hstack([radius * forward, -g * out, -forward]).ravel()
     end = TURNS * 2.0 * pi / SPEED
@@ -67,5 +67,5 @@ def test_tension_converges_to_that_of_a_hoop(
     curve("hoop", meshes, spreads, "radius of the nodes, largest − smallest", "s--")
     assert fitted == pytest.approx(4.0, abs=0.2)
     assert spreads[-1] < 1e-5
-    rim = g * SPEED * belt.length / (2.0 * pi)
+    rim = g * SPEED * belt.given_length / (2.0 * pi)
     assert force == pytest.approx(hoop_tension(belt.mass_per_length / g, rim), rel=1e-3)  # bending carries 2e-4 of it

@@ -84,8 +84,8 @@ def _moved() -> tuple[System, FloatArray, FloatArray, FloatArray]:
     of_center = velocity[:, :, 0].mean(axis=1) + drift[:, 0]
     position[:, :, 0] += shift
     velocity[:, :, 0] += drift
-    mass = belt.density * belt.area * belt.length
-    inertia = mass * (belt.length**2 + belt.thickness**2) / 12.0
+    mass = belt.density * belt.area * belt.given_length
+    inertia = mass * (belt.given_length**2 + belt.thickness**2) / 12.0
     by_hand = 0.5 * (mass * np.sum(of_center**2, axis=1) + inertia * speed**2)
     return system, position.reshape(_MOTIONS, -1), velocity.reshape(_MOTIONS, -1), by_hand
 
@@ -93,7 +93,7 @@ def _moved() -> tuple[System, FloatArray, FloatArray, FloatArray]:
 def _rigid_motion() -> Statement:
     system, position, velocity, by_hand = _moved()
     seen, belt = observe(system, np.zeros(_MOTIONS), position, velocity), _belt()
-    strain = float(np.sqrt(2.0 * seen.strain_energy.max() / (belt.axial_stiffness * belt.length)))
+    strain = float(np.sqrt(2.0 * seen.strain_energy.max() / (belt.axial_stiffness * belt.given_length)))
     energy = float(np.max(np.abs(seen.kinetic_energy / by_hand - 1.0)))
     numbers = [
         Number("rigid motions, at random", _MOTIONS),

@@ -53,7 +53,7 @@ def section(runs: Runs) -> Section:
 
 def _penetration(run: Run, pulley: int) -> float:
     """Mean penetration where the belt touches a pulley at the end of a run, m."""
-    return settled_mean(run, "mean_normal_force", pulley) / run.drive.contact.stiffness
+    return settled_mean(run, "mean_normal_force", pulley) / run.drive.contact_stiffness
 
 
 def _quotient(runs: Runs) -> Statement:

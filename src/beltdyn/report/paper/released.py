@@ -54,7 +54,9 @@ def _found(elements: int, plain: bool) -> Equilibrium:
 def _curve(nodes: FloatArray) -> FloatArray:
     """Points on the centreline, ends of elements included, shape (k, 2), m."""
     belt = released_belt(len(nodes))
-    return centerline(belt.element_kind, nodes, np.full(len(nodes), belt.length / len(nodes)), _POINTS).reshape(-1, 2)
+    return centerline(belt.element_kind, nodes, np.full(len(nodes), belt.given_length / len(nodes)), _POINTS).reshape(
+        -1, 2
+    )
 
 
 def _unknowns() -> Statement:
@@ -108,7 +110,7 @@ def _roundness(elements: int, plain: bool) -> tuple[Finding, float]:
     spread = float(np.ptp(along) / along.mean())
     numbers = [
         Number("mean radius", float(along.mean()), "m", digits=6),
-        Number("length / 2π", released_belt().length / (2.0 * np.pi), "m", digits=6),
+        Number("length / 2π", released_belt().given_length / (2.0 * np.pi), "m", digits=6),
         Number("spread of the radii of nodes / radius", float(np.ptp(at_nodes) / along.mean())),
         Number("spread of all radii, between nodes too / radius", spread),
     ]

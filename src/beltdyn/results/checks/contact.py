@@ -63,8 +63,8 @@ def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
                 f"the belt sinks {depth:.2g} m into {pulley.name} at t = {time:.4g} s: {depth / radius:.1%} of its "
                 f"radius, {depth / drive.belt.thickness:.0%} of the belt's thickness.",
                 "Tensions, arms of torques and wrap angles are those of a pulley smaller by as much.",
-                f"Raise contact.stiffness = {drive.contact.stiffness:g} N/m^2 to "
-                f"{drive.contact.stiffness * depth / most:.1e}.",
+                f"Raise contact.stiffness = {drive.contact_stiffness:g} N/m^2 to "
+                f"{drive.contact_stiffness * depth / most:.1e}.",
             )
 
 

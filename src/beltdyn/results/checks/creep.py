@@ -50,7 +50,7 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
 def _finer(evidence: Evidence) -> str:
     """Say how coarse the mesh is, which is to blame: what bending does to slip is in the rolling radii."""
     drive = evidence.drive
-    covered = float(np.degrees(drive.belt.length / drive.belt.elements / drive.radii.min()))
+    covered = float(np.degrees(drive.belt_length / drive.belt.elements / drive.radii.min()))
     return (
         f"The mesh is to blame: compare a run with belt.elements = {2 * drive.belt.elements} (an element covers "
         f"{covered:.0f}° of {drive.pulleys[int(drive.radii.argmin())].name})."
@@ -84,7 +84,7 @@ def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
     drive, window = evidence.drive, evidence.window
     passed = abs(evidence.pulleys[0].speed) * float(drive.rolling_radii[0]) * (window.end - window.start)
     change = float(np.ptp(np.asarray(evidence.recorded["span_tension"][window.first :]), axis=0).max())
-    return abs(slip) * passed > change / drive.belt.axial_stiffness * drive.belt.length
+    return abs(slip) * passed > change / drive.belt.axial_stiffness * drive.belt_length
 
 
 def _steeper(evidence: Evidence) -> str:

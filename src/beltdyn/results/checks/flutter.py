@@ -34,7 +34,7 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
             f"the belt flutters where it slides: {between} grow, and take {share:.1%} of the power in contact damping."
         )
     if fault:
-        critical = 2.0 * math.sqrt(drive.contact.stiffness * drive.belt.mass_per_length)
+        critical = 2.0 * math.sqrt(drive.contact_stiffness * drive.belt.mass_per_length)
         yield Finding(
             fault,
             "Long time steps damp them, short ones follow them, and speeds may differ: compare a run with a smaller "

@@ -48,15 +48,16 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     Where vibrations grow it is they that take it: see `beltdyn.results.checks.flutter`.
     """
     balance, share = power_balance(evidence.recorded, evidence.window), damping_share(evidence)
-    power, contact = balance.losses["contact damping"], evidence.drive.contact
+    power, drive = balance.losses["contact damping"], evidence.drive
     if share > DAMPING_LIMIT and not attribute(evidence.recorded, "flutter_growth", 0.0) > 0.0:
-        critical = 2.0 * math.sqrt(contact.stiffness * evidence.drive.belt.mass_per_length)
-        growing = min(contact.damping, critical)  # beyond it the loss no longer grows with the damping
+        critical = 2.0 * math.sqrt(drive.contact_stiffness * drive.belt.mass_per_length)
+        growing = min(drive.contact.damping, critical)  # beyond it the loss no longer grows with the damping
         yield Finding(
             f"contact damping takes {power:.3g} W, {share:.1%} of the power put in: it is a means of computation, and "
             "no loss of a belt.",
             _spoiled(balance, power),
-            f"Lower contact.damping = {contact.damping:g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 or less.",
+            f"Lower contact.damping = {drive.contact.damping:g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 "
+            "or less.",
         )
 
 

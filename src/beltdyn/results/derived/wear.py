@@ -79,7 +79,7 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}
     attributes = {"units": "J/m", "long_name": "Wear intensity on the belt"}
-    length = run.drive.belt.length / work.shape[1]
+    length = run.drive.belt_length / work.shape[1]
     return xr.DataArray(work / length, coordinates, ("pulley", "element"), attrs=attributes)
 
 

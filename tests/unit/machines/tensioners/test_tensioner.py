@@ -10,7 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
 from beltdyn.model import Belt, Path, Pulley, RotaryTensioner, SlidingTensioner
-from beltdyn.model.layout import lay_path
+from beltdyn.model.routing import lay_path
 from beltdyn.records import Records
 from beltdyn.system.build_machines import machine_arrays
 

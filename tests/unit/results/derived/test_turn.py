@@ -14,7 +14,7 @@ MakeRun = Callable[..., Run]
 
 @pytest.fixture
 def steady(make_run: MakeRun, run: Run) -> Run:
-    return make_run(outputs=201, belt_speed=np.full((201, 2), run.drive.belt.length / TURN))
+    return make_run(outputs=201, belt_speed=np.full((201, 2), run.drive.belt_length / TURN))
 
 
 def test_what_repeats_in_a_turn_drops_out_up_to_the_end(steady: Run) -> None:

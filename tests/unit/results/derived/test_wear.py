@@ -29,7 +29,7 @@ def test_wear_of_the_arc_is_even(steady: Run) -> None:
     """Over 1 s and a belt 0.3 % longer than its unstretched length; contact comes and goes by whole points."""
     wear = wear_by_arc(steady, start=0.0)
     inside = (wear["share"] > 0.1) & (wear["share"] < 0.9)
-    stretch = steady.drive.path.length / steady.drive.belt.length
+    stretch = steady.drive.path.length / steady.drive.belt_length
     values = wear.where(inside, drop=True).sum("share") / inside.sum()
     np.testing.assert_allclose(values, POWER / stretch, rtol=0.02)
     assert wear.attrs["units"] == "J/m"
@@ -37,14 +37,14 @@ def test_wear_of_the_arc_is_even(steady: Run) -> None:
 
 def test_all_work_is_somewhere_on_the_arc_and_somewhere_on_the_belt(steady: Run) -> None:
     dataset, drive = steady.dataset, steady.drive
-    cell = cells(dataset["belt_coordinate"].values, drive.belt.length)
+    cell = cells(dataset["belt_coordinate"].values, drive.belt_length)
     power = np.abs(dataset["friction_force"].values * dataset["slip_velocity"].values) @ cell
     work = np.trapezoid(power, dataset["time"])
     arc, belt = wear_by_arc(steady), wear_by_belt(steady)
     assert float((arc * arc["part_length"]).sum()) == pytest.approx(work, rel=SINGLE)
-    assert float(belt.sum()) * drive.belt.length / belt.sizes["element"] == pytest.approx(work, rel=SINGLE)
+    assert float(belt.sum()) * drive.belt_length / belt.sizes["element"] == pytest.approx(work, rel=SINGLE)
     by_pulley = (arc * arc["part_length"]).sum("share")
-    np.testing.assert_allclose(by_pulley, belt.sum("element") * drive.belt.length / belt.sizes["element"], rtol=SINGLE)
+    np.testing.assert_allclose(by_pulley, belt.sum("element") * drive.belt_length / belt.sizes["element"], rtol=SINGLE)
 
 
 def test_nothing_outside_of_the_arc_wears(steady: Run) -> None:

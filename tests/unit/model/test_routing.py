@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Belt, Pulley
-from beltdyn.model.layout import lay_path as lay
 from beltdyn.model.path import Path
+from beltdyn.model.routing import lay_path as lay
 
 Circle = tuple[str, float, float, float]
 

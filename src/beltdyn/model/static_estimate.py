@@ -1,4 +1,4 @@
-"""The belt at rest on pulleys that stand still, without friction: its stretch, and how deep it sinks in."""
+"""Estimate of the belt at rest on pulleys that stand still, without friction: its stretch, and how deep it sinks in."""
 
 from dataclasses import dataclass
 
@@ -14,8 +14,8 @@ from beltdyn.theory.sunk_belt import sunk_stretch
 
 
 @dataclass(frozen=True)
-class Rest:
-    """A belt at rest.
+class StaticEstimate:
+    """A belt at rest, without bending stiffness and weight.
 
     Attributes
     ----------
@@ -38,8 +38,8 @@ class Rest:
     penetrations: FloatArray
 
 
-def settle(path: Path, belt: Belt, contact: Contact) -> Rest:
-    """Let a belt sink into pulleys that stand still.
+def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
+    """Estimate tension and penetration of a belt on pulleys that stand still.
 
     At the stretch g the tension is T = E A alpha1 (g^2 - 1) g / 2 (the axial term of the strain energy). On a
     pulley of radius R it presses with T g / R per unstretched metre, so the belt sinks by d = T g / (R k_p),
@@ -67,21 +67,22 @@ def settle(path: Path, belt: Belt, contact: Contact) -> Rest:
         depths = sunk(tension * stretch)
         length = (path.length - float(path.wrap_angles @ depths)) / stretch
     else:
-        length = belt.length
+        length = belt.given_length
         stretch = _stretch(path, belt, contact, sunk(0.0))
         tension = max(float(tension_of(stretch, belt.axial_stiffness)), 0.0)
         depths = sunk(tension * stretch)
     stiffness = contact.stiffness
     if stiffness is None:
         stiffness = tension * stretch / (float(radii.min()) * float(depths.max()))
-    return Rest(path, length, stiffness, tension, depths)
+    return StaticEstimate(path, length, stiffness, tension, depths)
 
 
 def _stretch(path: Path, belt: Belt, contact: Contact, depths: FloatArray) -> float:
     """Stretch of a belt of given length that sinks in as deep as allowed, or as the stiffness of contact lets it."""
+    length = belt.given_length
     if contact.stiffness is None:
-        return (path.length - float(path.wrap_angles @ depths)) / belt.length
-    if path.length <= belt.length:
-        return path.length / belt.length
+        return (path.length - float(path.wrap_angles @ depths)) / length
+    if path.length <= length:
+        return path.length / length
     sinking = float(np.sum(path.wrap_angles / np.abs(path.radii))) / contact.stiffness
-    return sunk_stretch(belt.length, path.length, belt.axial_stiffness, sinking)
+    return sunk_stretch(length, path.length, belt.axial_stiffness, sinking)
