@@ -145,11 +145,10 @@ def under_load(drive: Drive, elements: int, depth: float) -> Drive:
     ramp = {"kind": "cosine_ramp", "start": 0.01, "end": 0.06, "value": 600.0}
     driver = Pulley(name=motor.name, center=motor.center, radius=motor.radius, speed=ramp)
     driven = drum.replace(inertia=0.002, load=[{"kind": "resistance", "constant": 6.0}])
-    contact = {key: value for key, value in drive.contact.arguments.items() if key != "stiffness"}
     return drive.replace(
         pulley=[driver, driven],
         belt=drive.belt.replace(elements=elements),
-        contact=contact | {"allowed_penetration": depth},
+        contact=drive.contact.replace(allowed_penetration=depth),
         simulation=drive.simulation.replace(duration=0.4),
     )
 

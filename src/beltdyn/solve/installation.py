@@ -155,7 +155,7 @@ def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
 
 
 def _at_rest(drive: Drive) -> Rest:
-    """Static equilibrium of a definite drive.
+    """Static equilibrium of a drive with the length that it has.
 
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
     """

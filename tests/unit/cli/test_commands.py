@@ -120,7 +120,7 @@ def test_check_tells_where_a_take_up_puts_its_pulley(run_main: RunMain, drive_fi
     drive_file.write_text(text, encoding="utf-8")
     code, output, _ = run_main(["check", str(drive_file)])
     assert code == 0
-    x, y = bring_to_rest(load(drive_file)).drive.pulleys[1].center
+    x, y = bring_to_rest(load(drive_file)).drive.centers[1]
     assert x > 0.1920
     assert f"center of driven [{x:.5g}, {y:.5g}] m, after its take-up" in " ".join(output.split())
     assert "tension at rest 50 N, as asked for" in " ".join(output.split())
