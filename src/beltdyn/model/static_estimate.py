@@ -9,8 +9,8 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
 from beltdyn.theory.stretch import stretch as stretch_under
+from beltdyn.theory.stretch import stretch_with_penetration
 from beltdyn.theory.stretch import tension as tension_of
-from beltdyn.theory.sunk_belt import sunk_stretch
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
     """
     radii = np.abs(path.radii)
 
-    def sunk(load: float) -> FloatArray:
+    def penetrations(load: float) -> FloatArray:
         if contact.stiffness is None:
             return np.asarray(contact.allowed_penetration * radii.min() / radii)
         return np.asarray(load / (radii * contact.stiffness))
@@ -64,13 +64,13 @@ def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
     if belt.installed_tension is not None:
         tension = belt.installed_tension
         stretch = float(stretch_under(tension, belt.axial_stiffness))
-        depths = sunk(tension * stretch)
+        depths = penetrations(tension * stretch)
         length = (path.length - float(path.wrap_angles @ depths)) / stretch
     else:
         length = belt.given_length
-        stretch = _stretch(path, belt, contact, sunk(0.0))
+        stretch = _stretch(path, belt, contact, penetrations(0.0))
         tension = max(float(tension_of(stretch, belt.axial_stiffness)), 0.0)
-        depths = sunk(tension * stretch)
+        depths = penetrations(tension * stretch)
     stiffness = contact.stiffness
     if stiffness is None:
         stiffness = tension * stretch / (float(radii.min()) * float(depths.max()))
@@ -85,4 +85,4 @@ def _stretch(path: Path, belt: Belt, contact: Contact, depths: FloatArray) -> fl
     if path.length <= length:
         return path.length / length
     sinking = float(np.sum(path.wrap_angles / np.abs(path.radii))) / contact.stiffness
-    return sunk_stretch(length, path.length, belt.axial_stiffness, sinking)
+    return stretch_with_penetration(length, path.length, belt.axial_stiffness, sinking)

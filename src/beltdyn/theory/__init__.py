@@ -15,6 +15,5 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "sliding_flutter",
         "static_tension",
         "stretch",
-        "sunk_belt",
     ],
 )

@@ -63,3 +63,32 @@ def stretch(tension: ArrayLike, axial_stiffness: float) -> FloatArray:
         np.cosh(np.arccosh(np.maximum(x, 1.0)) / 3.0),
     )
     return np.asarray(2.0 / np.sqrt(3.0) * third)
+
+
+def stretch_with_penetration(length: float, path: float, axial_stiffness: float, sinking: float) -> float:
+    """Stretch g of a belt at rest that sinks into its pulleys: the root of g length + sinking T g = path, T of g.
+
+    Parameters
+    ----------
+    length
+        Of the unstretched belt, m.
+    path
+        Length of the path around the pulleys' rims, m, not below `length`.
+    axial_stiffness
+        EA, N.
+    sinking
+        How much shorter the path becomes for each newton of T g, m/N: the sum over the pulleys of wrap angle / (R k_p)
+        where a belt that presses with T g / R per reference length sinks by T g / (R k_p).
+
+    Returns
+    -------
+    float
+        By Newton's method from path / length: the left side grows with g, ever faster, so that it falls to the root.
+    """
+    g, lower = np.inf, path / length
+    while lower < g:
+        g = lower
+        force = float(tension(g, axial_stiffness))
+        slope = length + sinking * (force + float(tangent_stiffness(g, axial_stiffness)) * g)
+        lower = g - (g * length + sinking * force * g - path) / slope
+    return g
