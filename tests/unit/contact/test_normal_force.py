@@ -41,6 +41,11 @@ def test_cases(penetration: float, rate: float, force: float) -> None:
     assert normal_force(NO_PULL, penetration, rate).force == pytest.approx(force)
 
 
+@pytest.mark.parametrize("rate", [-2.6, 0.0, 5.0])
+def test_a_free_belt_feels_stores_and_resists_nothing(law: NormalParameters, rate: float) -> None:
+    assert tuple(normal_force(law, -1e-9, rate)) == (0.0,) * 5
+
+
 def test_force_has_no_jump_where_the_damper_lets_go() -> None:
     penetration = 1e-4
     rate = -STIFFNESS * penetration / DAMPING
