@@ -30,12 +30,13 @@ def test_every_law_is_tried() -> None:
         (-1e-9, 5.0, 0.0),
         (0.0, 0.0, 0.0),
         (1e-4, 0.0, 100.0),
+        (1e-7, 0.0, 0.1),
         (1e-4, 2.0, 180.0),
         (1e-4, -2.0, 20.0),
         (1e-4, -2.6, 0.0),
         (0.0, 1.0, 40.0),
     ],
-    ids=["free", "touching", "spring", "approaching", "leaving", "leaving fast", "impact"],
+    ids=["free", "touching", "spring", "light", "approaching", "leaving", "leaving fast", "impact"],
 )
 def test_cases(penetration: float, rate: float, force: float) -> None:
     assert normal_force(NO_PULL, penetration, rate).force == pytest.approx(force)
@@ -44,6 +45,11 @@ def test_cases(penetration: float, rate: float, force: float) -> None:
 @pytest.mark.parametrize("rate", [-2.6, 0.0, 5.0])
 def test_a_free_belt_feels_stores_and_resists_nothing(law: NormalParameters, rate: float) -> None:
     assert tuple(normal_force(law, -1e-9, rate)) == (0.0,) * 5
+
+
+def test_a_belt_that_is_let_go_feels_nothing_of_its_springs() -> None:
+    """They stay strained by the penetration."""
+    assert tuple(normal_force(NO_PULL, 1e-4, -2.6)) == pytest.approx((0.0, 0.0, 0.0, 100.0, 0.005), abs=0.0)
 
 
 def test_force_has_no_jump_where_the_damper_lets_go() -> None:
