@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import fill_bernstein
+from beltdyn.contact.bezier import MAX_DEGREE, fill_bernstein
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals, zone_scratch
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import Round
@@ -132,6 +132,14 @@ def test_a_wave_touches_at_each_crest(wave: Callable[[float], FloatArray], sign:
     control = wave(sign)
     assert len(intervals(control)) == 4
     assert_exact(control)
+
+
+def test_a_wave_written_in_the_highest_degree(
+    wave: Callable[[float], FloatArray], elevate: Callable[[FloatArray, int], FloatArray]
+) -> None:
+    raised = elevate(wave(1.0), MAX_DEGREE)
+    assert len(raised) == MAX_DEGREE + 1
+    np.testing.assert_allclose(intervals(raised), intervals(wave(1.0)), atol=1e-11)  # both to 1e-13
 
 
 @pytest.mark.parametrize(("shift", "expected"), [(0.0, [[0.0, 1.0]]), (5.0, np.empty((0, 2)))], ids=["inside", "away"])
