@@ -148,11 +148,10 @@ def _loads(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]
 
 
 def _spans(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
-    names = [pulley.name for pulley in drive.pulleys]
     columns = installation.path.span_lengths, installation.span_tensions, installation.span_frequencies
     return [
         (f"{start} to {end}", f"{length:.5g} m", f"{tension:.4g} N", f"{frequency:.4g} Hz")
-        for start, end, length, tension, frequency in zip(names, names[1:] + names[:1], *columns, strict=True)
+        for (start, end), length, tension, frequency in zip(drive.spans, *columns, strict=True)
     ]
 
 

@@ -25,6 +25,7 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
+from beltdyn.model.end import End, FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.installation import Installation, describe, install, layer_lengths, tensioner_balances
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
@@ -42,7 +43,9 @@ __all__ = [
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
+    "End",
     "Entry",
+    "FixedEnd",
     "FixedTensioner",
     "FrictionClutch",
     "Harmonic",
@@ -54,6 +57,7 @@ __all__ = [
     "OneWayClutch",
     "Path",
     "Profile",
+    "PulledEnd",
     "Pulley",
     "Ramp",
     "Resistance",
@@ -64,6 +68,7 @@ __all__ = [
     "Step",
     "Table",
     "TensionerBalance",
+    "WeightEnd",
     "advise",
     "describe",
     "dumps",

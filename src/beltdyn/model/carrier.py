@@ -74,7 +74,7 @@ def moved(path: Path, carriers: Sequence[Carrier], positions: FloatArray) -> Pat
     centers = path.centers.copy()
     for one, position in zip(carriers, positions, strict=True):
         centers[one.pulley] = one.place(float(position))[0]
-    return Path(centers, path.radii)
+    return Path(centers, path.radii, path.ends)
 
 
 def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley], path: Path) -> None:

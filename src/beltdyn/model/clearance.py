@@ -43,7 +43,7 @@ def crossings(path: Path) -> list[tuple[int, int]]:
     """
     starts, directions, lengths = path.span_points[:, 0], path.span_directions, path.span_lengths
     found = []
-    for one, other in combinations(range(path.count), 2):
+    for one, other in combinations(range(path.spans), 2):
         sine = _cross(directions[one], directions[other])
         between = starts[other] - starts[one]
         if sine != 0.0:
@@ -75,7 +75,7 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
                 return Obstacle("arc", arc, pulley)
     for span, (start, direction) in enumerate(zip(path.span_points[:, 0], path.span_directions, strict=True)):
         for pulley in range(path.count):
-            if pulley in (span, (span + 1) % path.count):
+            if pulley in (span, (span + 1) % path.spans):
                 continue
             across = path.centers[pulley] - start
             nearest = across - np.clip(across @ direction, 0, path.span_lengths[span]) * direction

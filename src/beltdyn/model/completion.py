@@ -1,5 +1,6 @@
 """What follows from a drive as it is given: the length of the belt, the take-up, the stiffness of contact."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import carriers_of, check_tensioners
 from beltdyn.model.contact import Contact
+from beltdyn.model.end import PathEnd, pulling
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.routing import lay_path
@@ -28,11 +30,16 @@ class Given(NamedTuple):
     pulleys: tuple[Pulley, ...]
     contact: Contact
     tensioners: tuple[Tensioner, ...]
+    ends: tuple[PathEnd, ...] = ()
+
+    def path_around(self, pulleys: Sequence[Pulley]) -> Path:
+        """The path of the belt around pulleys, checked."""
+        return lay_path(pulleys, self.belt, self.ends)
 
     def estimate(self, path: Path) -> StaticEstimate:
         """The belt at rest, with spring-loaded tensioners in balance."""
         carriers = carriers_of(self.tensioners, self.names, path)
-        return balance_tensioners(path, self.belt, self.contact, carriers)[0]
+        return balance_tensioners(path, loaded(self.belt, self.ends), self.contact, carriers)[0]
 
     @property
     def names(self) -> list[str]:
@@ -69,6 +76,12 @@ class Completed(NamedTuple):
     """Around these pulleys."""
 
 
+def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
+    """The belt with the tension that a pulled end gives it at rest, or itself without such an end."""
+    tension = pulling(ends)
+    return belt if tension is None else belt.model_copy(update={"installed_tension": tension})
+
+
 def complete(given: Given) -> Completed:
     """Find what a drive leaves open.
 
@@ -90,14 +103,14 @@ def complete(given: Given) -> Completed:
         none can bring the belt to its tension, or they find no balance.
     """
     pulleys = given.pulleys_in_place
-    path = lay_path(pulleys, given.belt)
+    path = given.path_around(pulleys)
     check_tensioners(given.tensioners, pulleys, path)
     belt, contact = given.belt, given.contact
     if belt.length is not None and belt.installed_tension is not None:
         _check_take_up_is_open(given.tensioners)
         given = _tightened(given, path)
         pulleys = given.pulleys_in_place
-        path = lay_path(pulleys, belt)
+        path = given.path_around(pulleys)
     if belt.installed_tension is None and not given.has_springs:
         _check_length(belt.given_length, path.length)
         if contact.stiffness is not None:
@@ -196,7 +209,7 @@ def _tightened(given: Given, path: Path) -> Given:
 
     def excess(distance: float) -> float:
         there = taken_up(distance)
-        return there.estimate(lay_path(there.pulleys_in_place, given.belt)).length - length
+        return there.estimate(there.path_around(there.pulleys_in_place)).length - length
 
     leverage = _leverage(path, given.names.index(fixed.pulley), fixed)
     if abs(leverage) < LEAST_LEVERAGE:
@@ -236,7 +249,7 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
         )
     _check_length(length, path, tensioned=given.has_springs)
     if given.has_springs:
-        _check_place(pulleys, given.belt, estimate.path)
+        _check_place(given, pulleys, estimate.path)
     if not estimate.tension > 0:
         raise ValueError(
             "the belt loses all tension by sinking into the pulleys: it is only "
@@ -244,13 +257,13 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
         )
 
 
-def _check_place(pulleys: tuple[Pulley, ...], belt: Belt, path: Path) -> None:
+def _check_place(given: Given, pulleys: tuple[Pulley, ...], path: Path) -> None:
     """Refuse a place to which springs press their pulleys, but at which the belt could not run."""
     moved = [
         pulley.replace(center=tuple(center)) for pulley, center in zip(pulleys, path.centers.tolist(), strict=True)
     ]
     try:
-        lay_path(moved, belt)
+        given.path_around(moved)
     except ValueError as error:
         raise ValueError(
             f"the tensioners balance the belt only where no belt can run: {error}. Change the preload or the belt's "

@@ -13,11 +13,12 @@ from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of
-from beltdyn.model.completion import Completed, Given, complete, take_up
+from beltdyn.model.completion import Completed, Given, complete, loaded, take_up
 from beltdyn.model.contact import Contact
+from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
-from beltdyn.model.routing import radii
+from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Simulation
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration
@@ -27,8 +28,8 @@ from beltdyn.parts.text_file import parse_toml
 class Drive(Part):
     """A belt drive: what is given, checked, and what follows from it.
 
-    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner`
-    (a list) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
+    The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner` and
+    `end` (lists) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
 
     The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
     the drive: `belt_length`, also of a belt of given tension; `contact_stiffness`, also where a penetration is allowed;
@@ -39,6 +40,9 @@ class Drive(Part):
     pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
     contact: Contact = Field(description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
+    ends: tuple[AnyEnd, ...] = Field(
+        (), alias="end", description="the groups [[end]]: none for a closed belt, the first and the second of an open one"
+    )
     simulation: Simulation = Field(description="the group [simulation]")
     gravity: tuple[Acceleration, Acceleration] = Field(
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
@@ -63,14 +67,40 @@ class Drive(Part):
             )
         return self
 
+    @model_validator(mode="after")
+    def _ends_fit_the_belt(self) -> Self:
+        kind = f'belt.discretization = "{self.belt.discretization}"'
+        if self.ends and self.simulation.joint == "multipliers":
+            raise ValueError('simulation.joint = "multipliers" ties the ends of a belt that has [[end]]. Remove one')
+        if self.ends and not self.belt.element_kind.has_ends:
+            raise ValueError(f'[[end]] does not fit {kind}, whose elements have no ends. Choose "ancf"')
+        if any(end.turning_held for end in self.ends) and self.belt.element_kind.turned < 0:
+            raise ValueError(f'end.clamped does not fit {kind}, whose nodes do not turn. Choose "ancf"')
+        return self
+
+    @property
+    def path_ends(self) -> tuple[PathEnd, ...]:
+        """The ends of an open belt as its path needs them."""
+        return ends_on_path(self.ends, self.gravity)
+
+    @property
+    def spans(self) -> tuple[tuple[str, str], ...]:
+        """Names of what each span leaves and reaches, pulleys or ends; the last span reaches the first pulley."""
+        return tuple(span_names(self.pulleys, self.ends))
+
+    @property
+    def loaded_belt(self) -> Belt:
+        """The belt, with the tension at rest where a pulled end gives it one."""
+        return loaded(self.completed.belt, self.path_ends)
+
     @cached_property
     def completed(self) -> Completed:
         """The parts with nothing left open, as an analysis takes them."""
-        return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners))
+        return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends))
 
     @property
     def belt_length(self) -> float:
-        """Unstretched length of the closed belt, m: as given, or such that the belt has its installed tension.
+        """Unstretched length of the belt, m: as given, or such that the belt has its installed tension.
 
         The latter is an estimate without bending, weight and mesh, until `bring_to_rest` has found the length itself.
         """

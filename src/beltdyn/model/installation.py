@@ -26,7 +26,7 @@ class Installation:
         Tension of the laid belt, N.
     tension : float
         Mean tension of the spans once the belt has sunk into the pulleys, N.
-    span_tensions : ndarray, shape (n,), N
+    span_tensions : ndarray, shape (spans,), N
         Tension of each span: the same in all, but for weight and the mesh.
     penetrations : ndarray, shape (n,), m
         How deep it sinks into each pulley, in the middle of the arc.
@@ -36,7 +36,7 @@ class Installation:
         The path with the tensioners there, before the belt sinks in.
     hub_loads : ndarray, shape (n, 2), N
         Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
-    span_frequencies : ndarray, shape (n,), Hz
+    span_frequencies : ndarray, shape (spans,), Hz
         Lowest frequency at which each span swings across, with the bending stiffness of the belt and its sag.
     """
 
@@ -81,11 +81,11 @@ def install(drive: Drive) -> Installation:
     >>> round(bd.install(drive).tension, 1)  # N
     26.6
     """
-    completed = drive.completed
-    estimate, positions = balance_tensioners(drive.path, completed.belt, completed.contact, drive.carriers)
+    belt, contact = drive.loaded_belt, drive.completed.contact
+    estimate, positions = balance_tensioners(drive.path, belt, contact, drive.carriers)
     path = estimate.path
-    turned = path.span_directions - np.roll(path.span_directions, 1, axis=0)
-    tensions = np.full(path.count, estimate.tension)
+    turned = path.span_directions[: path.count] - np.roll(path.span_directions, 1, axis=0)[: path.count]
+    tensions = np.full(path.spans, estimate.tension)
     return describe(drive, tensions, estimate.penetrations, estimate.tension * turned, positions)
 
 
@@ -133,8 +133,8 @@ def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[
     tuple of tuples of TensionerBalance
         For each tensioner, in ascending order of the positions; without bending stiffness and weight.
     """
-    completed = drive.completed
-    return all_balances(drive.path, completed.belt, completed.contact, drive.carriers, installation.tensioner_positions)
+    belt, contact = drive.loaded_belt, drive.completed.contact
+    return all_balances(drive.path, belt, contact, drive.carriers, installation.tensioner_positions)
 
 
 def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatArray:

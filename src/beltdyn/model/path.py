@@ -2,23 +2,25 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, IntArray
 
 _ROUNDING = 1e-12  # rad: a turning angle this far below zero is zero
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A closed path of straight spans and circular arcs, run counter-clockwise.
+    """A path of straight spans and circular arcs: closed, and run counter-clockwise, or from one end to another.
 
-    Span i leaves pulley i and reaches pulley i + 1 (the last one reaches pulley 0). Arc lengths start with
-    zero where the belt leaves pulley 0, and follow span 0, the arc of pulley 1, span 1, and so on to the arc of
-    pulley 0. A pulley with the belt around its outside has a positive radius; a negative radius means that the
-    pulley turns clockwise.
+    Span i leaves pulley i and reaches pulley i + 1; the last span reaches pulley 0. Arc lengths of a closed path start
+    with zero where the belt leaves pulley 0, and follow span 0, the arc of pulley 1, span 1, and so on to the arc of
+    pulley 0. An open path has one span more than pulleys: span n - 1 leaves the last pulley for the second end, and
+    span n comes from the first end. Its arc lengths start there. A pulley with the belt around its outside has a
+    positive radius; a negative radius means that the pulley turns clockwise.
 
     Parameters
     ----------
@@ -26,6 +28,8 @@ class Path:
         Centers of the pulleys in the order in which the belt meets them.
     radii : ndarray, shape (n,), m
         Signed radii.
+    ends : ndarray, shape (2, 2), m, optional
+        Where an open path begins and where it ends; none for a closed path.
 
     Raises
     ------
@@ -35,30 +39,38 @@ class Path:
 
     centers: FloatArray
     radii: FloatArray
+    ends: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        distance = np.linalg.norm(np.roll(self.centers, -1, axis=0) - self.centers, axis=1)
-        if np.any(distance <= np.abs(np.roll(self.radii, -1) - self.radii)):
+        centers, radii = _circles(self.centers, self.radii, self.ends)
+        distance = np.linalg.norm(np.roll(centers, -1, axis=0) - centers, axis=1)
+        apart = distance <= np.abs(np.roll(radii, -1) - radii)
+        if np.any(_of_belt(apart, self.ends, axis=0)):
             raise ValueError("two successive pulleys have no common tangent")
 
     @property
     def count(self) -> int:
-        """Number n of pulleys, which is the number of spans."""
+        """Number n of pulleys."""
         return len(self.radii)
+
+    @property
+    def spans(self) -> int:
+        """Number of spans: n, or n + 1 of an open path."""
+        return self.count + (self.ends is not None)
 
     @cached_property
     def span_directions(self) -> FloatArray:
-        """Unit vectors u along the spans, shape (n, 2)."""
-        return span_directions(self.centers, self.radii)
+        """Unit vectors u along the spans, shape (spans, 2)."""
+        return span_directions(self.centers, self.radii, self.ends)
 
     @cached_property
     def span_points(self) -> FloatArray:
-        """Start and end point of each span, shape (n, 2, 2), m: the tangent points on its two pulleys."""
-        return span_points(self.centers, self.radii)
+        """Start and end point of each span, shape (spans, 2, 2), m: tangent points on pulleys, or ends of the path."""
+        return span_points(self.centers, self.radii, self.ends)
 
     @cached_property
     def span_lengths(self) -> FloatArray:
-        """Lengths of the spans, shape (n,), m."""
+        """Lengths of the spans, shape (spans,), m."""
         return np.asarray(np.linalg.norm(self.span_points[:, 1] - self.span_points[:, 0], axis=1))
 
     @cached_property
@@ -68,7 +80,7 @@ class Path:
 
     @property
     def total_turning(self) -> float:
-        """Angle through which the tangent turns in one round, rad: 2 pi for a path without loops."""
+        """Angle through which the tangent turns, rad: 2 pi in one round of a closed path without loops."""
         return float(np.sum(self.wrap_angles * np.sign(self.radii)))
 
     @property
@@ -94,10 +106,20 @@ class Path:
         return np.asarray(self.span_directions[pulley - 1] - self.span_directions[pulley])
 
     @cached_property
+    def order(self) -> IntArray:
+        """Numbers of the spans in the order of arc lengths, shape (spans,)."""
+        first = 0 if self.ends is None else self.count
+        return (np.arange(self.spans) + first) % self.spans
+
+    @cached_property
     def _starts(self) -> FloatArray:
-        """Arc lengths where the pieces start, and the total, shape (2 n + 1,): span 0, arc 1, span 1, ..., arc 0."""
-        arcs = np.roll(self.wrap_angles * np.abs(self.radii), -1)
-        pieces = np.stack([self.span_lengths, arcs], axis=1).ravel()
+        """Arc lengths where the pieces start, and the total, shape (2 spans + 1,): a span, the arc behind it, and so on.
+
+        No arc is behind the last span of an open path: its length is zero.
+        """
+        arcs = np.zeros(self.spans)
+        arcs[: self.count] = self.wrap_angles * np.abs(self.radii)
+        pieces = np.stack([self.span_lengths, np.roll(arcs, -1)], axis=1)[self.order].ravel()
         return np.concatenate([[0.0], np.cumsum(pieces)])
 
     def position(self, s: ArrayLike) -> FloatArray:
@@ -106,7 +128,7 @@ class Path:
         Parameters
         ----------
         s : array_like, shape (k,), m
-            Arc lengths, periodic in the length of the path.
+            Arc lengths, periodic in the length of a closed path.
 
         Returns
         -------
@@ -120,7 +142,7 @@ class Path:
         Parameters
         ----------
         s : array_like, shape (k,), m
-            Arc lengths, periodic in the length of the path.
+            Arc lengths, periodic in the length of a closed path.
 
         Returns
         -------
@@ -134,7 +156,7 @@ class Path:
         Parameters
         ----------
         s : array_like, shape (k,), m
-            Arc lengths, periodic in the length of the path.
+            Arc lengths, periodic in the length of a closed path.
 
         Returns
         -------
@@ -144,13 +166,15 @@ class Path:
 
     def _trace(self, s: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Points, tangents and their rates: a piece starts at p with a tangent u and has the curvature 1/r or 0."""
-        reduced = np.mod(np.asarray(s, dtype=float), self.length)
-        piece = np.clip(np.searchsorted(self._starts, reduced, side="right") - 1, 0, 2 * self.count - 1)
+        s = np.asarray(s, dtype=float)
+        reduced = np.mod(s, self.length) if self.ends is None else np.clip(s, 0.0, self.length)
+        pieces = 2 * self.spans - (self.ends is not None)
+        piece = np.clip(np.searchsorted(self._starts, reduced, side="right") - 1, 0, pieces - 1)
         along = reduced - self._starts[piece]
-        span, on_arc = piece // 2, piece % 2 == 1
+        span, on_arc = self.order[piece // 2], piece % 2 == 1
         start = np.where(on_arc[:, None], self.span_points[span, 1], self.span_points[span, 0])
         forward = self.span_directions[span]
-        radius = np.roll(self.radii, -1)[span]
+        radius = np.append(self.radii, 1.0)[(span + 1) % self.spans]
         angle = np.where(on_arc, along / radius, 0.0)[:, None]
         cosine, sine = np.cos(angle), np.sin(angle)
         tangents = cosine * forward + sine * _left(forward)
@@ -160,8 +184,8 @@ class Path:
         return np.where(on_arc[:, None], on_circle, on_line), tangents, bends
 
 
-def span_directions(centers: FloatArray, radii: FloatArray) -> FloatArray:
-    """Unit vectors u along the spans of paths around the same pulleys, shape (..., n, 2).
+def span_directions(centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None) -> FloatArray:
+    """Unit vectors u along the spans of paths around the same pulleys, shape (..., spans, 2).
 
     With the left normal n of u, a tangent point is c - r n, so that n . (c_j - c_i) = r_j - r_i.
 
@@ -171,28 +195,49 @@ def span_directions(centers: FloatArray, radii: FloatArray) -> FloatArray:
         Centers of the pulleys.
     radii : ndarray, shape (n,), m
         Signed radii.
+    ends : ndarray, shape (2, 2), m, optional
+        Of open paths.
     """
-    between = np.roll(centers, -1, axis=-2) - centers
-    distance = np.linalg.norm(between, axis=-1, keepdims=True)
-    along = between / distance
-    sine = (np.roll(radii, -1) - radii)[:, None] / distance
-    return np.asarray(np.sqrt(1 - sine**2) * along - sine * _left(along))
+    return _of_belt(_directions(*_circles(centers, radii, ends)), ends, axis=-2)
 
 
-def span_points(centers: FloatArray, radii: FloatArray) -> FloatArray:
-    """Tangent points where spans start and end, shape (..., n, 2, 2), m; arguments as for `span_directions`."""
-    normals = _left(span_directions(centers, radii))
+def span_points(centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None) -> FloatArray:
+    """Points where spans start and end, shape (..., spans, 2, 2), m; arguments as for `span_directions`."""
+    centers, radii = _circles(centers, radii, ends)
+    normals = _left(_directions(centers, radii))
     starts = centers - radii[:, None] * normals
-    ends = np.roll(centers, -1, axis=-2) - np.roll(radii, -1)[:, None] * normals
-    return np.stack([starts, ends], axis=-2)
+    stops = np.roll(centers, -1, axis=-2) - np.roll(radii, -1)[:, None] * normals
+    return _of_belt(np.stack([starts, stops], axis=-2), ends, axis=-3)
 
 
 def wrap_angles(directions: FloatArray, radii: FloatArray) -> FloatArray:
     """Angles over which belts touch each pulley, shape (..., n), rad, from `span_directions`."""
-    before, after = np.roll(directions, 1, axis=-2), directions
+    before, after = np.roll(directions, 1, axis=-2)[..., : len(radii), :], directions[..., : len(radii), :]
     sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
     turning = np.arctan2(sine, np.sum(before * after, axis=-1)) * np.sign(radii)
     return np.asarray(np.where(turning > -_ROUNDING, np.maximum(turning, 0.0), turning + 2 * np.pi))
+
+
+def _circles(centers: FloatArray, radii: FloatArray, ends: FloatArray | None) -> tuple[FloatArray, FloatArray]:
+    """Circles that follow each other in a round: the pulleys, then the second and the first end with radius zero."""
+    if ends is None:
+        return centers, radii
+    points = np.broadcast_to(ends[::-1], (*centers.shape[:-2], 2, 2))
+    return np.concatenate([centers, points], axis=-2), np.concatenate([radii, np.zeros(2)])
+
+
+def _of_belt(values: NDArray[Any], ends: FloatArray | None, axis: int) -> NDArray[Any]:
+    """Values of spans without that from the second end to the first one, where there is no belt."""
+    return values if ends is None else np.delete(values, -2, axis)
+
+
+def _directions(centers: FloatArray, radii: FloatArray) -> FloatArray:
+    """Unit vectors from each circle to the next, along the common tangent."""
+    between = np.roll(centers, -1, axis=-2) - centers
+    distance = np.maximum(np.linalg.norm(between, axis=-1, keepdims=True), np.finfo(float).tiny)
+    along = between / distance
+    sine = (np.roll(radii, -1) - radii)[:, None] / distance
+    return np.asarray(np.sqrt(1 - sine**2) * along - sine * _left(along))
 
 
 def _left(vectors: FloatArray) -> FloatArray:

@@ -9,6 +9,8 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.clearance import Surroundings, crossings, obstacle
+from beltdyn.model.end import End, PathEnd
+from beltdyn.model.open_path import open_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 
@@ -23,7 +25,7 @@ class _Fault(NamedTuple):
     """None where it is worth a search."""
 
 
-def lay_path(pulleys: Sequence[Pulley], belt: Belt) -> Path:
+def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
     """Lay a path around pulleys in the order in which the belt meets them, and check that it is one.
 
     Parameters
@@ -32,6 +34,8 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt) -> Path:
         In the order in which the belt meets them when it turns those on its inside counter-clockwise.
     belt : Belt
         What it adds to the radii, and whether its spans may cross.
+    ends : sequence of PathEnd
+        First and second end of an open belt, none for a closed one.
 
     Returns
     -------
@@ -40,20 +44,30 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt) -> Path:
     Raises
     ------
     ValueError
-        If there are fewer than two pulleys, names are used twice, pulleys overlap or are too close for the belt to
+        If there are fewer than two pulleys (one for an open belt), names are used twice, pulleys overlap or are too close for the belt to
         pass between them, the order or a side is wrong, or the belt misses a pulley, would run through one, or
         through itself.
     """
-    if len(pulleys) < 2:
-        raise ValueError(f"the drive has {len(pulleys)} pulley: a belt drive needs two or more. Add a [[pulley]]")
-    _check_names(pulleys)
+    if not ends and len(pulleys) < 2:
+        raise ValueError(f"the drive has {len(pulleys)} pulley: a closed belt needs two or more. Add a [[pulley]]")
+    if not pulleys:
+        raise ValueError("the drive has no pulley: a belt with ends needs one or more. Add a [[pulley]]")
+    _check_names([*pulleys, *ends])
     _check_distances(pulleys)
-    _check_tangents(pulleys, belt)
-    path = trace(pulleys, belt)
-    fault = next(_faults(pulleys, belt, path), None)
+    _check_tangents(pulleys, belt, ends)
+    path = trace(pulleys, belt, ends)
+    fault = next(_faults(pulleys, belt, path, ends), None)
     if fault:
-        raise ValueError(f"{fault.rule}. {fault.remedy or _remedy(pulleys, belt)}")
+        raise ValueError(f"{fault.rule}. {fault.remedy or _remedy(pulleys, belt, ends)}")
     return path
+
+
+def span_names(pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End]) -> list[tuple[str, str]]:
+    """Names of what each span leaves and reaches, pulleys or ends, in the order of `Path`."""
+    names = [pulley.name for pulley in pulleys]
+    if not ends:
+        return list(zip(names, [*names[1:], names[0]], strict=True))
+    return [*pairwise([*names, ends[1].name]), (ends[0].name, names[0])]
 
 
 def radii(pulleys: Sequence[Pulley], belt: Belt) -> FloatArray:
@@ -61,14 +75,15 @@ def radii(pulleys: Sequence[Pulley], belt: Belt) -> FloatArray:
     return np.array([pulley.radius + belt.offset(pulley.side) for pulley in pulleys])
 
 
-def trace(pulleys: Sequence[Pulley], belt: Belt) -> Path:
+def trace(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
     """Path around pulleys, without a check."""
     turning = np.array([pulley.turning for pulley in pulleys])
-    return Path(np.array([pulley.center for pulley in pulleys]), turning * radii(pulleys, belt))
+    centers, signed = np.array([pulley.center for pulley in pulleys]), turning * radii(pulleys, belt)
+    return open_path(centers, signed, ends, belt) if ends else Path(centers, signed)
 
 
-def _check_names(pulleys: Sequence[Pulley]) -> None:
-    names = [pulley.name for pulley in pulleys]
+def _check_names(parts: Sequence[Pulley | PathEnd]) -> None:
+    names = [part.name for part in parts]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f'pulley.name = "{name}" is used {names.count(name)} times: names must differ. Rename one')
@@ -84,9 +99,17 @@ def _check_distances(pulleys: Sequence[Pulley]) -> None:
             )
 
 
-def _check_tangents(pulleys: Sequence[Pulley], belt: Belt) -> None:
-    """Where the belt changes sides it runs between two pulleys; elsewhere there always is a tangent."""
-    for one, other in pairwise([*pulleys, pulleys[0]]):
+def _check_tangents(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> None:
+    """Where the belt changes sides it runs between two pulleys; elsewhere there always is a tangent but from an end."""
+    for end, pulley in zip(ends, (pulleys[0], pulleys[-1]), strict=False):
+        needed = pulley.radius + belt.offset(pulley.side)
+        distance = needed if end.point is None else np.hypot(*np.subtract(end.point, pulley.center))
+        if distance < needed:
+            raise ValueError(
+                f'end "{end.name}" lies within pulley "{pulley.name}": it is {distance:.5g} m from the center, where '
+                f"the belt runs at {needed:.5g} m. Move it away from the pulley"
+            )
+    for one, other in pairwise([*pulleys, *([] if ends else pulleys[:1])]):
         if one.side == other.side:
             continue
         distance = np.hypot(*np.subtract(one.center, other.center))
@@ -99,9 +122,10 @@ def _check_tangents(pulleys: Sequence[Pulley], belt: Belt) -> None:
             )
 
 
-def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path) -> Iterator[_Fault]:
+def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path, ends: Sequence[PathEnd]) -> Iterator[_Fault]:
     """Reasons why a path is none that a belt can take, each found when it is asked for."""
-    if not belt.crossed and all(pulley.side == "inside" for pulley in pulleys):
+    names = span_names(pulleys, ends)
+    if not ends and not belt.crossed and all(pulley.side == "inside" for pulley in pulleys):
         yield from _disorder(pulleys, path)
     for pulley, wrap in zip(pulleys, path.wrap_angles, strict=True):
         if wrap < _LEAST_WRAP or wrap > 2 * np.pi - _LEAST_WRAP:
@@ -113,12 +137,12 @@ def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path) -> Iterator[_Faul
             'Remove it, or set side = "outside" for the pulleys between two crossings, which turn clockwise',
         )
     if crossing and not belt.crossed:
-        one, other = (_span(pulleys, span) for span in crossing[0])
+        one, other = ('the span from "{}" to "{}"'.format(*names[span]) for span in crossing[0])
         yield _Fault(f"the belt would cross itself: {one} meets {other}", None)
-    if not belt.crossed and abs(path.total_turning - 2 * np.pi) > _ROUNDING:
+    if not ends and not belt.crossed and abs(path.total_turning - 2 * np.pi) > _ROUNDING:
         turns = round(path.total_turning / (2 * np.pi))
         yield _Fault(f"the belt would turn {turns} times counter-clockwise in one round, not once", None)
-    yield from _collisions(pulleys, belt, path)
+    yield from _collisions(pulleys, belt, path, names)
 
 
 def _disorder(pulleys: Sequence[Pulley], path: Path) -> Iterator[_Fault]:
@@ -153,30 +177,33 @@ def _missed(pulley: Pulley) -> _Fault:
     )
 
 
-def _collisions(pulleys: Sequence[Pulley], belt: Belt, path: Path) -> Iterator[_Fault]:
+def _collisions(
+    pulleys: Sequence[Pulley], belt: Belt, path: Path, spans: Sequence[tuple[str, str]]
+) -> Iterator[_Fault]:
     around = Surroundings(np.array([pulley.radius for pulley in pulleys]), belt.pitch_offset, belt.back_offset)
     found = obstacle(path, around)
     if found is None:
         return
-    one, other = pulleys[found.number].name, pulleys[found.pulley].name
+    other = pulleys[found.pulley].name
     if found.piece == "arc":
+        one = pulleys[found.number].name
         yield _Fault(f'the belt on "{one}" would run through pulley "{other}"', "Move them apart, or make one smaller")
-    following = pulleys[(found.number + 1) % len(pulleys)].name
+    one, following = spans[found.number]
     yield _Fault(
         f'the belt between "{one}" and "{following}" would run through pulley "{other}"',
         "Move it, or list the pulleys in the order in which the belt meets them",
     )
 
 
-def _remedy(pulleys: Sequence[Pulley], belt: Belt) -> str:
+def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> str:
     """What makes a path without crossings, or that a belt may cross itself."""
     tried = pulleys if len(pulleys) <= _MOST_TO_TRY else ()
     wishes = [
         wish
         for changes in (_other_lists(tried), _fewer(tried))
-        if (wish := next((wish for wish, changed in changes if _fits(changed, belt)), None))
+        if (wish := next((wish for wish, changed in changes if _fits(changed, belt, ends)), None))
     ]
-    if _fits(pulleys, belt.model_copy(update={"crossed": True})):
+    if _fits(pulleys, belt.model_copy(update={"crossed": True}), ends):
         wishes.append("set belt.crossed = true if spans shall cross each other")
     text = ", or ".join(wishes) or "check the order of the pulleys, and which side of the belt touches each"
     return text[0].upper() + text[1:]
@@ -205,17 +232,16 @@ def _fewer(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]]:
         yield wish, [*pulleys[:index], *pulleys[index + 1 :]]
 
 
-def _fits(pulleys: Sequence[Pulley], belt: Belt) -> bool:
+def _fits(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> bool:
     """Tell whether a belt can run around pulleys that do not overlap."""
+    if len(pulleys) < (1 if ends else 2):
+        return False
     try:
-        _check_tangents(pulleys, belt)
+        _check_tangents(pulleys, belt, ends)
+        path = trace(pulleys, belt, ends)
     except ValueError:
         return False
-    return len(pulleys) > 1 and next(_faults(pulleys, belt, trace(pulleys, belt)), None) is None
-
-
-def _span(pulleys: Sequence[Pulley], span: int) -> str:
-    return f'the span from "{pulleys[span].name}" to "{pulleys[(span + 1) % len(pulleys)].name}"'
+    return next(_faults(pulleys, belt, path, ends), None) is None
 
 
 def _listed(pulleys: Iterable[Pulley]) -> str:

@@ -17,17 +17,17 @@ def element_lengths(dataset: xr.Dataset, belt_length: float) -> FloatArray:
     Parameters
     ----------
     dataset : xarray.Dataset
-        A result; only ``node_coordinate`` is used.
+        A result; only ``node_coordinate`` and the number of elements are used.
     belt_length : float
-        Unstretched length of the closed belt, m.
+        Unstretched length of the belt, m.
 
     Returns
     -------
     ndarray, shape (elements,)
-        Lengths between a node and the next around the belt, m.
+        Lengths between a node and the next along the belt, m.
     """
     nodes = dataset["node_coordinate"].values
-    return np.diff(nodes, append=nodes[0] + belt_length)
+    return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
 
 def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:
@@ -39,8 +39,8 @@ def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, 
         Of the belt: ``drive.belt.element_kind``.
     coordinates : ndarray, shape (nodes, k)
         Nodal coordinates of a result: positions (m) first.
-    lengths : ndarray, shape (nodes,)
-        Reference length from each node to the next around the belt, m.
+    lengths : ndarray, shape (elements,)
+        Reference length from each node to the next along the belt, m.
     points : int
         Points on a curve, ends included.
 
@@ -50,9 +50,10 @@ def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, 
         Points on the curve that begins at each node, m.
     """
     first = coordinates.reshape(-1, kind.dof)
-    element = np.hstack([first, np.roll(first, -1, axis=0)])
+    elements = len(lengths) // kind.points
+    element = np.hstack([first, np.roll(first, -1, axis=0)])[:elements]
     vectors = np.stack([element[:, start : start + 2] for start in kind.vectors], axis=1)
-    control = np.stack([kind.control(float(np.sum(length))) for length in lengths.reshape(len(first), -1)])
+    control = np.stack([kind.control(float(np.sum(length))) for length in lengths.reshape(elements, -1)])
     degree, xi = control.shape[2] - 1, np.linspace(0.0, 1.0, points)[:, None]
     order = np.arange(degree + 1)
     weights = BINOMIALS[degree, order] * xi**order * (1.0 - xi) ** (degree - order)

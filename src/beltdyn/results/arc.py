@@ -23,9 +23,9 @@ def arc_ends(drive: Drive, centers: FloatArray) -> tuple[FloatArray, FloatArray]
     inlet, wrap : ndarray, shape (..., pulleys)
         Angle of the tangent point where the span before each pulley ends, from the x axis; wrap angle; rad.
     """
-    radii = drive.path.radii
-    reached = np.roll(span_points(centers, radii)[..., 1, :], 1, axis=-2) - centers
-    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, radii), radii)
+    radii, ends = drive.path.radii, drive.path.ends
+    reached = np.roll(span_points(centers, radii, ends)[..., 1, :], 1, axis=-2)[..., : len(radii), :] - centers
+    return np.arctan2(reached[..., 1], reached[..., 0]), wrap_angles(span_directions(centers, radii, ends), radii)
 
 
 def angle_from_inlet(place: FloatArray, inlet: ArrayLike, wrap: ArrayLike, turning: ArrayLike) -> FloatArray:

@@ -1,6 +1,7 @@
 """Formulas of belt drives on plain arrays, for the summary and for whatever is derived from a dataset.
 
-Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i and reaches pulley i + 1.
+Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i and reaches pulley i + 1; the
+last one reaches pulley 0.
 """
 
 import numpy as np
@@ -44,20 +45,23 @@ def slip(rim: FloatArray) -> FloatArray:
     return relative_loss(rim[..., :1] - rim, rim)
 
 
-def across(spans: FloatArray) -> tuple[FloatArray, FloatArray]:
+def across(spans: FloatArray, drive: Drive) -> tuple[FloatArray, FloatArray]:
     """Values of the spans before and after every pulley.
 
     Parameters
     ----------
     spans : ndarray, shape (..., spans)
         A value of every span.
+    drive : Drive
+        The drive.
 
     Returns
     -------
     before, after : ndarray, shape (..., pulleys)
         Of the spans that reach and leave each pulley, in the direction of ascending belt coordinate.
     """
-    return np.roll(spans, 1, axis=-1), spans
+    pulleys = len(drive.pulleys)
+    return np.roll(spans, 1, axis=-1)[..., :pulleys], spans[..., :pulleys]
 
 
 def capstan_margin(tension: FloatArray, belt_speed: FloatArray, wrap: FloatArray, drive: Drive) -> FloatArray:
@@ -80,8 +84,8 @@ def capstan_margin(tension: FloatArray, belt_speed: FloatArray, wrap: FloatArray
     drive : Drive
         Friction and mass per length.
     """
-    before, after = across(tension)
-    lifted = 0.5 * drive.belt.mass_per_length * sum(speed**2 for speed in across(belt_speed))
+    before, after = across(tension, drive)
+    lifted = 0.5 * drive.belt.mass_per_length * sum(speed**2 for speed in across(belt_speed, drive))
     largest = np.maximum(before + after - 2.0 * lifted, 0.0) * np.tanh(0.5 * drive.frictions * wrap)
     load = np.abs(before - after)
     loaded = load > UNLOADED * np.abs(before + after)

@@ -29,13 +29,16 @@ def mid_span_displacements(drive: Drive, centers: FloatArray, places: FloatArray
     ndarray, shape (k, spans)
         m, to the left of the direction of ascending belt coordinate; NaN where the belt has left a pulley.
     """
-    result = np.full(centers.shape[:2], np.nan)
-    fill_mid_spans(span_points(centers, drive.path.radii), np.ascontiguousarray(places), touched, result)
+    lines = span_points(centers, drive.path.radii, drive.path.ends)
+    result = np.full(lines.shape[:2], np.nan)
+    fill_mid_spans(lines, np.ascontiguousarray(places), touched, centers.shape[1], result)
     return result
 
 
 @kernel
-def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, result: FloatArray) -> None:
+def fill_mid_spans(
+    lines: FloatArray, places: FloatArray, touched: IntArray, pulleys: int, result: FloatArray
+) -> None:
     """Find where the free belt crosses the middles of spans.
 
     Parameters
@@ -44,19 +47,25 @@ def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, res
         Ends of the straight spans, m.
     places, touched
         As for `mid_span_displacements`.
+    pulleys
+        Number of pulleys; an open belt has one span more.
     result : ndarray, shape (k, spans)
         Overwritten where the belt does cross, m.
     """
     spans, count = lines.shape[1], touched.shape[1]
+    is_open = spans > pulleys
     for k in range(touched.shape[0]):
         first = 0
         while first < count and touched[k, first] < 0:
             first += 1
-        if first == count:
+        if is_open:
+            before, start, last = pulleys, -1, count
+        elif first < count:
+            before, start, last = touched[k, first], first, first + count
+        else:
             continue
-        before, start = touched[k, first], first
-        for walk in range(first + 1, first + 1 + count):
-            after = touched[k, walk % count]
+        for walk in range(start + 1, last + 1):
+            after = pulleys if is_open and walk == count else touched[k, walk % count]
             if after < 0:
                 continue
             if after == (before + 1) % spans:

@@ -104,11 +104,11 @@ def _sizes(drive: Drive) -> dict[str, int]:
     points = 2 if drive.contact.sampling == "nodal" else drive.contact.quadrature_points
     return {
         "pulley": pulleys,
-        "span": pulleys,
+        "span": drive.path.spans,
         "tensioner": len(drive.moving_tensioners),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),
-        "node": kind.points * (belt.elements + (drive.simulation.joint == "multipliers")),
+        "node": kind.points * (belt.elements + (bool(drive.ends) or drive.simulation.joint == "multipliers")),
         "element": curves,
         "contact_point": points * curves,
         "arc_part": ARC_PARTS,

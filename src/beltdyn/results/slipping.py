@@ -39,7 +39,7 @@ def slip_parts(
     stretched = np.max(tension, axis=-1) / drive.belt.axial_stiffness * drive.belt_length
     runs = np.abs(rim[..., 0]) * elapsed > np.maximum(stretched, 0.0)
     rim = np.where(runs[..., None], rim, 0.0)
-    before, after = across(tension)
+    before, after = across(tension, drive)
     reached = stretch(np.where(rim[..., :1] > 0.0, before, after), drive.belt.axial_stiffness)
     total, sliding = slip(rim), relative_loss(gross - gross[..., :1], rim)
     elastic = np.where(runs[..., None], 1.0 - reached / reached[..., :1], np.nan)

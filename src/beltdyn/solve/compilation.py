@@ -52,7 +52,7 @@ def _compile_observing(system: System) -> None:
     observe(system, time, states, states)
     touch, work = Touch(time, places, places, touched, states), np.empty((0, 0, ARC_PARTS + 1))
     add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, np.empty((2, 0, 0)), states, work)
-    fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, states)
+    fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, 0, states)
 
 
 def compile_solving(system: System, state: State) -> None:

@@ -182,7 +182,7 @@ def _lying(drive: Drive, system: System, installation: Installation, factor: flo
     """
     path = installation.path
     depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
-    drawn_in = BeltPath(path.centers, path.radii - depth * np.sign(path.radii))
+    drawn_in = BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
     return laid(system, drawn_in, installation.tensioner_positions)
 
 

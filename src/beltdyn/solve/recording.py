@@ -322,7 +322,7 @@ def result_layout(drive: Drive, system: System) -> Layout:
         Belt coordinates run from node 0 in the direction of motion.
     """
     names = tuple(pulley.name for pulley in drive.pulleys)
-    spans = tuple(f"{a}-{b}" for a, b in zip(names, (*names[1:], names[0]), strict=True))
+    spans = tuple(f"{a}-{b}" for a, b in drive.spans)
     lengths = curve_lengths(system)
     starts = np.cumsum(lengths) - lengths
     return Layout(

@@ -1,7 +1,7 @@
 """From the model, which a user describes, to the arrays, on which the kernels work."""
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -44,17 +44,18 @@ def drive_system(drive: Drive) -> System:
     Returns
     -------
     System
-        Its belt, closed as ``drive.simulation.joint`` says, and its pulleys.
+        Its belt, with its ends or closed as ``drive.simulation.joint`` says, and its pulleys.
     """
     completed = drive.completed
     return belt_system(
         completed.belt,
         completed.pulleys,
         completed.contact,
-        drive.simulation.joint,
+        "open" if drive.ends else drive.simulation.joint,
         tensioners=completed.tensioners,
         path=completed.path,
         gravity=drive.gravity,
+        **_at_ends(drive),
     )
 
 
@@ -70,6 +71,7 @@ def belt_system(
     fixed: Sequence[tuple[int, int]] = (),
     forces: Sequence[tuple[int, tuple[float, float]]] = (),
     moments: Sequence[tuple[int, float]] = (),
+    masses: Sequence[tuple[int, float]] = (),
 ) -> System:
     """Arrays of any belt: closed or open, on pulleys or not, with nodes fixed, loaded or free.
 
@@ -96,6 +98,8 @@ def belt_system(
     moments
         Pairs (node, moment), N m, counter-clockwise positive; a moment turns a vector of its node, the section
         r_y of the paper's element.
+    masses
+        Pairs (end, mass), kg: what moves with the first (0) or the last (-1) node of an open belt.
 
     Returns
     -------
@@ -121,6 +125,7 @@ def belt_system(
             'Leave them out, or choose discretization = "ancf".'
         )
     mesh = discretize(belt)
+    _attach(mesh.mass, masses)
     elements = mesh.length.size
     nodes = elements if closure == "shared_node" else elements + 1
     radii = effective_radii(pulleys, belt)
@@ -220,6 +225,26 @@ def _bodies(
         unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
         reach=np.concatenate([radii, chains, tensioner_reaches(pulleys, tensioners)]),
     )
+
+
+def _at_ends(drive: Drive) -> dict[str, Any]:
+    """Keywords of `belt_system` for the ends of an open belt."""
+    ends, turned = tuple(zip((0, -1), drive.ends, strict=False)), drive.belt.element_kind.turned
+    held = [(node, c) for node, end in ends if end.held for c in (0, 1)]
+    clamped = [(node, turned + c) for node, end in ends if end.turning_held for c in (0, 1)]
+    return {
+        "fixed": held + clamped,
+        "forces": [(node, end.force) for node, end in ends],
+        "masses": [(node, end.attached_mass) for node, end in ends],
+    }
+
+
+def _attach(mass: FloatArray, attached: Sequence[tuple[int, float]]) -> None:
+    """Add masses at ends of the belt to the mass matrices of the elements there, shape (elements, 2 n, 2 n)."""
+    second = mass.shape[-1] // 2
+    for end, value in attached:
+        for row in np.arange(2) + (0 if end == 0 else second):
+            mass[end, row, row] += value
 
 
 def _supports(

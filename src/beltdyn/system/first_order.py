@@ -128,10 +128,16 @@ class FirstOrder:
 
     @cached_property
     def _flexibility(self) -> FloatArray:
-        """Accelerations of the nodes by the forces on them: inverse mass matrix, or first bracket of Eq. 26."""
+        """Accelerations of the nodes by the forces on them: inverse mass matrix, or first bracket of Eq. 26.
+
+        Fixed coordinates have none.
+        """
         if self._system.joint:
             return joint_constraint(self._system).by_force
-        return np.asarray(np.linalg.inv(mass_matrix(self._system)), dtype=np.float64)
+        moving, mass = np.flatnonzero(~self._system.supports.fixed), mass_matrix(self._system)
+        flexibility = np.zeros_like(mass)
+        flexibility[np.ix_(moving, moving)] = np.linalg.inv(mass[np.ix_(moving, moving)])
+        return flexibility
 
     @cached_property
     def _free(self) -> IntArray:

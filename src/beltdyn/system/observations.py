@@ -14,7 +14,7 @@ class Per(NamedTuple):
     """What an observation has a value for, at every state."""
 
     dims: tuple[str, ...] = ()
-    """Names out of "pulley" (and span), "curve" of the belt, "point" of contact, and "axis"."""
+    """Names out of "pulley", "span", "curve" of the belt, "point" of contact, and "axis"."""
     shown: bool = False
     """Whether it is there for the states alone that are shown."""
     dtype: type = float
@@ -23,6 +23,7 @@ class Per(NamedTuple):
 OfState = Annotated[FloatArray, Per()]
 OfShownState = Annotated[FloatArray, Per(shown=True)]
 OfPulley = Annotated[FloatArray, Per(("pulley",))]
+OfSpan = Annotated[FloatArray, Per(("span",))]
 OfPulleyByAxis = Annotated[FloatArray, Per(("pulley", "axis"))]
 OfShownCurve = Annotated[FloatArray, Per(("curve",), shown=True)]
 OfPoint = Annotated[FloatArray, Per(("point",))]
@@ -51,9 +52,10 @@ class Observations(NamedTuple):
     """Mean axial force of each curve, N."""
     tension_variation: OfShownCurve
     """Root mean square deviation of the axial force within each curve from that mean, N."""
-    span_tension: OfPulley
-    """Mean axial force of the free belt after each pulley, N; nan where the belt does not leave it."""
-    belt_speed: OfPulley
+    span_tension: OfSpan
+    """Mean axial force of the free belt after each pulley, N; nan where the belt does not leave it. The last span of an
+    open belt is the one before the first pulley."""
+    belt_speed: OfSpan
     """Mean speed along the belt of the same, m/s."""
     normal_force: OfPoint
     """N/m."""
@@ -74,7 +76,7 @@ class Observations(NamedTuple):
     spring_energy: OfState
     """Of hub chains and tensioners, J."""
     potential_energy: OfState
-    """Of weight, zero where everything is at the origin, J."""
+    """Of weight and of forces on the belt's ends, zero where everything is at the origin, J."""
 
 
 OBSERVED: Mapping[str, Per] = {
@@ -103,6 +105,11 @@ class Samples(NamedTuple):
     contact: np.record
 
 
+def span_count(system: System) -> int:
+    """Number of spans: one for each pulley, and one more of an open belt."""
+    return system.pulleys.size + (not system.closed and not system.joint)
+
+
 def new_observations(system: System, loads: BodyForces, shown: int) -> Observations:
     """Make observations of states whose loads are known.
 
@@ -118,6 +125,7 @@ def new_observations(system: System, loads: BodyForces, shown: int) -> Observati
     curves = system.length.size * system.control.shape[1]
     sizes = {
         "pulley": system.pulleys.size,
+        "span": span_count(system),
         "curve": curves,
         "point": curves * system.contact.points.size,
         "axis": 2,
@@ -146,7 +154,7 @@ def new_samples(system: System) -> Samples:
         tension=np.zeros(points),
         speed=np.zeros(points),
         velocity=np.zeros((points, 2)),
-        weight=np.zeros(system.pulleys.size),
+        weight=np.zeros(span_count(system)),
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
         element=np.zeros((2, 2 * len(system.scale))),

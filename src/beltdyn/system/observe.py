@@ -233,16 +233,19 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
 
     Going along the belt, free points belong to the span of the pulley that was touched last, if the next one
     touched is another. On coarse meshes a pulley may be touched between points alone, and a span may have none: then
-    the nearest point counts to the pulley, and the points at its ends to the span.
+    the nearest point counts to the pulley, and the points at its ends to the span. The last span of an open belt is
+    the one before the first pulley; behind the last pulley its end counts as touched.
     """
-    spans = system.pulleys.size
     touched, weight = samples.touched, samples.weight
+    spans, pulleys = weight.size, system.pulleys.size
+    is_open = spans > pulleys
     for row in range(touched.size):
         touched[row] = pulley = result.contact_pulley[k, row]
         if pulley >= 0:
             samples.nearest[pulley] = row
-    for p in range(spans):
-        weight[p] = result.span_tension[k, p] = result.belt_speed[k, p] = 0.0
+    for span in range(spans):
+        weight[span] = result.span_tension[k, span] = result.belt_speed[k, span] = 0.0
+    for p in range(pulleys):
         if samples.nearest[p] >= 0:
             touched[samples.nearest[p]] = p
     count, points, curves = touched.size, system.contact.points.size, system.control.shape[1]
@@ -251,10 +254,14 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
         if touched[row] >= 0:
             before, first = touched[row], row
             break
+    if is_open:
+        before, first = pulleys, -1
     length = tension = speed = 0.0
-    for walk in range(first + 1, first + 1 + count):
+    for walk in range(first + 1, first + 1 + count + is_open):
         row = walk % count
         after = touched[row]
+        if is_open and walk == count:
+            row, after = count - 1, spans
         if after < 0:
             share = system.length[row // (points * curves)] * system.contact.weights[row % points]
             length += share
@@ -263,21 +270,22 @@ def _observe_spans(system: System, samples: Samples, result: Observations, k: in
             continue
         if before != after:
             if length == 0.0:
-                last = (row - 1) % count
+                last = (row - 1) % count if not is_open else max(row - 1, 0)
                 length, speed = 1.0, 0.5 * (samples.speed[last] + samples.speed[row])
                 tension = 0.5 * (samples.tension[last] + samples.tension[row])
             weight[before] += length
             result.span_tension[k, before] += tension
             result.belt_speed[k, before] += speed
         before, length, tension, speed = after, 0.0, 0.0, 0.0
-    for p in range(spans):
-        result.span_tension[k, p] = result.span_tension[k, p] / weight[p] if weight[p] > 0.0 else np.nan
-        result.belt_speed[k, p] = result.belt_speed[k, p] / weight[p] if weight[p] > 0.0 else np.nan
+    for span in range(spans):
+        free = weight[span] > 0.0
+        result.span_tension[k, span] = result.span_tension[k, span] / weight[span] if free else np.nan
+        result.belt_speed[k, span] = result.belt_speed[k, span] / weight[span] if free else np.nan
 
 
 @kernel(inline=True)
 def _observe_bodies(system: System, position: FloatArray, result: Observations, k: int) -> None:
-    """Centres of the pulleys and potential energy of weight."""
+    """Centres of the pulleys and potential energy of weight and of constant forces on nodes."""
     for c in range(system.first_body):
         result.potential_energy[k] -= system.supports.force[c] * position[c]
     for p in range(system.pulleys.size):

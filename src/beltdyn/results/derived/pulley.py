@@ -75,7 +75,7 @@ def tension_ratios(run: Run, start: float | None = None, end: float | None = Non
         Time and pulley, at least 1; NaN where a span is slack.
     """
     dataset = window(run, start, end)
-    before, after = across(dataset["span_tension"].values)
+    before, after = across(dataset["span_tension"].values, run.drive)
     tight, slack = np.maximum(before, after), np.minimum(before, after)
     ratio = np.divide(tight, slack, out=np.full_like(slack, np.nan), where=slack > 0.0)
     return labelled(ratio, dataset["wrap_angle"], "1", "Tension ratio")
