@@ -102,6 +102,8 @@ def _origin(installation: "Installation", asked_for: bool) -> str:
     asked = ", as asked for" * asked_for
     if installation.tensioner_positions.size:
         return f"{asked}, which tensioners set"
+    if any(not end.held for end in drive.ends):
+        return ", which the pulled end sets"
     gained = installation.tension / installation.laid_tension - 1
     change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than laid"
     return f"{asked}: {change}, since the belt sinks into the pulleys and resists bending"

@@ -84,6 +84,11 @@ class Path:
         return float(np.sum(self.wrap_angles * np.sign(self.radii)))
 
     @property
+    def ways_out(self) -> FloatArray:
+        """Unit vectors that lead away from the path at the ends of an open one, shape (2, 2)."""
+        return np.array([-self.span_directions[-1], self.span_directions[-2]])
+
+    @property
     def length(self) -> float:
         """Length of the path, m."""
         return float(self._starts[-1])

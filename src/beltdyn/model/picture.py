@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from beltdyn.model.drive import Drive
 
 _SIZE = 360.0
@@ -56,7 +58,8 @@ def picture(drive: Drive) -> Picture:
     """
     path = drive.path
     reach = abs(path.radii)[:, None]
-    low, high = (path.centers - reach).min(axis=0), (path.centers + reach).max(axis=0)
+    points = np.concatenate([path.centers - reach, path.centers + reach, *([] if path.ends is None else [path.ends])])
+    low, high = points.min(axis=0), points.max(axis=0)
     scale = _SIZE / max(high - low)
     room = _MARGIN * _SIZE
     width, height = (float(side) for side in scale * (high - low) + 2 * room)
@@ -68,13 +71,15 @@ def picture(drive: Drive) -> Picture:
         Circle(pulley.name, *place(*center), scale * pulley.radius, pulley.prescribed)
         for pulley, center in zip(drive.pulleys, path.centers.tolist(), strict=True)
     )
-    x, y = place(*path.span_points[0, 0])
+    x, y = place(*path.span_points[path.order[0], 0])
     steps = [f"M {x:.2f} {y:.2f}"]
-    for span in range(path.count):
-        arc = (span + 1) % path.count
-        radius, large = scale * abs(path.radii[arc]), int(path.wrap_angles[arc] > math.pi)
+    for span in path.order:
         x, y = place(*path.span_points[span, 1])
         steps.append(f"L {x:.2f} {y:.2f}")
+        arc = (span + 1) % path.spans
+        if arc == path.count:
+            break
+        radius, large = scale * abs(path.radii[arc]), int(path.wrap_angles[arc] > math.pi)
         x, y = place(*path.span_points[arc, 0])
         steps.append(f"A {radius:.2f} {radius:.2f} 0 {large} {int(path.radii[arc] < 0)} {x:.2f} {y:.2f}")
     return Picture(width, height, circles, " ".join(steps))

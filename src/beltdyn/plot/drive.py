@@ -111,6 +111,7 @@ def extent_of(drive: Drive, path: Path) -> FloatArray:
     radii = np.maximum(np.abs(path.radii), [pulley.radius for pulley in drive.pulleys])[:, None]
     points = [*(path.centers - radii), *(path.centers + radii)]
     points += [np.array(one.anchor) for one in drive.tensioners if one.anchor is not None]
+    points += [] if path.ends is None else list(path.ends)
     return np.array([np.min(points, axis=0), np.max(points, axis=0)])
 
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, Tensioner
-from beltdyn.model import Drive, Installation, Path, install
+from beltdyn.model import Drive, End, Installation, Path, install
 from beltdyn.model.clearance import crossings
 from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
 from beltdyn.plot.saving import save
@@ -53,6 +53,9 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     _draw_belt(ax, path)
     for tensioner, way in _ways(drive, installation):
         _draw_tensioner(ax, tensioner, way)
+    if path.ends is not None:
+        for end, point, way in zip(drive.ends, path.ends, path.ways_out, strict=True):
+            _draw_end(ax, end, point, way)
     for number, pulley in enumerate(drive.pulleys):
         text = f"{number + 1} {pulley.name}\n{np.degrees(path.wrap_angles[number]):.0f}°"
         write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
@@ -123,12 +126,12 @@ def _draw_belt(ax: Axes, path: Path) -> None:
         angle = arc(path, number)
         points = path.centers[number] + abs(path.radii[number]) * np.column_stack([np.cos(angle), np.sin(angle)])
         ax.plot(*points.T, color=_BELT, linewidth=3.0, solid_capstyle="butt", zorder=3)
-        start, end = path.span_points[number]
+    for number, (start, end) in enumerate(path.span_points):
         style: dict[str, Any] = {"solid_capstyle": "butt", "zorder": 3.1 + 0.01 * number}
         if number in crossing:
             free = np.array([start + 0.15 * (end - start), start + 0.85 * (end - start)])
             ax.plot(*free.T, color="white", linewidth=7.0, **style)
-        ax.plot(*path.span_points[number].T, color=_BELT, linewidth=3.0, **style)
+        ax.plot(*np.array([start, end]).T, color=_BELT, linewidth=3.0, **style)
         ax.add_patch(_arrow([start + 0.7 * (end - start), start + 0.8 * (end - start)], _BELT, 14))
 
 
@@ -155,6 +158,25 @@ def _draw_tensioner(ax: Axes, tensioner: Tensioner, way: FloatArray) -> None:
         ax.plot(*np.array([pivot, center]).T, **line)
         ax.plot(*pivot, marker="o", markersize=7, markeredgecolor=_TENSIONER, markerfacecolor="white", zorder=4.1)
     ax.add_patch(_arrow(way, _TENSIONER, 9))
+
+
+def _draw_end(ax: Axes, end: End, point: FloatArray, way: FloatArray) -> None:
+    """Draw an end of an open belt with its name, beyond it: a square that is fixed, or an arrow that pulls."""
+    if end.held:
+        ax.plot(*point, marker="s", markersize=8, color=INK, zorder=4)
+    ax.annotate(
+        end.name,
+        tuple(point),
+        xytext=tuple((18.0 if end.held else 36.0) * way),
+        textcoords="offset points",
+        arrowprops=None if end.held else {"arrowstyle": "<|-", "color": _TENSIONER, "linewidth": 1.6},
+        horizontalalignment="center",
+        verticalalignment="center",
+        color=INK,
+        fontsize=9,
+        weight="bold",
+        zorder=6,
+    )
 
 
 def _arrow(points: ArrayLike, paint: str, size: float) -> FancyArrowPatch:

@@ -21,6 +21,8 @@ def drawn_length(belt: str) -> float:
     numbers = [float(number) for number in re.findall(r"-?[\d.]+", belt)]
     x, y, total, rest = numbers[0], numbers[1], 0.0, numbers[2:]
     for at in range(0, len(rest), 9):
+        if len(rest) == at + 2:  # an open belt ends with a line
+            return total + math.dist((x, y), rest[at:])
         line, (radius, _, _, large, _), end = rest[at : at + 2], rest[at + 2 : at + 7], rest[at + 7 : at + 9]
         total += math.dist((x, y), line)
         half = math.asin(min(1.0, math.dist(line, end) / (2 * radius)))

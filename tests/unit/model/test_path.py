@@ -195,3 +195,55 @@ def test_moving_a_pulley_lengthens_the_path_along_its_spans(circles: tuple[tuple
             slope = (lengths[0] - lengths[1]) / (2 * step)
             expected = laid.span_directions[pulley - 1] - laid.span_directions[pulley]
             assert slope == pytest.approx(expected[axis], abs=1e-7)
+
+
+def open_path() -> Path:
+    """From an end over a pulley, counter-clockwise, under a second one, clockwise, to the other end."""
+    return Path(
+        np.array([[0.0, 0.0], [-0.5, 0.3]]), np.array([0.1, -0.05]), np.array([[0.1, -0.4], [-0.6, 0.9]])
+    )
+
+
+def test_over_one_pulley_from_end_to_end() -> None:
+    """Up on the right, half a turn over the pulley, down on the left: the last span is the first along the path."""
+    laid = Path(np.zeros((1, 2)), np.array([0.1]), np.array([[0.1, -0.4], [-0.1, -0.3]]))
+    assert (laid.count, laid.spans) == (1, 2)
+    np.testing.assert_allclose(laid.span_lengths, [0.3, 0.4])
+    np.testing.assert_allclose(laid.span_directions, [[0, -1], [0, 1]], atol=1e-15)
+    np.testing.assert_allclose(laid.ways_out, [[0, -1], [0, -1]], atol=1e-15)
+    np.testing.assert_allclose(laid.wrap_angles, [math.pi])
+    assert laid.length == pytest.approx(0.7 + 0.1 * math.pi)
+    places = laid.position(np.array([0.0, 0.4, 0.4 + 0.05 * math.pi, laid.length, laid.length + 1.0, -1.0]))
+    ends = [[0.1, -0.4], [0.1, 0.0], [0.0, 0.1], [-0.1, -0.3], [-0.1, -0.3], [0.1, -0.4]]
+    np.testing.assert_allclose(places, ends, atol=1e-15)
+
+
+def test_an_open_path_is_smooth_and_as_long_as_it_says() -> None:
+    laid = open_path()
+    s = np.linspace(0.0, laid.length, 20_001)
+    places, tangents, step = laid.position(s), laid.tangent(s), s[1]
+    np.testing.assert_allclose(np.linalg.norm(np.diff(places, axis=0), axis=1), step, rtol=1e-6)
+    np.testing.assert_allclose(np.diff(places, axis=0) / step, tangents[:-1], atol=step / 0.05)
+    np.testing.assert_allclose(places[[0, -1]], laid.ends, atol=1e-15)
+    bends = laid.bend(s)
+    reach = np.linalg.norm(bends, axis=1)
+    assert set(np.round(reach, 9)) == {0.0, 10.0, 20.0}
+    turned = tangents[:, 0] * bends[:, 1] - tangents[:, 1] * bends[:, 0]
+    assert np.trapezoid(turned, s) == pytest.approx(laid.total_turning, abs=3 * step * 20)
+
+
+def test_an_open_path_needs_no_way_back_from_end_to_end() -> None:
+    """Both ends at one point, as those of a strap on one lever."""
+    laid = Path(np.zeros((1, 2)), np.array([0.1]), np.array([[0.0, -0.2], [0.0, -0.2]]))
+    np.testing.assert_allclose(laid.span_lengths, math.sqrt(0.2**2 - 0.1**2))
+    np.testing.assert_allclose(laid.wrap_angles, 2 * math.pi - 2 * math.acos(0.5))
+
+
+@pytest.mark.parametrize("pulley", [0, 1])
+def test_gradient_of_an_open_path(pulley: int) -> None:
+    laid, step = open_path(), 1e-6
+    for axis in (0, 1):
+        change = np.zeros((2, 2))
+        change[pulley, axis] = step
+        ahead, behind = (Path(laid.centers + sign * change, laid.radii, laid.ends).length for sign in (1, -1))
+        assert laid.gradient(pulley)[axis] == pytest.approx((ahead - behind) / (2 * step), abs=1e-9)

@@ -53,9 +53,15 @@ def test_slip_is_the_loss_against_the_first_pulley_whichever_way_it_runs() -> No
 
 
 def test_spans_before_and_after_pulleys() -> None:
-    before, after = across(np.array([1.0, 2.0, 3.0]))
+    before, after = across(np.array([1.0, 2.0, 3.0]), serpentine())
     assert before.tolist() == [3.0, 1.0, 2.0]
     assert after.tolist() == [1.0, 2.0, 3.0]
+
+
+def test_the_last_span_of_an_open_belt_is_the_one_before_the_first_pulley() -> None:
+    before, after = across(np.array([[1.0, 2.0, 3.0, 4.0]]), serpentine())
+    assert before.tolist() == [[4.0, 1.0, 2.0]]
+    assert after.tolist() == [[1.0, 2.0, 3.0]]
 
 
 @given(slack=st.floats(50.0, 500.0), speed=st.floats(0.0, 10.0), wrap=st.floats(0.2, 6.0), factor=st.floats(0.1, 1.0))
