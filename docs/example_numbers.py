@@ -12,12 +12,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from xarray import Dataset
 
 from beltdyn import Drive, Run, simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Pulley
 from beltdyn.results import summarize
 from beltdyn.results.derived import capstan_margins
+from beltdyn.theory.capstan import capstan_ratio
 from beltdyn.theory.creep import creep_speed_loss, layer_length
 from beltdyn.theory.elastic_creep import gross_slip_tensions
 from beltdyn.theory.path import open_belt
@@ -181,6 +183,35 @@ def worth_of_the_idler(run: Run, _: Path) -> Iterator[str]:
     yield f"without idler: the compressor slips by {summarize(bare).pulleys[-1].slip:.1%}"
     yield f"Euler and Eytelwein's limit then: {limit_force(bare, 600.0, 0) * float(bare.drive.radii[1]):.4g} N m"
     yield f"with idler and twice the load: the compressor slips by {summarize(twice).pulleys[-1].slip:.1%}"
+
+
+def band_brake(run: Run) -> Iterator[Number]:
+    """Euler and Eytelwein's formula, and a weight on a belt that friction stretches the more the farther from it."""
+    drive = run.drive
+    radius, friction, mass = float(drive.radii[0]), float(drive.frictions[0]), drive.ends[1].attached_mass
+    slack, factor = mass * 9.81, capstan_ratio(friction, float(drive.path.wrap_angles[0]))
+    torque = (factor - 1.0) * slack * radius
+    sliding = run.dataset.sel(time=slice(0.4, 1.5))
+    hanging, anchored = sliding["span_tension"].mean("time").values
+    yield Number("span to the weight, N", slack, float(hanging), 0.01 * slack)
+    yield Number("span to the anchor, N", factor * slack, float(anchored), 0.01 * factor * slack)
+    yield Number("ratio of these tensions", factor, float(anchored / hanging), 0.005 * factor)
+    found = -float(sliding["pulley_torque"].mean("time")[0])
+    yield Number("braking torque, N m", torque, found, 0.01 * torque)
+    power = float(sliding["friction_power"].mean("time")[0])
+    yield Number("power lost in friction, W", 120.0 * RPM * torque, power, 0.01 * 120.0 * RPM * torque)
+    free, held = (float(length) for length in drive.path.span_lengths)
+    flexible = free + radius * (factor - 1.0) / friction + factor * held
+    bounces = sqrt(drive.belt.axial_stiffness / (mass * flexible)) / (2.0 * pi)
+    yield Number("frequency at which the weight bounces, Hz", bounces, _main_frequency(sliding), 0.03 * bounces)
+
+
+def _main_frequency(sliding: Dataset) -> float:
+    """Frequency of the largest amplitude of the tension above the weight, Hz."""
+    time, tension = sliding["time"].values, sliding["span_tension"].values[:, 0]
+    size = 1 << 16
+    amplitudes = np.abs(np.fft.rfft((tension - tension.mean()) * np.hanning(time.size), size))
+    return float(np.fft.rfftfreq(size, float(time[1] - time[0]))[np.argmax(amplitudes)])
 
 
 def slip_through(run: Run) -> Iterator[Number]:

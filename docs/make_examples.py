@@ -54,6 +54,7 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
             by_hand.flat_belt_idler,
             by_hand.worth_of_the_idler,
         ),
+        "band_brake": Example(("span_tensions", "configuration", "capstan_margins"), by_hand.band_brake),
         "slip_through": Example(("speeds", "torques", "capstan_margins", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study

@@ -85,7 +85,7 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
         ("installed strain", f"{installation.strain:.4%}"),
         ("tension as laid", f"{installation.laid_tension:.4g} N"),
         ("element length", f"{drive.belt_length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
-        ("tension at rest", f"{installation.tension:.4g} N{_origin(installation, asked_for)}"),
+        ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         *_taken_up(drive),
         ("results of a run", f"about {describe_size(drive)}"),
     ]
@@ -98,7 +98,7 @@ def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
     return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
 
 
-def _origin(installation: "Installation", asked_for: bool) -> str:
+def _origin(drive: "Drive", installation: "Installation", asked_for: bool) -> str:
     asked = ", as asked for" * asked_for
     if installation.tensioner_positions.size:
         return f"{asked}, which tensioners set"

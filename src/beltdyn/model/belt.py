@@ -27,7 +27,7 @@ Side = Literal["inside", "outside"]
 
 
 class Belt(Part):
-    """A closed belt of rectangular section, made of equal elements.
+    """A belt of rectangular section, made of equal elements; closed, unless the drive gives it ends.
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
     or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is open, None: the drive that
@@ -41,7 +41,7 @@ class Belt(Part):
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
     either = ("length", "installed_tension")
 
-    length: Length | None = Field(None, gt=0, description="the unstretched length of the closed belt, in m")
+    length: Length | None = Field(None, gt=0, description="the unstretched length of the belt, in m")
     installed_tension: Force | None = Field(
         None, gt=0, description="the tension of the belt at rest in the drive, in place of its length, in N"
     )

@@ -41,7 +41,7 @@ class Drive(Part):
     contact: Contact = Field(description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
     ends: tuple[AnyEnd, ...] = Field(
-        (), alias="end", description="the groups [[end]]: none for a closed belt, the first and the second of an open one"
+        (), alias="end", description="the groups [[end]], first and second, of a belt that is not closed"
     )
     simulation: Simulation = Field(description="the group [simulation]")
     gravity: tuple[Acceleration, Acceleration] = Field(

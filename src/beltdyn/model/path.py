@@ -118,9 +118,9 @@ class Path:
 
     @cached_property
     def _starts(self) -> FloatArray:
-        """Arc lengths where the pieces start, and the total, shape (2 spans + 1,): a span, the arc behind it, and so on.
+        """Arc lengths where the pieces start, and the total, shape (2 spans + 1,).
 
-        No arc is behind the last span of an open path: its length is zero.
+        A span is followed by the arc behind it, which has no length behind the last span of an open path.
         """
         arcs = np.zeros(self.spans)
         arcs[: self.count] = self.wrap_angles * np.abs(self.radii)

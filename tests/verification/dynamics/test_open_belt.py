@@ -1,7 +1,7 @@
 """Verified: belts with ends.
 
-Against: Euler and Eytelwein's formula of a belt that slides on a drum; statics of a hanging belt; vibrations of a string
-with a mass at its end; the first law.
+Against: Euler and Eytelwein's formula of a belt that slides on a drum; statics of a hanging belt; vibrations of a
+string with a mass at its end; the first law.
 """
 
 from collections.abc import Callable
@@ -55,8 +55,8 @@ def test_tensions_of_a_band_brake(
 ) -> None:
     """T1 / T2 = exp(mu wrap) at every instant of sliding, short of bending, E I / R^2 over the tension.
 
-    The drum drags the belt away from its fixed end. The torque is (T1 - T2) R, and the account of energy closes with the
-    work that weight and force do on the end.
+    The drum drags the belt away from its fixed end. The torque is (T1 - T2) R, and the account of energy closes with
+    the work that weight and force do on the end.
     """
     run = braked(brake, mirrored=mirrored, pull=pull)
     data, belt, radius = run.dataset, run.drive.belt, float(run.drive.radii[0])
@@ -77,12 +77,12 @@ def test_tensions_of_a_band_brake(
 
 
 def test_a_weight_at_rest_gives_the_tension(brake: Drive, measured: Callable[..., None]) -> None:
-    """m g and the weight of the belt below, which without friction is the same on both sides of the drum at one height."""
+    """m g and the weight of the belt below; without friction the same on both sides of the drum at one height."""
     run = equilibrium(brake)
     data, belt = run.dataset, run.drive.belt
     load = belt.mass_per_length * GRAVITY
     pulled = 10.0 * GRAVITY
-    element = belt.length / belt.elements
+    element = run.drive.belt_length / belt.elements
     lowest = float(data["belt_tension"].values[0, -1])
     free, held = (float(length) for length in run.drive.path.span_lengths)
     hanging, anchored = data["span_tension"].values[0]
@@ -92,7 +92,7 @@ def test_a_weight_at_rest_gives_the_tension(brake: Drive, measured: Callable[...
     assert hanging == pytest.approx(pulled + 0.5 * load * free, rel=1e-4)
     assert anchored == pytest.approx(pulled + load * (free - 0.5 * held), abs=bending)
     anchor = float(data["belt_tension"].values[0, 0]) - 0.5 * load * element
-    total = pulled + load * belt.length + anchor * abs(float(run.drive.path.span_directions[-1, 1]))
+    total = pulled + load * run.drive.belt_length + anchor * abs(float(run.drive.path.span_directions[-1, 1]))
     assert data["hub_force"].values[0, 0, 1] == pytest.approx(-total, rel=1e-6)
 
 
@@ -100,12 +100,13 @@ def test_a_weight_at_rest_gives_the_tension(brake: Drive, measured: Callable[...
 def test_a_string_with_a_mass_at_its_end(brake: Drive, measured: Callable[..., None], mass: float) -> None:
     """Across: cot x = m x / M with x = w L sqrt(rho A / T); M is the mass of the string, m that at its end.
 
-    Without a mass the end is free, f = sqrt(T / rho A) / 4 L; a large one holds it, f = sqrt(T / rho A) / 2 L from the second
-    frequency on. Short of bending, sqrt(E I / T) / L, without stiffness to speak of here.
+    Without a mass the end is free, f = sqrt(T / rho A) / 4 L; a large one holds it, f = sqrt(T / rho A) / 2 L from the
+    second frequency on. Short of bending, sqrt(E I / T) / L, without stiffness to speak of here.
     """
-    belt = brake.belt.replace(elements=30, bending_factor=1e-6 * brake.belt.bending_factor, length=1.0)
+    length = 1.0
+    belt = brake.belt.replace(elements=30, bending_factor=1e-6 * brake.belt.bending_factor, length=length)
     pull = 100.0
-    total = belt.mass_per_length * belt.length
+    total = belt.mass_per_length * length
     system = belt_system(
         belt,
         closure="open",
@@ -131,7 +132,7 @@ def test_a_string_with_a_mass_at_its_end(brake: Drive, measured: Callable[..., N
     ]
     speed = g * np.sqrt(pull / (belt.mass_per_length * g))  # of waves, in lengths of the stretched belt
     expected = [
-        brentq(lambda x: np.cos(x) - mass * x * np.sin(x), low, low + pi) * speed / (belt.length * g)
+        brentq(lambda x: np.cos(x) - mass * x * np.sin(x), low, low + pi) * speed / (length * g)
         for low in (1e-9, pi)
     ]
     measured(first=across[0], first_by_hand=expected[0], second=across[1], second_by_hand=expected[1])
