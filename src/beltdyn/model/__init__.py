@@ -25,7 +25,7 @@ from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
-from beltdyn.model.end import End, FixedEnd, PulledEnd, WeightEnd
+from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.installation import Installation, describe, install, layer_lengths, tensioner_balances
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
@@ -43,7 +43,6 @@ __all__ = [
     "CosineRamp",
     "CosineRampPublished",
     "Drive",
-    "End",
     "Entry",
     "FixedEnd",
     "FixedTensioner",

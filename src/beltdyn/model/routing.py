@@ -45,8 +45,8 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()
     ------
     ValueError
         If there are fewer than two pulleys (one for an open belt), names are used twice, pulleys overlap or are too
-        close for the belt to pass between them, the order or a side is wrong, or the belt misses a pulley, would run through one, or
-        through itself.
+        close for the belt to pass between them, the order or a side is wrong, or the belt misses a pulley, would run
+        through one, or through itself.
     """
     if not ends and len(pulleys) < 2:
         raise ValueError(f"the drive has {len(pulleys)} pulley: a closed belt needs two or more. Add a [[pulley]]")

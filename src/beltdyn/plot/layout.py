@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, Tensioner
-from beltdyn.model import Drive, End, Installation, Path, install
+from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
+from beltdyn.model.end import End
 from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled

@@ -36,9 +36,7 @@ def mid_span_displacements(drive: Drive, centers: FloatArray, places: FloatArray
 
 
 @kernel
-def fill_mid_spans(
-    lines: FloatArray, places: FloatArray, touched: IntArray, pulleys: int, result: FloatArray
-) -> None:
+def fill_mid_spans(lines: FloatArray, places: FloatArray, touched: IntArray, pulleys: int, result: FloatArray) -> None:
     """Find where the free belt crosses the middles of spans.
 
     Parameters

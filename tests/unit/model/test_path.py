@@ -199,9 +199,7 @@ def test_moving_a_pulley_lengthens_the_path_along_its_spans(circles: tuple[tuple
 
 def open_path() -> Path:
     """From an end over a pulley, counter-clockwise, under a second one, clockwise, to the other end."""
-    return Path(
-        np.array([[0.0, 0.0], [-0.5, 0.3]]), np.array([0.1, -0.05]), np.array([[0.1, -0.4], [-0.6, 0.9]])
-    )
+    return Path(np.array([[0.0, 0.0], [-0.5, 0.3]]), np.array([0.1, -0.05]), np.array([[0.1, -0.4], [-0.6, 0.9]]))
 
 
 def test_over_one_pulley_from_end_to_end() -> None:

@@ -50,9 +50,7 @@ def braked(brake: Drive, *, mirrored: bool, pull: bool) -> Run:
 
 
 @pytest.mark.parametrize(("mirrored", "pull"), [(False, False), (False, True), (True, True)])
-def test_tensions_of_a_band_brake(
-    brake: Drive, measured: Callable[..., None], mirrored: bool, pull: bool
-) -> None:
+def test_tensions_of_a_band_brake(brake: Drive, measured: Callable[..., None], mirrored: bool, pull: bool) -> None:
     """T1 / T2 = exp(mu wrap) at every instant of sliding, short of bending, E I / R^2 over the tension.
 
     The drum drags the belt away from its fixed end. The torque is (T1 - T2) R, and the account of energy closes with
@@ -132,8 +130,7 @@ def test_a_string_with_a_mass_at_its_end(brake: Drive, measured: Callable[..., N
     ]
     speed = g * np.sqrt(pull / (belt.mass_per_length * g))  # of waves, in lengths of the stretched belt
     expected = [
-        brentq(lambda x: np.cos(x) - mass * x * np.sin(x), low, low + pi) * speed / (length * g)
-        for low in (1e-9, pi)
+        brentq(lambda x: np.cos(x) - mass * x * np.sin(x), low, low + pi) * speed / (length * g) for low in (1e-9, pi)
     ]
     measured(first=across[0], first_by_hand=expected[0], second=across[1], second_by_hand=expected[1])
     np.testing.assert_allclose(across[:2], expected, rtol=1e-3)
