@@ -73,6 +73,12 @@ def test_tangent(
             np.testing.assert_allclose(tangent[block], found[block], atol=rounding, rtol=0)
 
 
+def test_residual_alone_keeps_the_tangent(system: System, moving: State, dense: Dense) -> None:
+    equations = new_equations(system)
+    tangent = dense(residual(system, moving, equations, (1.0, 2e3, 1e6)), True)[0].copy()
+    np.testing.assert_array_equal(dense(residual(system, moving, equations, (0.0, 0.0, 0.0)), True)[0], tangent)
+
+
 def test_only_the_prescribed_shaft_is_no_unknown(system: System) -> None:
     assert np.count_nonzero(system.bodies.unknown < 0) == 1
     assert border_size(system) == system.bodies.unknown.size - 1 == 5

@@ -88,6 +88,19 @@ def test_counts_its_evaluations(system: System, moving: State) -> None:
     assert equations.evaluations == 3
 
 
+def assert_columns(system: System, equations: FirstOrder, y: FloatArray, unknowns: list[int]) -> None:
+    """Columns of the Jacobian against differences, each row of a body at its own size."""
+    half, jacobian = system.first_body + system.bodies.size, equations.jacobian(TIME, y)
+    for unknown in unknowns:
+        change, step = np.zeros_like(y), 1e-8 if unknown < half else 1e-5
+        change[unknown] = step
+        found = (equations.rates(TIME, y + change) - equations.rates(TIME, y - change))[: 2 * half] / (2.0 * step)
+        bodies = range(half + system.first_body, 2 * half)
+        for part in (slice(0, half), slice(half, bodies.start), *(slice(k, k + 1) for k in bodies)):
+            size = max(np.abs(found[part]).max(), 1e-9 * np.abs(found).max())
+            np.testing.assert_allclose(jacobian[: 2 * half, unknown][part], found[part], atol=1e-6 * size)
+
+
 def test_jacobian_where_a_tensioner_is_the_only_free_body(with_machines: Callable[[str], Drive]) -> None:
     """All shafts run at given speeds; the arm turns, so that the centre it carries speeds up as it moves."""
     drive = with_machines("rotary")
@@ -98,13 +111,39 @@ def test_jacobian_where_a_tensioner_is_the_only_free_body(with_machines: Callabl
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4), np.array([2e-3])).position
     velocity = 0.5 * np.random.default_rng(1).normal(size=rest.size)
     equations = FirstOrder(system)
-    y = equations.pack(State(rest, velocity, velocity))
-    half, jacobian = rest.size, equations.jacobian(TIME, y)
     assert system.bodies.unknown.tolist() == [-1, -1, -1, 0]
-    for unknown, step in ((half - 1, 1e-8), (2 * half - 1, 1e-5)):
-        change = np.zeros_like(y)
-        change[unknown] = step
-        found = (equations.rates(TIME, y + change) - equations.rates(TIME, y - change))[: 2 * half] / (2.0 * step)
-        for part in (slice(0, half), slice(half, 2 * half - 1), slice(2 * half - 1, 2 * half)):
-            size = max(np.abs(found[part]).max(), 1e-9 * np.abs(found).max())
-            np.testing.assert_allclose(jacobian[: 2 * half, unknown][part], found[part], atol=1e-6 * size)
+    y = equations.pack(State(rest, velocity, velocity))
+    assert_columns(system, equations, y, [rest.size - 1, 2 * rest.size - 1])
+
+
+def test_jacobian_of_a_driver_behind_an_isolator(make_drive: Callable[..., Drive]) -> None:
+    """The driver turns the end of its hub chain; the rim before it is free, and the first unknown."""
+    drive = make_drive("force_slope", "fixed")
+    driver, driven = drive.pulleys
+    isolator = {"kind": "isolator", "stiffness": 50.0, "damping": 0.3, "inertia": 0.1}
+    system = drive_system(drive.replace(pulley=[driver.replace(hub=[isolator], inertia=0.02), driven]))
+    assert system.bodies.unknown.tolist() == [0, 1, -1]
+    rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4)).position
+    rest[system.first_body :] = [0.2, 0.1, 0.5]
+    velocity = 0.5 * np.random.default_rng(1).normal(size=rest.size)
+    equations = FirstOrder(system)
+    y = equations.pack(State(rest, velocity, velocity))
+    bodies = [start + body for start in (system.first_body, rest.size + system.first_body) for body in range(3)]
+    assert_columns(system, equations, y, bodies)
+    rates = equations.unpack(equations.rates(TIME, y))
+    shaft = system.first_body + 2
+    assert rates[0][shaft] == pytest.approx(float(driver.speed.at(TIME)))  # type: ignore[union-attr]
+    assert rates[1][shaft] == pytest.approx(12.0 / 0.55)
+    np.testing.assert_array_equal(np.delete(rates[0], shaft), np.delete(velocity, shaft))
+
+
+def test_a_drive_without_free_bodies(make_drive: Callable[..., Drive]) -> None:
+    """Both shafts run at given speeds: nothing but the belt has accelerations of its own."""
+    drive = make_drive("force_slope", "zone")
+    driver, driven = drive.pulleys
+    steady = Pulley(name="steady", center=driven.center, radius=driven.radius, speed={"kind": "constant", "value": 2.0})
+    system = drive_system(drive.replace(pulley=[driver, steady]))
+    rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4)).position
+    equations = FirstOrder(system)
+    y = equations.pack(State(rest, 0.0 * rest, 0.0 * rest))
+    assert_columns(system, equations, y, [0, 7, rest.size + 3])

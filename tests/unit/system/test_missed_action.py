@@ -42,17 +42,18 @@ def test_table(drive: Drive, free: bool) -> None:
     assert missed_action(system, 0, motion, LENGTH, 0.1 * largest)[0] > 0.1 * largest
 
 
-def test_whole_waves(drive: Drive) -> None:
-    """A step of five waves, which sees the same phase at both ends."""
+@pytest.mark.parametrize("length", [LENGTH, 1e-4 * LENGTH, 1e4 * LENGTH])
+def test_whole_waves(drive: Drive, length: float) -> None:
+    """A step of five waves, which sees the same phase at both ends, however long it takes."""
     wave = Harmonic(order=1.0, amplitude=0.3)
-    mean = 2.0 * np.pi * 5.0 / LENGTH
+    mean = 2.0 * np.pi * 5.0 / length
     speed = Constant(value=mean)
     system, motion = system_of(
         drive, Pulley(name="far", center=(0.0, 50.0), radius=0.1, speed=speed, harmonics=(wave,))
     )
-    times = np.linspace(START, START + LENGTH, 100_001)
+    times = np.linspace(START, START + length, 100_001)
     integral = deviation_integral(mean * (1.0 + 0.3 * np.cos(mean * times)), times)
-    largest, whole = missed_action(system, 0, motion, LENGTH, np.inf)
+    largest, whole = missed_action(system, 0, motion, length, np.inf)
     assert whole == pytest.approx(integral[-1], rel=0.02)  # the trapezoidal rule in parts of 0.4 rad
     assert largest == pytest.approx(np.max(np.abs(integral)), rel=0.02)
 

@@ -74,11 +74,11 @@ def test_points_between_two_pulleys(drive: Drive) -> None:
 
 def test_a_pulley_that_is_touched_between_points(drive: Drive) -> None:
     """The nearest point counts to it, whichever side of it that is."""
-    system = rectangle(drive, ((0.35, 0.04), 0.05), ((0.8, 0.04), 0.05))
+    system = rectangle(drive, ((0.96, 0.35 * 0.9), 0.05), ((0.96, 0.8 * 0.9), 0.05))
     assert np.all(see(system).contact_pulley[0] < 0)
     np.testing.assert_allclose(see(system).wrap_angle[0], chord(0.04, 0.05), rtol=1e-9)
-    assert_span(system, 0, [1, 2], np.ones(2))
-    assert_span(system, 1, [3, 4, 5, 6, 7, 8, 9, 10, 11, 0])
+    assert_span(system, 0, [4, 5], np.ones(2))
+    assert_span(system, 1, [6, 7, 8, 9, 10, 11, 0, 1, 2, 3])
 
 
 def test_neighbouring_points_on_two_pulleys(drive: Drive) -> None:
@@ -87,6 +87,14 @@ def test_neighbouring_points_on_two_pulleys(drive: Drive) -> None:
     np.testing.assert_array_equal(see(system).contact_pulley[0, :3], [-1, 0, 1])
     assert_span(system, 0, [1, 2], np.ones(2))
     assert_span(system, 1, [3, 4, 5, 6, 7, 8, 9, 10, 11, 0])
+
+
+def test_neighbouring_points_where_the_belt_is_counted_from(drive: Drive) -> None:
+    """The last point of the belt touches one pulley, its first the other."""
+    system = rectangle(drive, ((PLACES[0], 0.04), 0.05), ((0.04, 0.95 * PLACES[0]), 0.05))
+    np.testing.assert_array_equal(see(system).contact_pulley[0], [0, *[-1] * 10, 1])
+    assert_span(system, 0, list(range(1, 11)))
+    assert_span(system, 1, [11, 0], np.ones(2))
 
 
 def test_a_link_that_a_pulley_touches_before_its_first_point_is_free(drive: Drive) -> None:
