@@ -79,7 +79,7 @@ class Completed(NamedTuple):
 def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
     """The belt with the tension that a pulled end gives it at rest, or itself without such an end."""
     tension = pulling(ends)
-    return belt if tension is None else belt.model_copy(update={"installed_tension": tension})
+    return belt if tension is None else belt.replace(length=belt.length, installed_tension=tension)
 
 
 def complete(given: Given) -> Completed:

@@ -203,7 +203,7 @@ def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> s
         for changes in (_other_lists(tried), _fewer(tried))
         if (wish := next((wish for wish, changed in changes if _fits(changed, belt, ends)), None))
     ]
-    if _fits(pulleys, belt.model_copy(update={"crossed": True}), ends):
+    if _fits(pulleys, belt.replace(crossed=True), ends):
         wishes.append("set belt.crossed = true if spans shall cross each other")
     text = ", or ".join(wishes) or "check the order of the pulleys, and which side of the belt touches each"
     return text[0].upper() + text[1:]
@@ -216,7 +216,7 @@ def _other_lists(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]
     yield f"list the pulleys so: {_listed(turned)}", turned
     for index, pulley in enumerate(given):
         side = "outside" if pulley.side == "inside" else "inside"
-        changed = pulley.model_copy(update={"side": side})
+        changed = pulley.replace(side=side)
         yield f'set side = "{side}" for "{pulley.name}"', [*given[:index], changed, *given[index + 1 :]]
     for index, place in permutations(range(1, len(given)), 2):
         moved = given[:index] + given[index + 1 :]

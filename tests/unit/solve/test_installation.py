@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, install, tensioner_balances
+from beltdyn.model import Drive, install, loads, tensioner_balances
 from beltdyn.results import open_run
 from beltdyn.solve import bring_to_rest, equilibrium, simulate
 from beltdyn.solve.static import tensioner_compliance
@@ -118,6 +118,10 @@ def test_take_up_for_a_tension() -> None:
     assert rest.tension == pytest.approx(300.0, rel=ASKED)
     assert rest.drive.belt_length == 1.85
     assert rest.drive.centers[-1, 1] == 0.07
+    assert rest.drive.tensioners[0].model_dump()["take_up"] != 0.0
+    again = loads(rest.drive.text)
+    assert again == rest.drive
+    np.testing.assert_array_equal(again.centers, rest.drive.centers)
 
 
 def test_a_run_and_its_file_have_the_length_that_was_found(tmp_path: Any) -> None:
