@@ -10,6 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines.loads.resistance import RESISTANCE, resistance
 from beltdyn.machines.tensioners.spring import SPRING, dry_friction
 from beltdyn.model import (
+    FixedTensioner,
     FrictionClutch,
     Harmonic,
     Isolator,
@@ -102,6 +103,10 @@ def test_dry_friction_builds_up_over_little_speed_unless_another_is_given() -> N
     for machine, speed in (("arm", 0.01), ("slide", 1e-3)):
         spring = row(SPRING, tensioning_friction=1.0, creep_speed=MACHINES[machine].creep_speed)
         assert dry_friction(spring, speed)[0] == pytest.approx(tanh(1.0), rel=1e-15)
+
+
+def test_a_pulley_stays_where_it_is_unless_it_is_taken_up() -> None:
+    assert FixedTensioner(kind="fixed", pulley="idler", direction=(1.0, 0.0)).take_up == 0.0
 
 
 def test_a_harmonic_has_its_crest_at_the_angle_zero() -> None:

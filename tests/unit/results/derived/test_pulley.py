@@ -3,9 +3,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.errors import ModelError
 from beltdyn.results import Run, summarize
-from beltdyn.results.derived import capstan_margins, hub_loads, pulley_number, tension_ratios
+from beltdyn.results.derived import capstan_margins, hub_loads, tension_ratios
 
 MakeRun = Callable[..., Run]
 
@@ -40,14 +39,3 @@ def test_tension_ratio_does_not_depend_on_the_unit_of_tension(make_run: MakeRun)
     for unit in (1.0, 1e-3):
         ratios = tension_ratios(make_run(span_tension=np.tile([20.0 * unit, 60.0 * unit], (101, 1))))
         np.testing.assert_allclose(ratios, 3.0)
-
-
-@pytest.mark.parametrize(("pulley", "number"), [("driver", 0), ("driven", 1), (0, 0), (1, 1)])
-def test_pulleys_are_known_by_name_and_by_number(run: Run, pulley: str | int, number: int) -> None:
-    assert pulley_number(run, pulley) == number
-
-
-@pytest.mark.parametrize("pulley", ["idler", 2, -1])
-def test_unknown_pulley(run: Run, pulley: str | int) -> None:
-    with pytest.raises(ModelError, match="Its pulleys are: driver, driven"):
-        pulley_number(run, pulley)

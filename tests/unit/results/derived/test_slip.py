@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.results.derived import sliding_arcs, slips
 
@@ -113,13 +112,3 @@ def test_slip_of_the_instant_swings_where_its_mean_does_not(make_run: MakeRun, r
     shaken = make_run(pulley_speed=speed)
     assert float(np.ptp(slips(shaken, start=0.8, turns=False)["slip"].values[:, 1])) == pytest.approx(2.0, rel=0.01)
     assert float(np.ptp(slips(shaken, start=0.8)["slip"].values[:, 1])) < 0.2
-
-
-def test_no_output_between_two_instants(run: Run) -> None:
-    with pytest.raises(ModelError, match=r"no output from 2 to None s: the run was recorded from 0 to 1 s"):
-        slips(run, start=2)
-
-
-def test_a_run_without_outputs_has_nothing_to_show(run: Run) -> None:
-    with pytest.raises(ModelError, match="the run ended before its first output"):
-        slips(Run(run.dataset.isel(time=slice(0)), run.drive))
