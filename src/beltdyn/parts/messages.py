@@ -24,6 +24,7 @@ _RULES = {
     "int_type": "must be a whole number",
     "int_parsing_size": "is too large",
     "bool_type": "must be true or false, without quotation marks",
+    "bool_parsing": "must be true or false, without quotation marks",
     "string_type": "must be text in quotation marks",
     "string_too_long": "is longer than {max_length} characters",
     "string_pattern_mismatch": "may hold letters, digits, spaces, dots and dashes, and starts with a letter or digit",

@@ -1,0 +1,53 @@
+"""Quick compilation: code from the disk loads without the compiler, and inlined laws are compiled anew."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from beltdyn.kernel import CACHE_VARIABLE, PACKAGE
+
+_CALLER = """
+from beltdyn.contact.friction import ForceSlope
+from beltdyn.contact.law import ContactLaw, PulleyState
+from beltdyn.contact.normal import NoPull
+from beltdyn.contact.penetration import Approach
+from beltdyn.contact.point_force import point_force
+from beltdyn.contact.surface import Round
+law = ContactLaw(NoPull(1e7, 0.0), ForceSlope(1e5), follow_zone=True)
+here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "lever": 0.08})
+print(point_force(here, PulleyState(0.0, 0.0, Round(0.081), 0.0, 1.2), law).normal.force)
+"""
+
+
+@pytest.mark.slow
+def test_kernels_from_the_disk_need_no_tables_of_the_compiler(tmp_path: Path) -> None:
+    """Numba fills them, with SciPy's linear algebra, only where something is compiled; later code may need them."""
+    environment = os.environ | {CACHE_VARIABLE: str(tmp_path)}
+    tables = "import sys; print('numba.np.arraymath' in sys.modules)"
+    later = "import numba, numpy; print(numba.njit(lambda a: numpy.dot(a, a))(numpy.ones(3)))"
+    command = [sys.executable, "-c", f"{_CALLER}\n{tables}\n{later}"]
+    runs = [subprocess.run(command, env=environment, capture_output=True, text=True, check=True) for _ in range(2)]
+    assert [run.stdout.split() for run in runs] == [["10000.0", "True", "3.0"], ["10000.0", "False", "3.0"]]
+
+
+@pytest.mark.slow
+def test_an_edited_law_acts_at_once_in_kernels_that_inline_it(tmp_path: Path) -> None:
+    """The file of the caller stays as it is, and so does the folder of the cache."""
+    copy = tmp_path / "beltdyn"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    environment = os.environ | {"PYTHONPATH": str(tmp_path), CACHE_VARIABLE: str(tmp_path / "cache")}
+    command = [sys.executable, "-c", _CALLER]
+
+    def force() -> float:
+        return float(subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout)
+
+    assert force() == force() == 1e4
+    law = copy / "contact" / "normal" / "no_pull.py"
+    text = law.read_text(encoding="utf-8")
+    law.write_text(text.replace("law.stiffness * penetration", "3.0 * law.stiffness * penetration"), encoding="utf-8")
+    assert force() == 3e4
+    assert len(list((tmp_path / "cache").iterdir())) == 2

@@ -1,0 +1,50 @@
+"""Settings of a simulation: instants of outputs and of fields, and what does not fit together."""
+
+from typing import Any
+
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Simulation
+
+
+@pytest.mark.parametrize(
+    ("settings", "stride"),
+    [
+        ({}, 10),  # a hundredth of a second
+        ({"field_interval": 1e-3}, 1),
+        ({"field_interval": 5e-3}, 5),
+        ({"field_interval": 5.9e-3}, 5),  # at least as often as asked for
+        ({"field_interval": 5.0}, 5000),
+        ({"output_interval": 0.1}, 1),
+    ],
+)
+def test_fields_are_recorded_at_least_as_often_as_asked_for(settings: dict[str, float], stride: int) -> None:
+    instants = Simulation(**{"duration": 1.0, "output_interval": 1e-3} | settings).instants
+    assert instants.stride == stride
+    assert instants.end == 1.0
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"output_interval": 1.5}, "output_interval = 1.5 s is longer than duration = 1 s. Shorten the interval"),
+        ({"field_interval": 9e-4}, "field_interval = 0.0009 s is shorter than output_interval = 0.001 s. Lengthen it"),
+        ({"output_interval": 9e-7}, "asks for 1.11e+06 outputs, and 1,000,000 is the limit. Lengthen the interval"),
+        ({"rtol": 1.0}, "must be less than 1"),
+        ({"spectral_radius": -0.1}, "must be at least 0"),
+        ({"integrator": "euler"}, "is not a choice here"),
+    ],
+)
+def test_what_does_not_fit_is_refused(settings: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        Simulation(**{"duration": 1.0, "output_interval": 1e-3} | settings)
+    assert sentence in str(caught.value)
+
+
+def test_limits_themselves_are_allowed() -> None:
+    assert Simulation(duration=1.0, output_interval=1.0).instants.count == 2
+    assert Simulation(duration=1.0, output_interval=1e-6).instants.count == 1_000_001
+    assert Simulation(duration=1.0, output_interval=1e-3, field_interval=1e-3).instants.stride == 1
+    for radius in (0.0, 1.0):
+        assert Simulation(duration=1.0, output_interval=1.0, spectral_radius=radius).spectral_radius == radius

@@ -1,0 +1,89 @@
+"""Tables from files of two columns, and what their points must obey."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from beltdyn.parts.table_file import check_points, describe_file, read_table, take_file
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Any:
+    def make(text: str | bytes) -> Path:
+        path = tmp_path / "points.csv"
+        path.write_bytes(text.encode() if isinstance(text, str) else text)
+        return path
+
+    return make
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0,1\n2,-3\n",
+        "time,torque\n0,1\n2,-3\n",
+        "# measured\n\n0.0, 1e0\r\n2, -3.0",
+        "\ufefftime,torque\n0,1\n# again\n2,-3",
+        '"0","1"\n"2","-3"\n',
+    ],
+)
+def test_two_columns_with_comments_empty_lines_and_a_header(write: Any, text: str) -> None:
+    assert read_table(write(text), None) == ([0.0, 2.0], [1.0, -3.0])
+
+
+def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
+    path = write("0,1\n2,3\n")
+    assert read_table(path.name, path.parent) == read_table(str(path), None) == ([0.0, 2.0], [1.0, 3.0])
+    with pytest.raises(ValueError, match=r'file = "points\.csv" cannot be read: .* starts at the folder of the drive'):
+        read_table("points.csv", path.parent / "elsewhere")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("0,1\n2;3\n", 'line 2: "2;3" is not two numbers with a comma between. Correct this line'),
+        ("0,1\n\n# x\n2,3,4\n", 'line 4: "2,3,4" is not two numbers'),
+        ("time,torque\nt,T\n0,1\n", "line 2: is not two numbers"),
+        (b"\xff\xfe0,1", "is not a CSV text file. Save it as CSV in UTF-8"),
+        ('0,1\n"' + "x" * 200_000 + '"\n', "line 2, is not CSV"),
+    ],
+)
+def test_the_line_that_is_wrong_is_named(write: Any, text: str | bytes, message: str) -> None:
+    with pytest.raises(ValueError, match=r'^file = "points\.csv"') as caught:
+        read_table("points.csv", write(text).parent)
+    assert message in str(caught.value)
+
+
+def test_a_path_is_text() -> None:
+    with pytest.raises(ValueError, match="file = 3 must be the path of a CSV file, as text"):
+        read_table(3, None)
+
+
+def test_a_file_takes_the_place_of_both_columns(write: Any) -> None:
+    path = write("0,1\n2,3\n")
+    info: Any = SimpleNamespace(context={"base": path.parent})
+    taken = take_file({"kind": "table", "file": "points.csv"}, info, "times", "values")
+    assert taken == {"kind": "table", "times": [0.0, 2.0], "values": [1.0, 3.0]}
+    for data in ({"kind": "table", "times": [0, 1]}, "no table"):
+        assert take_file(data, info, "times", "values") is data
+    with pytest.raises(ValueError, match="file excludes times and values"):
+        take_file({"file": "points.csv", "values": [1]}, info, "times", "values")
+
+
+def test_points_are_a_function() -> None:
+    check_points("times", [0.0, 1e-9, 2.0], "values", [1.0, 1.0, 1.0])
+    with pytest.raises(ValueError, match="times has 2 numbers and values has 1: each time needs one value"):
+        check_points("times", [0.0, 1.0], "values", [1.0])
+    for second in (1.0, 0.5):
+        with pytest.raises(ValueError, match=f"times must increase, but {second:g} follows 1. Sort the points by time"):
+            check_points("times", [0.0, 1.0, second], "values", [1.0, 2.0, 3.0])
+
+
+def test_the_schema_asks_for_the_file_or_for_both_columns() -> None:
+    schema: dict[str, Any] = {"properties": {}, "required": ["kind", "times", "values"]}
+    describe_file(schema, "times", "values", "time in s and value in SI units")
+    assert schema["required"] == ["kind"]
+    assert schema["oneOf"] == [{"required": ["file"]}, {"required": ["times", "values"]}]
+    assert schema["properties"]["file"]["description"].endswith("time in s and value in SI units")
