@@ -16,7 +16,7 @@ def summed(drive: Drive, beyond: list[float], normal: np.ndarray = PRESSED) -> t
     """Speeds and shares where points are by so much faster than the belt creeps, m/s, in their sense; 0 sticks."""
     creep = drive.contact.friction_parameters.saturation(normal, drive.frictions[TOUCHED])
     velocity = np.sign(beyond) * creep + np.array([beyond])
-    coordinate = (np.arange(POINTS) + 0.5) * drive.belt.length / POINTS
+    coordinate = (np.arange(POINTS) + 0.5) * drive.belt_length / POINTS
     found = sliding_of_pulleys(drive, coordinate, TOUCHED, normal, velocity)
     speed, share = found["sliding_speed"][0], found["sliding_share"][0]
     return speed.tolist(), share.tolist()
