@@ -14,7 +14,7 @@ ALONG = np.array([-0.1, 0.3, 0.9, 1.2, 1.8, 2.1, 2.1, 1.7, 1.1, 0.8, 0.2, -0.1])
 def displaced(below: np.ndarray, above: np.ndarray, touched: np.ndarray = TOUCHED) -> list[float]:
     height = np.where(np.arange(12) < 6, below, 1.0 + above)
     result = np.full((1, 2), np.nan)
-    fill_mid_spans(LINES, np.stack([ALONG, height], axis=-1)[None], touched, result)
+    fill_mid_spans(LINES, np.stack([ALONG, height], axis=-1)[None], touched, 2, result)
     return list(result[0])
 
 
@@ -38,7 +38,7 @@ def test_between_two_points_the_belt_is_straight() -> None:
 def test_it_does_not_matter_where_the_belt_coordinate_begins(shift: int) -> None:
     height = np.where(np.arange(12) < 6, 0.1 * ALONG, 1.0 + 0.2 * ALONG)
     places, result = np.stack([ALONG, height], axis=-1), np.full((1, 2), np.nan)
-    fill_mid_spans(LINES, np.roll(places, shift, axis=0)[None], np.roll(TOUCHED, shift, axis=1), result)
+    fill_mid_spans(LINES, np.roll(places, shift, axis=0)[None], np.roll(TOUCHED, shift, axis=1), 2, result)
     assert result[0] == pytest.approx([0.1, -0.2], rel=1e-12)
 
 
@@ -46,3 +46,12 @@ def test_a_pulley_that_the_belt_has_left_has_no_spans() -> None:
     nowhere, one = np.full_like(TOUCHED, -1), np.where(TOUCHED == 1, -1, TOUCHED)
     for touched in (nowhere, one):
         assert np.isnan(displaced(0.0 * ALONG, 0.0 * ALONG, touched)).all()
+
+
+def test_an_open_belt_has_a_span_before_its_first_pulley_and_one_behind_its_last() -> None:
+    """The last one is that from the beginning of the belt."""
+    touched = np.where(TOUCHED == 1, 0, -1)
+    height = np.where(np.arange(12) < 6, 0.1 * ALONG, 1.0 + 0.2 * ALONG)
+    result = np.full((1, 2), np.nan)
+    fill_mid_spans(LINES[:, ::-1].copy(), np.stack([ALONG, height], axis=-1)[None], touched, 1, result)
+    assert result[0] == pytest.approx([-0.2, 0.1], rel=1e-12)

@@ -10,7 +10,7 @@ from beltdyn.results.slipping import slip_parts
 from beltdyn.theory.stretch import stretch
 
 STIFFNESS, LENGTH = 1e4, 2.0
-DRIVE: Any = SimpleNamespace(belt=SimpleNamespace(axial_stiffness=STIFFNESS, length=LENGTH))
+DRIVE: Any = SimpleNamespace(belt=SimpleNamespace(axial_stiffness=STIFFNESS), belt_length=LENGTH, pulleys=range(3))
 TENSION = np.array([30.0, 50.0, 90.0])
 """Of the spans that leave the pulleys: the tight one reaches the first pulley, which drives."""
 RIM = np.array([10.0, 9.9, 9.95])
