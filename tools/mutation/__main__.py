@@ -31,7 +31,7 @@ from tools.mutation.trial import ROOT, SOURCE, attempt, attempt_at_import, compi
 
 LIBRARIES = ["matplotlib.pyplot", "numba", "scipy.integrate", "scipy.optimize", "scipy.signal", "scipy.sparse.linalg"]
 LIBRARIES += ["pydantic", "xarray", "h5py"]
-PATIENCE = 5.0
+PATIENCE = 2.5
 """A mutant whose tests take longer than this many times their usual time runs without end."""
 STARTING = 2.0
 """Time to start a session, s."""
