@@ -101,6 +101,18 @@ def assert_columns(system: System, equations: FirstOrder, y: FloatArray, unknown
             np.testing.assert_allclose(jacobian[: 2 * half, unknown][part], found[part], atol=1e-6 * size)
 
 
+@pytest.mark.parametrize("tensioner", ["rotary", "sliding"])
+def test_jacobian_of_bodies(with_machines: Callable[[str], Drive], tensioner: str) -> None:
+    """Tensioner, hub chain and loads, each row at its own size beside the far larger ones of the belt."""
+    system = drive_system(with_machines(tensioner))
+    rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 3e-4), np.array([2e-3])).position
+    velocity = 0.5 * np.random.default_rng(1).normal(size=rest.size)
+    equations = FirstOrder(system)
+    y = equations.pack(State(rest, velocity, velocity))
+    bodies = range(system.first_body, rest.size)
+    assert_columns(system, equations, y, [*bodies, *(rest.size + body for body in bodies)])
+
+
 def test_jacobian_where_a_tensioner_is_the_only_free_body(with_machines: Callable[[str], Drive]) -> None:
     """All shafts run at given speeds; the arm turns, so that the centre it carries speeds up as it moves."""
     drive = with_machines("rotary")

@@ -146,6 +146,29 @@ def test_impulses_of_a_clutch_are_opposite_on_its_bodies(clutched: tuple[System,
     assert np.count_nonzero(impulse) == 2
 
 
+def test_impulses_of_torques_turn_their_own_shafts(drive: Drive) -> None:
+    """Of three pulleys: one with a given speed, one with a torque behind a hub, one with a torque on its rim."""
+    far: list[dict[str, Any]] = [
+        {"name": name, "center": (0.0, 50.0 + 10.0 * number), "radius": 0.1} for number, name in enumerate("abc")
+    ]
+    hub = [{"kind": "isolator", "stiffness": 30.0, "damping": 0.4, "inertia": 0.1}]
+    half = Table(times=TABLE.times, values=tuple(0.5 * value for value in TABLE.values))
+    pulleys = [
+        Pulley(**far[0], speed=TABLE),
+        Pulley(**far[1], torque=TABLE, inertia=J, hub=hub),
+        Pulley(**far[2], torque=half, inertia=J),
+    ]
+    system = belt_system(drive.belt.replace(elements=3), pulleys, drive.contact)
+    rest = straight(system)
+    impulse = np.full((2, rest.position.size), 7.0)
+    missed_impulses(system, Motion(START, rest.position, rest.velocity, rest.acceleration), LENGTH, impulse)
+    times = np.union1d([START, START + LENGTH], TIMES[(TIMES > START) & (TIMES < START + LENGTH)])
+    missed = deviation_integral(TABLE.at(times), times)[-1]
+    np.testing.assert_allclose(impulse[0, system.first_body :], [0.0, 0.0, 0.5 * missed, missed], atol=1e-12)
+    assert not impulse[0, : system.first_body].any()
+    assert not impulse[1].any()
+
+
 def after_step(system: System, motion: Motion, speed: float, acceleration: float) -> Motion:
     velocity, rate = motion.velocity.copy(), motion.acceleration.copy()
     velocity[system.first_body :], rate[system.first_body :] = speed, acceleration
