@@ -111,6 +111,13 @@ def test_waterfall_shows_the_line_of_an_order_and_that_of_a_hum(
     np.testing.assert_allclose(ridge.values[slow], 2.5 * found["speed"].values[slow] / (2.0 * np.pi), atol=width)
 
 
+def test_a_single_spectrum_longer_than_the_record_is_no_run_up(run_up: Signals) -> None:
+    """With three pieces each is to be of four thirds of the record."""
+    values, speed, _ = run_up
+    with pytest.raises(ModelError, match="there is no run-up to look at"):
+        waterfall(values, speed, pieces=3)
+
+
 def test_speeds_of_a_waterfall_are_those_in_the_middle_of_its_spectra(run_up: Signals) -> None:
     """Spectra of 1064 outputs, every 266 of them, that lie wholly inside."""
     values, speed, _ = run_up

@@ -1,0 +1,82 @@
+"""Tests mirror the sources: what a module does is tested in tests/unit/<package>/test_<module>.py."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+UNIT = Path(__file__).parent
+SOURCE = UNIT.parents[1] / "src" / "beltdyn"
+
+ELSEWHERE = {
+    # Kinds of one contract: the test of their family runs over all of them alike.
+    "contact/friction/*.py": "unit/contact/test_friction.py",
+    "contact/normal/*.py": "unit/contact/test_normal.py",
+    "contact/surface/*.py": "unit/contact/test_surface.py",
+    "elements/ancf/kind.py": "unit/elements/test_kind.py",
+    "machines/links/*.py": "unit/machines/links/test_links.py",
+    "machines/loads/*.py": "unit/machines/loads/test_shaft.py",
+    "machines/profiles/*.py": "unit/machines/profiles/test_functions.py",
+    "machines/tensioners/registry.py": "unit/machines/tensioners/test_tensioner.py",
+    "results/checks/*.py": "unit/results/test_checks.py",
+    # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
+    "elements/planar_curve.py": "unit/elements/test_kind.py",
+    "elements/section.py": "unit/elements/test_kind.py",
+    "system/body_forces.py": "unit/system/test_bodies.py",
+    "system/moving_center.py": "unit/system/test_bodies.py",
+    "system/observations.py": "unit/system/test_observe.py",
+    "system/pulley_state.py": "unit/system/test_balance.py",
+    "system/state_loads.py": "unit/system/test_balance.py",
+    "solve/alpha_impulse.py": "verification/dynamics/test_impulse.py",
+    "solve/alpha_method.py": "unit/solve/test_alpha_step.py",
+    "solve/engine.py": "unit/solve/test_alpha_advance.py",
+    "solve/integrator_state.py": "unit/solve/test_alpha_advance.py",
+    "solve/observer.py": "unit/solve/test_recording.py",
+    # Seen by a user through something else, and tested there.
+    "__init__.py": "unit/test_public_names.py",
+    "analyses.py": "unit/cli/test_analysis.py",
+    "cli/*.py": "unit/cli/test_commands.py",
+    "model/advice.py": "unit/model/test_drive.py",
+    "model/open_path.py": "unit/model/test_end.py",
+    "model/picture.py": "unit/model/test_notebook.py",
+    "results/__init__.py": "unit/test_public_names.py",
+    "results/means.py": "unit/results/test_summary.py",
+    # Statements and runs of the paper, which take minutes.
+    "published/released_belt.py": "verification/test_released_belt.py",
+    "report/paper/*.py": "validation/test_paper.py",
+}
+"""Where modules are tested that have no test of their name."""
+
+
+def mirror(module: Path) -> Path:
+    """The test of a module by its name; that of a package is beside its folder."""
+    inside = module.relative_to(SOURCE)
+    if inside.name == "__init__.py":
+        return UNIT / inside.parent.parent / f"test_{inside.parent.name}.py"
+    return UNIT / inside.parent / f"test_{inside.stem}.py"
+
+
+def has_functions(module: Path) -> bool:
+    """Whether a module has a function that does something, other than to declare what others do."""
+    nodes = ast.walk(ast.parse(module.read_text(encoding="utf-8")))
+    functions = (node for node in nodes if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
+    return any(not _only_declares(function) for function in functions)
+
+
+def _only_declares(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    return all(isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant) for one in function.body)
+
+
+WITHOUT = [path for path in sorted(SOURCE.rglob("*.py")) if has_functions(path) and not mirror(path).exists()]
+"""Modules that no test is named after."""
+
+
+def test_every_module_has_its_test_or_says_where_it_is_tested() -> None:
+    listed = {path for pattern in ELSEWHERE for path in SOURCE.glob(pattern)}
+    assert [path.relative_to(SOURCE).as_posix() for path in WITHOUT if path not in listed] == []
+
+
+@pytest.mark.parametrize("pattern", ELSEWHERE)
+def test_the_list_names_tests_that_there_are_for_modules_that_need_them(pattern: str) -> None:
+    assert (UNIT.parent / ELSEWHERE[pattern]).is_file()
+    assert set(SOURCE.glob(pattern)) & set(WITHOUT)
