@@ -8,8 +8,8 @@ from beltdyn.arrays import BoolArray, FloatArray
 class EnergyAccount:
     """Closure error over time, relative to the energy put in.
 
-    With the energy E of the belt and the bodies (kinetic, strain and penalty), and V of springs and of weight, whose
-    zero is anywhere, the error is
+    With the energy E of the belt and the bodies (kinetic, strain and penalty), and V of springs, and of weight and
+    forces on ends, whose zero is anywhere, the error is
 
         (E(t) - E(0) + V(t) - V(0) - driver work - torque work + losses) / energy put in,
 

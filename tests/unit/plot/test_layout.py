@@ -8,6 +8,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, FancyArrowPatch, Wedge
+from matplotlib.text import Annotation
 
 from beltdyn import plot
 from beltdyn.errors import ModelError
@@ -120,3 +121,27 @@ def test_unknown_format(drive: Drive, tmp_path: Path, name: str, words: str) -> 
 def test_unwritable_file(drive: Drive, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="cannot be written"):
         plot.save_layout(drive, tmp_path / "nowhere" / "layout.png")
+
+
+def test_ends_of_a_belt_are_drawn_where_its_path_ends(drive: Drive, ax: Axes) -> None:
+    """A square at the fixed end, and both names beyond the ends, along the spans."""
+    ends = (
+        {"name": "anchor", "kind": "fixed", "point": (0.1, -0.4)},
+        {"name": "pull", "kind": "pulled", "direction": (0.0, -1.0), "tension": 20.0},
+    )
+    drum = {"name": "drum", "center": (0.0, 0.0), "radius": 0.1, "inertia": 1.0}
+    open_drive = drive.replace(pulley=[drum], end=ends)
+    path = open_drive.path
+    plot.layout(open_drive, ax=ax)
+    lines = belt_lines(ax)
+    assert len(lines) == 3
+    np.testing.assert_allclose(lines[1:], path.span_points, atol=1e-12)
+    (square,) = (line for line in ax.lines if line.get_marker() == "s")
+    assert path.ends is not None
+    np.testing.assert_allclose(np.array(square.get_xydata()), path.ends[:1])
+    places = {text.get_text(): text for text in ax.texts if isinstance(text, Annotation)}
+    for name, point in zip(("anchor", "pull"), path.ends, strict=True):
+        np.testing.assert_allclose(places[name].xy, point)
+        assert places[name].get_position()[1] < 0.0
+    low, high = ax.get_ylim()
+    assert low < path.ends[:, 1].min() < high
