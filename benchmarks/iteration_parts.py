@@ -12,17 +12,17 @@ from rich.console import Console
 from rich.table import Table
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
 from beltdyn.solve.installation import bring_to_rest
-from beltdyn.system.arrays import System
-from beltdyn.system.assembly import assemble, fill_control
+from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
+from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import Equations, new_equations, no_multipliers
+from beltdyn.system.element_state import centreline, gather
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import factorise_ring, substitute
@@ -31,63 +31,55 @@ ROUNDS, REPEATS = 15, 300
 
 
 @kernel
-def repeat_assembly(system: System, state: FloatArray, rates: FloatArray, work: Equations, none: FloatArray) -> None:
+def repeat_assembly(system: System, motion: Motion, work: Equations, none: FloatArray) -> None:
     """Residual and tangent."""
     for _ in range(REPEATS):
-        assemble(system, 0.0, state, rates, rates, none, 1.0, 2e3, 4e6, work.work, work.matrix, work.loads)
+        assemble(system, motion, none, TangentFactors(1.0, 2e3, 4e6), work)
 
 
 @kernel
-def repeat_residual(system: System, state: FloatArray, rates: FloatArray, work: Equations, none: FloatArray) -> None:
+def repeat_residual(system: System, motion: Motion, work: Equations, none: FloatArray) -> None:
     """Residual alone."""
     for _ in range(REPEATS):
-        assemble(system, 0.0, state, rates, rates, none, 0.0, 0.0, 0.0, work.work, work.matrix, work.loads)
+        assemble(system, motion, none, NO_TANGENT, work)
 
 
 @kernel
-def repeat_factors(system: System, _state: FloatArray, _rates: FloatArray, work: Equations, _none: FloatArray) -> None:
+def repeat_factors(system: System, _motion: Motion, work: Equations, _none: FloatArray) -> None:
     """Factorise the tangent."""
     for _ in range(REPEATS):
         factorise_ring(work.matrix, system.closed)
 
 
 @kernel
-def repeat_substitution(system: System, _s: FloatArray, _rates: FloatArray, work: Equations, _none: FloatArray) -> None:
+def repeat_substitution(system: System, _motion: Motion, work: Equations, _none: FloatArray) -> None:
     """Solve with factors."""
     for _ in range(REPEATS):
         substitute(work.matrix, system.closed, work.node_part, work.border_part)
 
 
 @kernel
-def repeat_elasticity(system: System, state: FloatArray, _r: FloatArray, work: Equations, _none: FloatArray) -> None:
+def repeat_elasticity(system: System, motion: Motion, work: Equations, _none: FloatArray) -> None:
     """Elastic forces with their tangent."""
     scratch = work.work
     for _ in range(REPEATS):
         for element in range(system.length.size):
-            dof = len(system.scale)
-            for c in range(dof):
-                scratch.coordinates[0, c] = state[dof * element + c]
-                scratch.coordinates[0, dof + c] = state[dof * ((element + 1) % system.nodes) + c]
+            gather(system, element, motion.position, scratch.coordinates[0])
             elastic_force(system.element, scratch.coordinates[0], system.length[element], True, scratch.element)
 
 
 @kernel
-def repeat_contact(system: System, state: FloatArray, rates: FloatArray, work: Equations, _none: FloatArray) -> None:
+def repeat_contact(system: System, motion: Motion, work: Equations, _none: FloatArray) -> None:
     """Contact forces with their tangent."""
     scratch, points = work.work, system.contact
     for _ in range(REPEATS):
         for element in range(system.length.size):
-            dof = len(system.scale)
-            for c in range(dof):
-                scratch.coordinates[0, c] = state[dof * element + c]
-                scratch.coordinates[0, dof + c] = state[dof * ((element + 1) % system.nodes) + c]
-            fill_control(system, element, 0, scratch.coordinates[0], scratch.control)
+            gather(system, element, motion.position, scratch.coordinates[0])
+            gather(system, element, motion.velocity, scratch.coordinates[1])
+            piece = centreline(system, element, 0, scratch)
             for p in range(system.pulleys.size):
-                pulley = pulley_state(system, p, state, rates)
-                if not out_of_reach(scratch.control, pulley):
-                    piece = Curve(
-                        scratch.control, scratch.control_velocity, system.control[element, 0], system.length[element]
-                    )
+                pulley = pulley_state(system, p, motion.position, motion.velocity)
+                if not out_of_reach(piece.control, pulley):
                     contact_force(piece, pulley, system.law, points, 1.0, 2e3, scratch.contact)
 
 
@@ -110,7 +102,8 @@ def main() -> None:
     drive = better(two_pulley(elements))
     system = drive_system(drive)
     state = bring_to_rest(drive).state.position
-    arguments = (system, state, np.zeros_like(state), new_equations(system), no_multipliers(system))
+    motion = Motion(0.0, state, np.zeros_like(state), np.zeros_like(state))
+    arguments = (system, motion, new_equations(system), no_multipliers(system))
     table = Table("part", "µs per element", title=f"{elements} elements")
     parts = {
         "assembly": repeat_assembly,

@@ -15,10 +15,10 @@ from beltdyn.kernel import kernel
 from beltdyn.model import Drive
 from beltdyn.published import two_pulley
 from beltdyn.solve.installation import bring_to_rest
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import Equations, new_equations, no_multipliers
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import solve_ring
 
 ELEMENTS = (20, 40, 80, 160, 320, 640)
@@ -27,25 +27,10 @@ ROUNDS = 7
 
 
 @kernel
-def iterate(
-    system: System, position: FloatArray, velocity: FloatArray, equations: Equations, none: FloatArray, count: int
-) -> None:
+def iterate(system: System, motion: Motion, equations: Equations, none: FloatArray, count: int) -> None:
     """Linearise and solve at the same state again and again, as an integrator with steps of a millisecond does."""
     for _ in range(count):
-        assemble(
-            system,
-            0.0,
-            position,
-            velocity,
-            velocity,
-            none,
-            1.0,
-            2e3,
-            4e6,
-            equations.work,
-            equations.matrix,
-            equations.loads,
-        )
+        assemble(system, motion, none, TangentFactors(1.0, 2e3, 4e6), equations)
         solve_ring(equations.matrix, system.closed, equations.node_part, equations.border_part)
 
 
@@ -53,14 +38,14 @@ def time_iterations(drive: Drive) -> list[float]:
     """Microseconds per iteration of each round, on the belt in equilibrium on its pulleys."""
     system = drive_system(drive)
     state = bring_to_rest(drive).state
-    velocity = np.zeros_like(state.position)
+    motion = Motion(0.0, state.position, np.zeros_like(state.position), np.zeros_like(state.position))
     equations, none = new_equations(system), no_multipliers(system)
     count = ITERATIONS // system.nodes
-    iterate(system, state.position, velocity, equations, none, 1)
+    iterate(system, motion, equations, none, 1)
     rounds = []
     for _ in range(ROUNDS):
         begun = time.perf_counter()
-        iterate(system, state.position, velocity, equations, none, count)
+        iterate(system, motion, equations, none, count)
         rounds.append((time.perf_counter() - begun) / count * 1e6)
     return rounds
 

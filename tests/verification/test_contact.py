@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Constant, Contact, Path, Pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import BodyForces, System
+from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, no_multipliers
@@ -47,22 +47,9 @@ def turning(speed: float, center: tuple[float, float] = (0.0, 0.0), name: str = 
 
 def load(system: System, state: State) -> tuple[FloatArray, BodyForces]:
     """Residual of the nodes, shape (N, 6), and the loads on the pulleys."""
-    equations, zero = new_equations(system), np.zeros_like(state.position)
-    velocity, none = state.velocity, no_multipliers(system)
-    assemble(
-        system,
-        0.0,
-        state.position,
-        velocity,
-        zero,
-        none,
-        0.0,
-        0.0,
-        0.0,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+    equations = new_equations(system)
+    motion = Motion(0.0, state.position, state.velocity, np.zeros_like(state.position))
+    assemble(system, motion, no_multipliers(system), NO_TANGENT, equations)
     return equations.matrix.node_side, equations.loads
 
 

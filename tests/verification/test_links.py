@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.solve import find_equilibrium
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import NO_TANGENT, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.motion import new_equations, no_multipliers
@@ -180,20 +180,7 @@ class TestSpinningRing:
     def test_forces_balance(self, belt: Belt, kind: str, links: int) -> None:
         system, state, tension = self.spin(linked(belt, kind, links))
         equations = new_equations(system)
-        assemble(
-            system,
-            0.0,
-            state.position,
-            state.velocity,
-            state.acceleration,
-            no_multipliers(system),
-            0.0,
-            0.0,
-            0.0,
-            equations.work,
-            equations.matrix,
-            equations.loads,
-        )
+        assemble(system, state.at(0.0), no_multipliers(system), NO_TANGENT, equations)
         np.testing.assert_allclose(equations.matrix.node_side, 0.0, atol=1e-9 * tension)
         seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
         np.testing.assert_allclose(seen.belt_tension[0], tension, rtol=1e-9)

@@ -9,6 +9,8 @@ Against a surface that is not a smooth circle the penetration is sampled along t
 its sign changes between two samples.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from beltdyn.arrays import FloatArray
@@ -24,6 +26,14 @@ _SAMPLES = 16
 """Intervals of an element in which its contact with a shaped surface is looked for; shorter ones may not be seen."""
 _STEPS = 60
 _RESOLUTION = 1e-13
+
+
+class Circle(NamedTuple):
+    """The rim of a round pulley, m."""
+
+    x: float
+    y: float
+    radius: float
 
 
 def zone_record(count: int) -> np.dtype[np.void]:
@@ -109,9 +119,9 @@ def touching_intervals(control: FloatArray, pulley: PulleyState, zone: np.record
 @kernel
 def _on_circle(surface: Round, control: FloatArray, center_x: float, center_y: float, zone: np.record) -> int:
     """Exact intervals on a smooth circle."""
-    pieces, intervals = zone.pieces, zone.intervals
+    circle, pieces, intervals = Circle(center_x, center_y, surface.radius), zone.pieces, zone.intervals
     end = pieces.shape[1] - 1
-    _fill_overlap(control, center_x, center_y, surface.radius, pieces)
+    _fill_overlap(control, circle, pieces)
     inside = pieces[0, 0] >= 0.0
     count, last, left, start = 0, 0, 0.0, 0.0
     while last >= 0:
@@ -122,7 +132,7 @@ def _on_circle(surface: Round, control: FloatArray, center_x: float, center_y: f
             last += 1
             continue
         if changes % 2 == 1:
-            root = _root(control, surface, center_x, center_y, left, right, inside, zone)
+            root = _root(control, circle, left, right, inside, zone)
             if inside and count < intervals.shape[0]:
                 intervals[count, 0], intervals[count, 1] = start, root
                 count += 1
@@ -136,17 +146,17 @@ def _on_circle(surface: Round, control: FloatArray, center_x: float, center_y: f
 
 
 @kernel(inline=True)
-def _fill_overlap(control: FloatArray, center_x: float, center_y: float, radius: float, pieces: FloatArray) -> None:
+def _fill_overlap(control: FloatArray, circle: Circle, pieces: FloatArray) -> None:
     """Write the whole element on the stack: Bernstein coefficients of R^2 - |r - O|^2."""
-    degree, rim = control.shape[0] - 1, radius * radius
+    degree, rim = control.shape[0] - 1, circle.radius * circle.radius
     for k in range(2 * degree + 1):
         square = 0.0
         for i in range(degree + 1):
             j = k - i
             if not 0 <= j <= degree:
                 continue
-            x = (control[i, 0] - center_x) * (control[j, 0] - center_x)
-            y = (control[i, 1] - center_y) * (control[j, 1] - center_y)
+            x = (control[i, 0] - circle.x) * (control[j, 0] - circle.x)
+            y = (control[i, 1] - circle.y) * (control[j, 1] - circle.y)
             square += BINOMIALS[degree, i] * BINOMIALS[degree, j] * (x + y)
         pieces[0, k] = rim - square / BINOMIALS[2 * degree, k]
     pieces[0, 2 * degree + 1] = 1.0
@@ -173,16 +183,7 @@ def _halve(pieces: FloatArray, piece: int, middle: float) -> None:
 
 
 @kernel(inline=True)
-def _root(
-    control: FloatArray,
-    surface: Round,
-    center_x: float,
-    center_y: float,
-    left: float,
-    right: float,
-    falling: bool,
-    zone: np.record,
-) -> float:
+def _root(control: FloatArray, circle: Circle, left: float, right: float, falling: bool, zone: np.record) -> float:
     """The root of the overlap between two points at which it has opposite signs.
 
     Newton's method, and halving where that would leave the bracket.
@@ -193,8 +194,8 @@ def _root(
         fill_bernstein_rates(xi, zone.rates)
         x, y = combine(control, zone.weights)
         dx, dy = combine(control, zone.rates)
-        x, y = x - center_x, y - center_y
-        value, slope = surface.radius * surface.radius - (x * x + y * y), -2.0 * (x * dx + y * dy)
+        x, y = x - circle.x, y - circle.y
+        value, slope = circle.radius * circle.radius - (x * x + y * y), -2.0 * (x * dx + y * dy)
         if (value >= 0.0) == falling:
             left = xi
         else:

@@ -37,6 +37,15 @@ class Touch(NamedTuple):
     """|f_t v_t|, W/m, shape (k, points)."""
 
 
+class WorkSoFar(NamedTuple):
+    """Work of friction up to a state, by part of an arc, then by piece of the belt; changed in place."""
+
+    power: FloatArray
+    """Powers at the state before and at this one, W, shape (2, P, ARC_PARTS + elements)."""
+    total: FloatArray
+    """J, shape (P, ARC_PARTS + elements)."""
+
+
 class FrictionWork:
     """Integrals over time of the power |f_t v_t|, by the trapezoidal rule over successive states.
 
@@ -55,8 +64,8 @@ class FrictionWork:
         self._drive, self._cell, self._elements = drive, np.ascontiguousarray(cell, dtype=float), elements
         self._turning = np.array([float(pulley.turning) for pulley in drive.pulleys])
         self._time = np.inf
-        self._power = np.zeros((2, pulleys, ARC_PARTS + elements))
-        self._work = np.zeros((pulleys, ARC_PARTS + elements))
+        parts = pulleys, ARC_PARTS + elements
+        self._done = WorkSoFar(np.zeros((2, *parts)), np.zeros(parts))
 
     def take(self, touch: Touch, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Go on to further states.
@@ -77,9 +86,9 @@ class FrictionWork:
         """
         inlet, wrap = arc_ends(self._drive, touch.center)
         arcs = np.stack([inlet, wrap, np.broadcast_to(self._turning, wrap.shape)], axis=-1)
-        work = np.empty((np.count_nonzero(shown), *self._work.shape))
+        work = np.empty((np.count_nonzero(shown), *self._done.total.shape))
         passed = np.diff(touch.time, prepend=min(self._time, touch.time[0]))
-        add_friction_work(touch, arcs, passed, self._cell, shown, self._power, self._work, work)
+        add_friction_work(touch, arcs, passed, self._cell, shown, self._done, work)
         self._time = float(touch.time[-1])
         return work[..., :ARC_PARTS], work[..., ARC_PARTS:]
 
@@ -91,8 +100,7 @@ def add_friction_work(
     passed: FloatArray,
     cell: FloatArray,
     shown: BoolArray,
-    power: FloatArray,
-    total: FloatArray,
+    done: WorkSoFar,
     work: FloatArray,
 ) -> None:
     """Integrate the work of friction over the steps to k states.
@@ -109,13 +117,12 @@ def add_friction_work(
         Length of belt that each contact point stands for, m.
     shown : ndarray of bool, shape (k,)
         After which steps the work is kept.
-    power : ndarray, shape (2, P, ARC_PARTS + elements)
-        Powers by part of an arc and by element before and after a step, W; those of the last state are kept here.
-    total : ndarray, shape (P, ARC_PARTS + elements)
-        Work so far, J.
+    done
+        Up to the state before them, and afterwards up to the last of them.
     work : ndarray, shape (m, P, ARC_PARTS + elements)
         Overwritten by the work in the states that are shown.
     """
+    power, total = done.power, done.total
     pulleys, parts = total.shape
     points = cell.size // (parts - ARC_PARTS)
     show = 0

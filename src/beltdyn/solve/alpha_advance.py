@@ -14,12 +14,11 @@ from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import follow_profiles
 from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import Step, new_step, try_step
-from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, allowed_error, motion_of
+from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, allowed_error, motion_of, trial_motion
 from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import NUMERICAL_LOSS, BodyForces, Motion, System
+from beltdyn.system.arrays import NUMERICAL_LOSS, BodyForces, Equations, System
 from beltdyn.system.body_forces import keep_loads
 from beltdyn.system.missed_action import missed_work
-from beltdyn.system.motion import Equations
 from beltdyn.system.numerical_loss import numerical_loss
 from beltdyn.system.state_loads import find_loads
 
@@ -143,7 +142,7 @@ def _local_error(system: System, settings: Settings, method: Method, state: Inte
 def _accept(system: System, method: Method, state: IntegratorState, equations: Equations, step: Step) -> None:
     """Move to the end of the step, and do the energy account."""
     work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
-    end = Motion(step.end, state.trial.position, state.trial.velocity, state.trial.acceleration)
+    end = trial_motion(state, step.end)
     find_loads(system, end, work, corner, equations.loads)
     state.work[NUMERICAL_LOSS] += numerical_loss(system, motion_of(state), end, state.impulse, work)
     missed_work(system, motion_of(state), end, state.impulse, state.missed)

@@ -16,10 +16,10 @@ from typing import Final, NamedTuple
 from beltdyn.kernel import kernel
 from beltdyn.solve.alpha_impulse import add_missed_impulses
 from beltdyn.solve.alpha_method import Method
-from beltdyn.solve.integrator_state import IntegratorState, Settings, allowed_error
-from beltdyn.system.arrays import System
+from beltdyn.solve.integrator_state import IntegratorState, Settings, allowed_error, trial_motion
+from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
-from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
+from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 
@@ -47,10 +47,8 @@ class Step(NamedTuple):
     """s."""
     length: float
     """s."""
-    by_velocity: float
-    """Change of the velocity over that of the position, 1/s."""
-    by_acceleration: float
-    """Change of the acceleration over that of the position, 1/s^2."""
+    factors: TangentFactors
+    """Changes of position, velocity and acceleration over that of the unknown, which is the position."""
 
 
 @kernel
@@ -71,8 +69,11 @@ def new_step(method: Method, start: float, length: float, stop: float) -> Step:
     return Step(
         stop if abs(stop - start - length) < _SAME else start + length,
         length,
-        method.gamma / (method.beta * length),
-        (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
+        TangentFactors(
+            1.0,
+            method.gamma / (method.beta * length),
+            (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
+        ),
     )
 
 
@@ -150,27 +151,14 @@ def _predict(system: System, method: Method, state: IntegratorState, step: Step)
         state.trial.velocity[i] = state.velocity[i] + length * a
         state.trial.acceleration[i] = (a - method.af * state.acceleration[i]) / (1.0 - method.af)
     add_missed_impulses(system, method, state, length)
-    prescribe(system, step.end, state.trial.position, state.trial.velocity, state.trial.acceleration)
+    prescribe(system, trial_motion(state, step.end))
 
 
 @kernel(inline=True)
 def _assemble(system: System, state: IntegratorState, step: Step, equations: Equations, renewed: bool) -> None:
     """Assemble the residual at the trial state, and the tangent if it is renewed."""
-    share = 1.0 if renewed else 0.0
-    assemble(
-        system,
-        step.end,
-        state.trial.position,
-        state.trial.velocity,
-        state.trial.acceleration,
-        state.multipliers,
-        share,
-        share * step.by_velocity,
-        share * step.by_acceleration,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+    factors = step.factors if renewed else NO_TANGENT
+    assemble(system, trial_motion(state, step.end), state.multipliers, factors, equations)
 
 
 @kernel(inline=True)
@@ -193,8 +181,8 @@ def _cut_back(
 def _move(system: System, state: IntegratorState, step: Step, equations: Equations, factor: float) -> None:
     """Take factor times the solution off the trial state."""
     subtract_solution(system, equations, factor, state.trial.position)
-    subtract_solution(system, equations, factor * step.by_velocity, state.trial.velocity)
-    subtract_solution(system, equations, factor * step.by_acceleration, state.trial.acceleration)
+    subtract_solution(system, equations, factor * step.factors.by_velocity, state.trial.velocity)
+    subtract_solution(system, equations, factor * step.factors.by_acceleration, state.trial.acceleration)
     subtract_multipliers(system, equations, factor, state.multipliers)
 
 

@@ -15,7 +15,7 @@ from tempfile import TemporaryFile
 import numpy as np
 
 from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
-from beltdyn.results.friction_work import ARC_PARTS, Touch, add_friction_work
+from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
 from beltdyn.solve.engine import accelerate
 from beltdyn.system.arrays import System
@@ -51,14 +51,15 @@ def _compile_observing(system: System) -> None:
     shown, touched = np.empty(0, dtype=np.bool_), np.empty((0, 0), dtype=np.int8)
     observe(system, time, states, states)
     touch, work = Touch(time, places, places, touched, states), np.empty((0, 0, ARC_PARTS + 1))
-    add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, np.empty((2, 0, 0)), states, work)
+    done = WorkSoFar(np.empty((2, 0, 0)), states)
+    add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, done, work)
     fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, 0, states)
 
 
 def compile_solving(system: System, state: State) -> None:
     """Compile what solves the equations of motion alone; arguments as for `compile_kernels`."""
-    velocity, acceleration = np.zeros_like(state.position), np.zeros_like(state.position)
-    accelerate(system, 0.0, state.position, velocity, acceleration, no_multipliers(system), new_equations(system))
+    motion = State(state.position, np.zeros_like(state.position), np.zeros_like(state.position)).at(0.0)
+    accelerate(system, motion, no_multipliers(system), new_equations(system))
 
 
 @contextmanager

@@ -12,11 +12,19 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import kernel
 from beltdyn.solve import alpha_advance
-from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, empty_steps, new_state
-from beltdyn.system.arrays import DRIVER_WORK, System
+from beltdyn.solve.integrator_state import (
+    IntegratorState,
+    Settings,
+    Steps,
+    empty_steps,
+    motion_of,
+    new_state,
+    trial_motion,
+)
+from beltdyn.system.arrays import DRIVER_WORK, NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.missed_action import jump_work
-from beltdyn.system.motion import Equations, subtract_multipliers, subtract_solution
+from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import solve_ring, substitute
 
@@ -42,10 +50,7 @@ class Request(NamedTuple):
     """Where the last step ends, or where to linearise, s."""
     budget: int = 0
     """Steps to try at most."""
-    by_position: float = 0.0
-    """Factors of the tangent, as for `assemble`."""
-    by_velocity: float = 0.0
-    by_acceleration: float = 0.0
+    factors: TangentFactors = NO_TANGENT
     factor: float = 0.0
     """Part of the solution."""
 
@@ -79,22 +84,10 @@ def serve(
         subtract_solution(system, equations, request.factor, trial.position)
         subtract_multipliers(system, equations, request.factor, state.multipliers)
         return 1, 0
+    motion = trial_motion(state, request.time)
     if kind == ACCELERATE:
-        prescribe(system, request.time, trial.position, trial.velocity, trial.acceleration)
-    assemble(
-        system,
-        request.time,
-        trial.position,
-        trial.velocity,
-        trial.acceleration,
-        state.multipliers,
-        request.by_position,
-        request.by_velocity,
-        request.by_acceleration,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+        prescribe(system, motion)
+    assemble(system, motion, state.multipliers, request.factors, equations)
     if kind == CORRECT:
         substitute(equations.matrix, system.closed, equations.node_part, equations.border_part)
         return 1, 0
@@ -120,16 +113,7 @@ def advance(
 
 
 def linearise(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    by_acceleration: float,
-    equations: Equations,
+    system: System, motion: Motion, multipliers: FloatArray, factors: TangentFactors, equations: Equations
 ) -> bool:
     """Assemble the equations at a state and solve tangent x = residual; arguments as for `assemble`.
 
@@ -138,51 +122,30 @@ def linearise(
     bool
         False if the tangent is singular.
     """
-    request = Request(LINEARISE, time, 0, by_position, by_velocity, by_acceleration)
-    return _serve(system, request, (position, velocity, acceleration), multipliers, equations)
+    return _serve(system, Request(LINEARISE, motion.time, factors=factors), motion, multipliers, equations)
 
 
-def correct(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
-    equations: Equations,
-) -> None:
+def correct(system: System, motion: Motion, multipliers: FloatArray, equations: Equations) -> None:
     """Solve tangent x = residual at a state with the tangent of another, which `linearise` left in the equations."""
-    _serve(system, Request(CORRECT, time), (position, velocity, acceleration), multipliers, equations)
+    _serve(system, Request(CORRECT, motion.time), motion, multipliers, equations)
 
 
 def move(system: System, equations: Equations, factor: float, position: FloatArray, multipliers: FloatArray) -> None:
     """Take factor times the solution off a position and the multipliers of the joint, in place."""
-    spare = np.zeros((2, position.size))
-    _serve(system, Request(MOVE, factor=factor), (position, spare[0], spare[1]), multipliers, equations)
+    motion = Motion(0.0, position, np.zeros_like(position), np.zeros_like(position))
+    _serve(system, Request(MOVE, factor=factor), motion, multipliers, equations)
 
 
-def accelerate(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
-    equations: Equations,
-) -> bool:
+def accelerate(system: System, motion: Motion, multipliers: FloatArray, equations: Equations) -> bool:
     """Accelerations and multipliers that the equations of motion ask for (Eq. 25, and Eq. 27 where nodes are shared).
 
     Parameters
     ----------
     system
         The system.
-    time
-        s.
-    position, velocity : ndarray, shape (6 N + D,)
-        The state; the motion of prescribed bodies is written into it.
-    acceleration : ndarray, shape (6 N + D,)
-        Overwritten.
-    multipliers : ndarray, shape (6,)
+    motion
+        The state; the motion of prescribed bodies is written into it, and its accelerations are overwritten.
+    multipliers : ndarray, shape (n,)
         Overwritten.
     equations
         Arrays to work in; afterwards its loads are those of the state.
@@ -192,26 +155,20 @@ def accelerate(
     bool
         False if the mass matrix is singular.
     """
-    acceleration[:] = 0.0
+    motion.acceleration[:] = 0.0
     multipliers[:] = 0.0
-    request = Request(ACCELERATE, time, by_acceleration=1.0)
-    return _serve(system, request, (position, velocity, acceleration), multipliers, equations)
+    request = Request(ACCELERATE, motion.time, factors=TangentFactors(by_acceleration=1.0))
+    return _serve(system, request, motion, multipliers, equations)
 
 
-def _serve(
-    system: System,
-    request: Request,
-    motion: tuple[FloatArray, FloatArray, FloatArray],
-    multipliers: FloatArray,
-    equations: Equations,
-) -> bool:
+def _serve(system: System, request: Request, motion: Motion, multipliers: FloatArray, equations: Equations) -> bool:
     """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
-    size = motion[0].size
+    size, vectors = motion.position.size, (motion.position, motion.velocity, motion.acceleration)
     state = new_state(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
-    for own, given in zip(state.trial, motion, strict=False):
+    for own, given in zip(state.trial, vectors, strict=False):
         own[:] = given
     solved = serve(system, request, _NO_SETTINGS, state, equations, empty_steps(system, 0))[0] == 1
-    for changed, vector in zip(motion, state.trial, strict=False):
+    for changed, vector in zip(vectors, state.trial, strict=False):
         changed[:] = vector
     return solved
 
@@ -233,9 +190,9 @@ def restart(system: System, state: IntegratorState, equations: Equations) -> Non
     ConvergenceError
         If the mass matrix is singular.
     """
-    after = float(np.nextafter(state.clock.time, np.inf))
+    after = motion_of(state)._replace(time=float(np.nextafter(state.clock.time, np.inf)))
     speeds = state.velocity.copy()
-    if not accelerate(system, after, state.position, state.velocity, state.acceleration, state.multipliers, equations):
+    if not accelerate(system, after, state.multipliers, equations):
         raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
     state.auxiliary[:] = state.acceleration
     state.lagged[:] = np.nan

@@ -109,6 +109,12 @@ def motion_of(state: IntegratorState) -> Motion:
     return Motion(state.clock.time, state.position, state.velocity, state.acceleration)
 
 
+@kernel
+def trial_motion(state: IntegratorState, time: float) -> Motion:
+    """The motion at the end of the step that is tried, at an instant (s)."""
+    return Motion(time, state.trial.position, state.trial.velocity, state.trial.acceleration)
+
+
 def empty_steps(system: System, count: int) -> Steps:
     """Make room for steps.
 

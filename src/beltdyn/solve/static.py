@@ -17,8 +17,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
 from beltdyn.solve.engine import correct, linearise, move
-from beltdyn.system.arrays import System
-from beltdyn.system.motion import Equations, new_equations, no_multipliers
+from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State
 
 _TOLERANCE = 1e-11
@@ -188,7 +188,8 @@ class _Search:
         """
         matrix, here = self._here.matrix, self._here
         shift /= self._time_scale
-        if not linearise(self._system, 0.0, *self._motion, self._multipliers, 1.0, 0.0, shift, here):
+        factors = TangentFactors(by_position=1.0, by_acceleration=shift)
+        if not linearise(self._system, self._motion, self._multipliers, factors, here):
             here.node_part[:] = np.nan
         energy = abs(float(np.sum(matrix.node_side * here.node_part) + matrix.border_side @ here.border_part))
         return float(np.sqrt(energy / (self._system.element.section.axial * self._length)))
@@ -202,7 +203,7 @@ class _Search:
         size, length = self._size(self._here), 1.0
         while np.isfinite(size) and length >= _SMALLEST_LENGTH:
             self.step(length)
-            correct(self._system, 0.0, *self._motion, self._multipliers, self._ahead)
+            correct(self._system, self._motion, self._multipliers, self._ahead)
             if self._size(self._ahead) <= (1.0 - 0.25 * length) * size:
                 return True
             self.step(-length)
@@ -213,13 +214,13 @@ class _Search:
         """How far tensioners move by a unit of force on one of them, from where the equations were linearised."""
         tensioners = self._system.tensioners.copy()
         tensioners["push"][number] += 1.0
-        correct(self._system._replace(tensioners=tensioners), 0.0, *self._motion, self._multipliers, self._ahead)
+        correct(self._system._replace(tensioners=tensioners), self._motion, self._multipliers, self._ahead)
         return np.asarray((self._here.border_part - self._ahead.border_part)[: tensioners.size])
 
     @property
-    def _motion(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _motion(self) -> Motion:
         """Where the belt stands, the speeds of pulleys that rub it, and no acceleration."""
-        return self.position, self._velocity, np.zeros_like(self.position)
+        return Motion(0.0, self.position, self._velocity, np.zeros_like(self.position))
 
     def _size(self, equations: Equations) -> float:
         """Root mean square of a step of the nodes, or the largest step of a tensioner, m."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.solve.engine import linearise
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Motion, System, TangentFactors
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
 
@@ -59,14 +59,15 @@ class Vibrations:
         tuple of 3 ndarray
             The ties of a joint, which are in any tangent, are left in K alone.
         """
-        place, rate, still = position.copy(), velocity.copy(), np.zeros_like(position)
+        motion = Motion(time, position.copy(), velocity.copy(), np.zeros_like(position))
 
-        def tangent(by_place: float, by_rate: float, by_acceleration: float) -> FloatArray:
-            factors = by_place, by_rate, by_acceleration
-            linearise(self._system, time, place, rate, still, self._no_multipliers, *factors, self._equations)
+        def tangent(factors: TangentFactors) -> FloatArray:
+            linearise(self._system, motion, self._no_multipliers, factors, self._equations)
             return entries(self._equations.matrix)
 
-        stiffness, damping, mass = tangent(1.0, 0.0, 0.0), tangent(0.0, 1.0, 0.0), tangent(0.0, 0.0, 1.0)
+        stiffness = tangent(TangentFactors(by_position=1.0))
+        damping = tangent(TangentFactors(by_velocity=1.0))
+        mass = tangent(TangentFactors(by_acceleration=1.0))
         damping[self._ties] = 0.0
         mass[self._ties] = 0.0
         return stiffness, damping, mass

@@ -7,7 +7,9 @@ node with the next one only, and the centreline of an element is made of one or 
 does not ask how a belt is discretised.
 """
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.contact.law import ContactLaw
@@ -109,12 +111,15 @@ class TangentFactors(NamedTuple):
     That is what an integrator needs whose unknown moves all three; with all of them zero no tangent is wanted.
     """
 
-    by_position: float
+    by_position: float = 0.0
     """1."""
-    by_velocity: float
+    by_velocity: float = 0.0
     """1/s."""
-    by_acceleration: float
+    by_acceleration: float = 0.0
     """1/s^2."""
+
+
+NO_TANGENT: Final = TangentFactors()
 
 
 class RingFactors(NamedTuple):
@@ -189,6 +194,20 @@ class BodyForces(NamedTuple):
     """Energy in the penalty springs, and in the springs of hub chains and tensioners, J, shape (2,)."""
 
 
+class Equations(NamedTuple):
+    """Linearised equations of motion with their solution, and the loads of the state that they belong to."""
+
+    matrix: RingMatrix
+    """Tangent, and the residual as right-hand side."""
+    node_part: FloatArray
+    """Solution for the nodes, shape (N, n)."""
+    border_part: FloatArray
+    """Solution for the free bodies and the multipliers, shape (m,)."""
+    loads: BodyForces
+    work: np.record
+    """Scratch arrays, from `element_workspace`."""
+
+
 POWERS = (
     "driver_work",
     "torque_work",
@@ -209,4 +228,4 @@ DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, MATERIAL_LOSS, TENSIONER_
 """Places of the works in these orders, and of their powers."""
 
 PENALTY_ENERGY, SPRING_ENERGY = range(2)
-"""Places in `Loads.stored`."""
+"""Places in `BodyForces.stored`."""

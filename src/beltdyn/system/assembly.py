@@ -9,34 +9,17 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
-from beltdyn.contact.contact_force import contact_force, contact_record
+from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
-from beltdyn.elements.dispatch import damping_force, elastic_force
-from beltdyn.elements.section import is_damped
+from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
-from beltdyn.records import blank, record
-from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, RingMatrix, System
-from beltdyn.system.body_forces import add_contact, add_machines, clear_loads
-from beltdyn.system.discretization import element_kind
-from beltdyn.system.moving_center import couple_center, drift_record, keep_drift, moving_center
+from beltdyn.system.arrays import BodyForces, Equations, Motion, RingMatrix, System, TangentFactors
+from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, differentiates_forces
+from beltdyn.system.element_state import add_material_damping, centreline, gather
+from beltdyn.system.moving_center import couple_center, keep_drift, moving_center
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import clear
 from beltdyn.system.supports import add_nodal_loads, hold_fixed
-
-
-def assembly_workspace(system: System) -> np.record:
-    """Make the scratch arrays of `assemble` for a system."""
-    count, vectors = system.control.shape[2:]
-    return blank(
-        record(
-            element=element_kind(system).workspace,  # residual and tangent of one element
-            contact=contact_record(count, vectors),
-            coordinates=f"(3,{2 * len(system.scale)})f8",  # position, velocity and acceleration of one element
-            control=f"({count},2)f8",  # control points of a curve of the centreline
-            control_velocity=f"({count},2)f8",
-            drift=drift_record(vectors),  # by a change of the velocity of a pulley's centre
-        )
-    )
 
 
 def border_size(system: System) -> int:
@@ -47,18 +30,7 @@ def border_size(system: System) -> int:
 
 @kernel
 def assemble(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    multipliers: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    by_acceleration: float,
-    work: np.record,
-    matrix: RingMatrix,
-    loads: BodyForces,
+    system: System, motion: Motion, multipliers: FloatArray, factors: TangentFactors, equations: Equations
 ) -> None:
     """Residual of the equations of motion and its tangent at a state.
 
@@ -66,79 +38,40 @@ def assemble(
     ----------
     system
         Belt, pulleys, supports.
-    time
-        s; prescribed bodies must already have their motion in the state (`prescribed.prescribe`).
-    position, velocity, acceleration : ndarray, shape (6 N + D,)
-        State: nodal coordinates, then coordinates of bodies, and their rates.
-    multipliers : ndarray, shape (6,)
+    motion
+        The state; prescribed bodies must already have their motion in it (`prescribed.prescribe`).
+    multipliers : ndarray, shape (n,)
         Lagrange multipliers of the joint; ignored without joint.
-    by_position, by_velocity, by_acceleration : float
-        The tangent is the sum of these times the derivatives with respect to position, velocity and acceleration,
-        which is what an integrator needs whose unknown moves all three; with all three zero it is kept as it is.
-    work
-        Scratch arrays.
-    matrix
-        Overwritten: the residual as right-hand side, and the tangent if it is wanted.
-    loads
-        Overwritten: moments, hub forces, powers.
+    factors
+        What the tangent is the sum of; where all of them are zero it is kept as it is.
+    equations
+        Its residual and loads are overwritten, and the tangent if it is wanted; the solution is left as it is.
     """
-    wanted = by_position != 0.0 or by_velocity != 0.0 or by_acceleration != 0.0
+    work, matrix, loads = equations.work, equations.matrix, equations.loads
+    wanted = factors.by_acceleration != 0.0 or differentiates_forces(factors)
     clear(matrix, wanted)
     clear_loads(loads)
-    damped = is_damped(system.element.section)
     for element in range(system.length.size):
-        node_j = (element + 1) % system.nodes
-        gather(system, element, position, work.coordinates[0])
-        gather(system, element, velocity, work.coordinates[1])
-        gather(system, element, acceleration, work.coordinates[2])
-        _elastic_and_inertia(system, element, by_position, by_acceleration, wanted, work)
-        if damped:
-            loads.power[MATERIAL_LOSS] += damping_force(
-                system.element,
-                work.coordinates[0],
-                work.coordinates[1],
-                system.length[element],
-                by_position,
-                by_velocity,
-                work.element,
-            )
+        gather(system, element, motion.position, work.coordinates[0])
+        gather(system, element, motion.velocity, work.coordinates[1])
+        gather(system, element, motion.acceleration, work.coordinates[2])
+        _elastic_and_inertia(system, element, factors, wanted, work)
+        add_material_damping(system, element, factors, work, loads)
         for curve in range(system.control.shape[1]):
-            _contact(system, element, curve, node_j, position, velocity, by_position, by_velocity, work, matrix, loads)
-        _scatter(element, node_j, wanted, work, matrix)
-    add_machines(system, time, position, velocity, acceleration, by_position, by_velocity, matrix.corner, loads)
-    _bodies(system, acceleration, by_acceleration, matrix, loads)
+            piece = centreline(system, element, curve, work)
+            _contact(system, motion, factors, element, piece, equations)
+        _scatter(system, element, wanted, work, matrix)
+    add_machines(system, motion, factors, matrix.corner, loads)
+    _bodies(system, motion.acceleration, factors.by_acceleration, matrix, loads)
     if system.joint:
-        _joint(system, acceleration, multipliers, by_acceleration, wanted, matrix)
-    add_nodal_loads(system, position, by_position, matrix)
+        _joint(system, motion.acceleration, multipliers, factors.by_acceleration, wanted, matrix)
+    add_nodal_loads(system, motion.position, factors.by_position, matrix)
     if system.supports.any_fixed:
         hold_fixed(system, matrix)
 
 
 @kernel(inline=True)
-def gather(system: System, element: int, vector: FloatArray, coordinates: FloatArray) -> None:
-    """Coordinates of an element from those of its nodes.
-
-    Parameters
-    ----------
-    system
-        The system.
-    element
-        Which one.
-    vector : ndarray, shape (n N + D,)
-        Positions, velocities or accelerations.
-    coordinates : ndarray, shape (2 n,)
-        Overwritten.
-    """
-    dof, node_j = len(system.scale), (element + 1) % system.nodes
-    for c in range(dof):
-        coordinates[c] = vector[dof * element + c]
-        coordinates[dof + c] = vector[dof * node_j + c]
-
-
-@kernel(inline=True)
-def _elastic_and_inertia(
-    system: System, element: int, by_position: float, by_acceleration: float, wanted: bool, work: np.record
-) -> None:
+def _elastic_and_inertia(system: System, element: int, factors: TangentFactors, wanted: bool, work: np.record) -> None:
     """Overwrite residual and tangent of the element by those of elasticity and inertia."""
     elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
     gradient, whole = work.element.gradient, work.element.tangent
@@ -150,92 +83,45 @@ def _elastic_and_inertia(
         gradient[row] += total
         if wanted:
             for column in range(2 * dof):
-                whole[row, column] = by_position * whole[row, column] + by_acceleration * mass[row, column]
-
-
-@kernel
-def fill_control(system: System, element: int, curve: int, coordinates: FloatArray, points: FloatArray) -> None:
-    """Control points of a curve of the centreline from the coordinates of its element.
-
-    Parameters
-    ----------
-    system
-        The system.
-    element, curve
-        Which curve of which element.
-    coordinates : ndarray, shape (2 n,)
-        Nodal coordinates (or velocities) of the element.
-    points : ndarray, shape (n, 2)
-        Overwritten.
-    """
-    control, vectors = system.control[element, curve], system.vectors
-    for a in range(points.shape[0]):
-        for axis in range(2):
-            points[a, axis] = 0.0
-            for b in range(len(vectors)):
-                points[a, axis] += control[a, b] * coordinates[vectors[b] + axis]
+                whole[row, column] = (
+                    factors.by_position * whole[row, column] + factors.by_acceleration * mass[row, column]
+                )
 
 
 @kernel(inline=True)
 def _contact(
-    system: System,
-    element: int,
-    curve: int,
-    node_j: int,
-    position: FloatArray,
-    velocity: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    work: np.record,
-    matrix: RingMatrix,
-    loads: BodyForces,
+    system: System, motion: Motion, factors: TangentFactors, element: int, piece: Curve, equations: Equations
 ) -> None:
     """Take the contact forces of a curve off the residual of its element, and couple it to the pulleys it touches."""
-    fill_control(system, element, curve, work.coordinates[0], work.control)
-    fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
-    bodies, wanted = system.bodies, by_position != 0.0 or by_velocity != 0.0
-    piece = Curve(
-        work.control,
-        work.control_velocity,
-        system.control[element, curve],
-        system.length[element] / system.control.shape[1],
-    )
+    work, matrix = equations.work, equations.matrix
+    wanted = differentiates_forces(factors)
     for p in range(system.pulleys.size):
-        pulley = pulley_state(system, p, position, velocity)
-        if out_of_reach(work.control, pulley):
+        pulley = pulley_state(system, p, motion.position, motion.velocity)
+        if out_of_reach(piece.control, pulley):
             continue
-        center = moving_center(system, p, position, velocity)
-        rounds = 2 if center.unknown >= 0 and by_position != 0.0 and center.turning else 1
+        center = moving_center(system, p, motion.position, motion.velocity)
+        drifting = center.unknown >= 0 and factors.by_position != 0.0 and center.turning
+        rounds = 2 if drifting else 1
         for last in range(2 - rounds, 2):
             totals = contact_force(
                 piece,
                 pulley,
                 system.law,
                 system.contact,
-                by_position if last == 1 else 0.0,
-                by_velocity if last == 1 else 1.0,
+                factors.by_position if last == 1 else 0.0,
+                factors.by_velocity if last == 1 else 1.0,
                 work.contact,
             )
             if last == 0:
                 keep_drift(system, center, work.contact, work.drift)
         _take_contact(system, wanted, work)
-        add_contact(loads, p, totals)
-        if bodies[p].unknown >= 0 and wanted:
-            matrix.corner[bodies[p].unknown, bodies[p].unknown] -= work.contact.moment_by_turn
-            _couple(system, element, node_j, bodies[p].unknown, work.contact, matrix)
+        add_contact(equations.loads, p, totals)
+        if center.rim >= 0 and wanted:
+            matrix.corner[center.rim, center.rim] -= work.contact.moment_by_turn
+            _couple(system, element, center.rim, work.contact, matrix)
         if center.unknown >= 0 and wanted:
-            drifting = by_position if rounds == 2 else 0.0
-            couple_center(
-                system,
-                element,
-                node_j,
-                bodies[p].unknown,
-                center,
-                drifting,
-                work.contact,
-                work.drift,
-                matrix,
-            )
+            factor = factors.by_position if drifting else 0.0
+            couple_center(system, element, center, factor, work.contact, work.drift, matrix)
 
 
 @kernel(inline=True)
@@ -257,27 +143,21 @@ def _take_contact(system: System, wanted: bool, work: np.record) -> None:
 
 
 @kernel(inline=True)
-def _couple(
-    system: System,
-    node_i: int,
-    node_j: int,
-    unknown: int,
-    contact: np.record,
-    matrix: RingMatrix,
-) -> None:
+def _couple(system: System, element: int, unknown: int, contact: np.record, matrix: RingMatrix) -> None:
     """Coupling of the element with angle and speed of a free pulley."""
-    dof = len(system.scale)
+    dof, node_j = len(system.scale), (element + 1) % system.nodes
     for a in range(len(system.vectors)):
         first = system.vectors[a]
-        node, c = (node_i, first) if first < dof else (node_j, first - dof)
+        node, c = (element, first) if first < dof else (node_j, first - dof)
         for axis in range(2):
             matrix.column[node, c + axis, unknown] -= contact.by_turn[a, axis]
             matrix.row[node, unknown, c + axis] -= contact.moment[a, axis]
 
 
 @kernel(inline=True)
-def _scatter(i: int, j: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
-    """Add residual and tangent of the element between nodes i and j."""
+def _scatter(system: System, element: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
+    """Add residual and tangent of the element to those of its nodes i and j."""
+    i, j = element, (element + 1) % system.nodes
     dof, gradient, tangent = len(matrix.unknowns), work.element.gradient, work.element.tangent
     for row in range(dof):
         matrix.node_side[i, row] += gradient[row]

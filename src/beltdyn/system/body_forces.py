@@ -19,7 +19,9 @@ from beltdyn.system.arrays import (
     TENSIONER_LOSS,
     TORQUE_WORK,
     BodyForces,
+    Motion,
     System,
+    TangentFactors,
 )
 from beltdyn.system.pulley_state import tensioner_coordinate
 
@@ -82,17 +84,15 @@ def add_contact(loads: BodyForces, pulley: int, totals: ContactTotals) -> None:
     loads.stored[PENALTY_ENERGY] += totals.penalty_energy
 
 
+@kernel(inline=True)
+def differentiates_forces(factors: TangentFactors) -> bool:
+    """Whether derivatives of forces are wanted, which do not depend on accelerations."""
+    return factors.by_position != 0.0 or factors.by_velocity != 0.0
+
+
 @kernel
 def add_machines(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    corner: FloatArray,
-    loads: BodyForces,
+    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces
 ) -> None:
     """Forces on the bodies and their powers, when all contact is summed, and what they add to the tangent.
 
@@ -100,81 +100,61 @@ def add_machines(
     ----------
     system
         The system.
-    time
-        s.
-    position, velocity, acceleration : ndarray, shape (6 N + D,)
-        State and rates.
-    by_position, by_velocity
-        Factors of the derivatives in the tangent; with both zero there is none.
+    motion
+        The state.
+    factors
+        Of the derivatives in the tangent.
     corner : ndarray, shape (m, m)
         Tangent of the bodies' equations, changed in place.
     loads
         Contact is there already.  The torque on a free shaft is that applied to it; that on a prescribed one is the
         reaction of its driver (Eq. 23).
     """
-    wanted = by_position != 0.0 or by_velocity != 0.0
     for p in range(system.pulleys.size):
         loads.force[p] += loads.moment[p]
         loads.power[FRICTION_LOSS] += loads.friction[p]
         loads.power[DAMPING_LOSS] += loads.damping[p]
-    _add_tensioners(system, position, velocity, by_position, by_velocity, wanted, corner, loads)
-    _add_links(system, time, position, velocity, by_position, by_velocity, wanted, corner, loads)
-    _take_shafts(system, time, position, velocity, acceleration, by_position, by_velocity, wanted, corner, loads)
+    _add_tensioners(system, motion, factors, corner, loads)
+    _add_links(system, motion, factors, corner, loads)
+    _take_shafts(system, motion, factors, corner, loads)
 
 
 @kernel(inline=True)
 def _add_tensioners(
-    system: System,
-    position: FloatArray,
-    velocity: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    wanted: bool,
-    corner: FloatArray,
-    loads: BodyForces,
+    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces
 ) -> None:
     """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
     tensioners, first = system.tensioners, system.first_body
     for k in range(tensioners.size):
         at = tensioner_coordinate(system, k)
-        center = tensioner_center(tensioners[k], position[at])
-        own = tensioner_force(tensioners[k], position[at], velocity[at])
+        center = tensioner_center(tensioners[k], motion.position[at])
+        own = tensioner_force(tensioners[k], motion.position[at], motion.velocity[at])
         hub, weight = loads.hub[tensioners[k].pulley], tensioners[k].weight
         x, y = hub[0] + weight[0], hub[1] + weight[1]
         loads.force[at - first] += own.force + tensioners[k].push + x * center.dx + y * center.dy
         loads.power[TENSIONER_LOSS] += own.loss
         loads.stored[SPRING_ENERGY] += own.energy
         unknown = system.bodies[at - first].unknown
-        if wanted and unknown >= 0:
+        if unknown >= 0 and differentiates_forces(factors):
             by_place = own.by_position + x * center.ddx + y * center.ddy
-            corner[unknown, unknown] -= by_position * by_place + by_velocity * own.by_velocity
+            corner[unknown, unknown] -= factors.by_position * by_place + factors.by_velocity * own.by_velocity
 
 
 @kernel(inline=True)
-def _add_links(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    wanted: bool,
-    corner: FloatArray,
-    loads: BodyForces,
-) -> None:
+def _add_links(system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces) -> None:
     """Torques between the bodies of hub chains."""
     links, first = system.links, system.first_body
     for number in range(links.size):
         front, back = links[number].front, links[number].back
-        twist = position[first + front] - position[first + back]
-        rate = velocity[first + front] - velocity[first + back]
-        link = link_torque(system.profiles, links[number], time, twist, rate)
+        twist = motion.position[first + front] - motion.position[first + back]
+        rate = motion.velocity[first + front] - motion.velocity[first + back]
+        link = link_torque(system.profiles, links[number], motion.time, twist, rate)
         loads.force[front] -= link.torque
         loads.force[back] += link.torque
         loads.power[COUPLING_LOSS] += link.loss
         loads.stored[SPRING_ENERGY] += link.energy
-        if wanted:
-            slope = by_position * link.by_twist + by_velocity * link.by_rate
+        if differentiates_forces(factors):
+            slope = factors.by_position * link.by_twist + factors.by_velocity * link.by_rate
             i, j = system.bodies[front].unknown, system.bodies[back].unknown
             if i >= 0:
                 corner[i, i] += slope
@@ -187,29 +167,20 @@ def _add_links(
 
 @kernel(inline=True)
 def _take_shafts(
-    system: System,
-    time: float,
-    position: FloatArray,
-    velocity: FloatArray,
-    acceleration: FloatArray,
-    by_position: float,
-    by_velocity: float,
-    wanted: bool,
-    corner: FloatArray,
-    loads: BodyForces,
+    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces
 ) -> None:
     """Torques on the shafts from outside, and their powers."""
-    first = system.first_body
     for p in range(system.pulleys.size):
         body = system.pulleys[p].shaft
-        unknown, speed = system.bodies[body].unknown, velocity[first + body]
+        at, unknown = system.first_body + body, system.bodies[body].unknown
+        angle, speed = motion.position[at], motion.velocity[at]
         if unknown < 0:
-            loads.shaft[p] = system.bodies[body].inertia * acceleration[first + body] - loads.force[body]
+            loads.shaft[p] = system.bodies[body].inertia * motion.acceleration[at] - loads.force[body]
             loads.power[DRIVER_WORK] += loads.shaft[p] * speed
             continue
-        load = shaft_torque(system.profiles, system.shaft_loads, p, time, position[first + body], speed)
+        load = shaft_torque(system.profiles, system.shaft_loads, p, motion.time, angle, speed)
         loads.shaft[p] = load.torque
         loads.force[body] += load.torque
         loads.power[TORQUE_WORK] += load.torque * speed
-        if wanted:
-            corner[unknown, unknown] -= by_position * load.by_angle + by_velocity * load.by_speed
+        if differentiates_forces(factors):
+            corner[unknown, unknown] -= factors.by_position * load.by_angle + factors.by_velocity * load.by_speed

@@ -5,7 +5,16 @@ from functools import cached_property
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.system.arrays import DRIVER_WORK, POWERS, BodyForces, RingMatrix, System
+from beltdyn.system.arrays import (
+    DRIVER_WORK,
+    NO_TANGENT,
+    POWERS,
+    BodyForces,
+    Motion,
+    RingMatrix,
+    System,
+    TangentFactors,
+)
 from beltdyn.system.assembly import assemble
 from beltdyn.system.joint_constraint import joint_constraint, mass_matrix
 from beltdyn.system.missed_action import jump_work
@@ -59,7 +68,7 @@ class FirstOrder:
         """Bring prescribed bodies to their motion at a time (s) in unknowns, and count the work that it takes."""
         position, velocity, work = self.unpack(y)
         before = velocity.copy()
-        prescribe(self._system, time, position, velocity, np.zeros(self._half))
+        prescribe(self._system, Motion(time, position, velocity, np.zeros(self._half)))
         work[DRIVER_WORK] += jump_work(self._system, before, velocity)
 
     def tolerances(self, velocity: float, time: float) -> FloatArray:
@@ -84,11 +93,12 @@ class FirstOrder:
     def rates(self, time: float, y: FloatArray) -> FloatArray:
         """dy/dt at a time (s): velocities, accelerations (Eq. 27, or Eq. 26 with multipliers) and powers."""
         self.evaluations += 1
-        velocity, acceleration = self._assemble(time, y, 0.0, 0.0)
+        motion = self._assemble(time, y, NO_TANGENT)
         matrix, nodes, free = self._equations.matrix, self._system.first_body, self._free
+        acceleration = motion.acceleration
         acceleration[:nodes] = self._flexibility @ -matrix.node_side.ravel()
         acceleration[nodes + free] = -matrix.border_side[: free.size] / self._system.bodies.inertia[free]
-        return np.concatenate([velocity, acceleration, self._equations.loads.power])
+        return np.concatenate([motion.velocity, acceleration, self._equations.loads.power])
 
     def jacobian(self, time: float, y: FloatArray) -> FloatArray:
         """Derivative of `rates` with respect to y; nothing depends on the works, and their rows are left at zero."""
@@ -97,34 +107,19 @@ class FirstOrder:
         result[:half, half : 2 * half] = np.eye(half)
         prescribed = self._system.first_body + np.flatnonzero(self._system.bodies.unknown < 0)
         result[prescribed, half + prescribed] = 0.0
-        self._assemble(time, y, 1.0, 0.0)
+        self._assemble(time, y, TangentFactors(by_position=1.0))
         result[half : 2 * half, :half] = self._by_tangent(self._equations.matrix)
-        self._assemble(time, y, 0.0, 1.0)
+        self._assemble(time, y, TangentFactors(by_velocity=1.0))
         result[half : 2 * half, half : 2 * half] = self._by_tangent(self._equations.matrix)
         return result
 
-    def _assemble(
-        self, time: float, y: FloatArray, by_position: float, by_velocity: float
-    ) -> tuple[FloatArray, FloatArray]:
-        """Residual without inertia, and one part of its tangent; gives velocity and prescribed accelerations."""
-        position, velocity = y[: self._half].copy(), y[self._half : 2 * self._half].copy()
-        acceleration = np.zeros(self._half)
-        prescribe(self._system, time, position, velocity, acceleration)
-        assemble(
-            self._system,
-            time,
-            position,
-            velocity,
-            acceleration,
-            self._no_multipliers,
-            by_position,
-            by_velocity,
-            0.0,
-            self._equations.work,
-            self._equations.matrix,
-            self._equations.loads,
-        )
-        return velocity, acceleration
+    def _assemble(self, time: float, y: FloatArray, factors: TangentFactors) -> Motion:
+        """Residual without inertia, and its tangent; gives the motion, with no accelerations but prescribed ones."""
+        position, velocity, _ = self.unpack(y)
+        motion = Motion(time, position.copy(), velocity.copy(), np.zeros(self._half))
+        prescribe(self._system, motion)
+        assemble(self._system, motion, self._no_multipliers, factors, self._equations)
+        return motion
 
     @cached_property
     def _flexibility(self) -> FloatArray:

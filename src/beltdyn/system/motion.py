@@ -1,27 +1,14 @@
 """Linearised equations of motion as arrays, and their solutions applied to states."""
 
-from typing import NamedTuple
-
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import BodyForces, RingMatrix, System
-from beltdyn.system.assembly import assembly_workspace, border_size
+from beltdyn.system.arrays import Equations, System
+from beltdyn.system.assembly import border_size
 from beltdyn.system.body_forces import new_loads
+from beltdyn.system.element_state import element_workspace
 from beltdyn.system.ring_matrix import ring_matrix
-
-
-class Equations(NamedTuple):
-    """Linearised equations of motion with their solution, and the loads of the state that they belong to."""
-
-    matrix: RingMatrix
-    node_part: FloatArray
-    """Solution for the nodes, shape (N, 6)."""
-    border_part: FloatArray
-    """Solution for the free bodies and the multipliers, shape (m,)."""
-    loads: BodyForces
-    work: np.record
 
 
 def new_equations(system: System) -> Equations:
@@ -32,7 +19,7 @@ def new_equations(system: System) -> Equations:
         np.zeros((system.nodes, dof)),
         np.zeros(border),
         new_loads(system),
-        assembly_workspace(system),
+        element_workspace(system),
     )
 
 

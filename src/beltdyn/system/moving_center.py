@@ -25,6 +25,8 @@ class MovingCenter(NamedTuple):
 
     unknown: int
     """Place of the coordinate in the border, -1 where the centre is fixed."""
+    rim: int
+    """Place of the pulley's angle in the border, -1 where it is prescribed."""
     x: float
     """c', derivative of the centre."""
     y: float
@@ -43,14 +45,14 @@ def drift_record(vectors: int) -> np.dtype[np.void]:
 @kernel
 def moving_center(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> MovingCenter:
     """The motion of a pulley's centre at a state of shape (6 N + D,)."""
-    carrier = system.pulleys[pulley].carrier
+    carrier, rim = system.pulleys[pulley].carrier, system.bodies[pulley].unknown
     if carrier < 0:
-        return MovingCenter(-1, 0.0, 0.0, 0.0, 0.0, False)
+        return MovingCenter(-1, rim, 0.0, 0.0, 0.0, 0.0, False)
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
     drift_x, drift_y = center.ddx * velocity[at], center.ddy * velocity[at]
     unknown = system.bodies[at - system.first_body].unknown
-    return MovingCenter(unknown, center.dx, center.dy, drift_x, drift_y, drift_x != 0.0 or drift_y != 0.0)
+    return MovingCenter(unknown, rim, center.dx, center.dy, drift_x, drift_y, drift_x != 0.0 or drift_y != 0.0)
 
 
 @kernel
@@ -87,25 +89,21 @@ def _along(system: System, contact: np.record, a: int, x: float, y: float) -> tu
 @kernel
 def couple_center(
     system: System,
-    node_i: int,
-    node_j: int,
-    rim: int,
+    element: int,
     center: MovingCenter,
     drifting: float,
     contact: np.record,
     drift: np.record,
     matrix: RingMatrix,
 ) -> None:
-    """Couple the tensioner's coordinate to the nodes of a curve and to the rim that they touch.
+    """Couple the tensioner's coordinate to the nodes of an element and to the rim that they touch.
 
     Parameters
     ----------
     system
         The system.
-    node_i, node_j
-        The nodes of the element.
-    rim
-        Place of the rim's angle in the border, -1 where it is prescribed.
+    element
+        Which one touches.
     center
         How the centre moves.
     drifting
@@ -117,11 +115,11 @@ def couple_center(
     matrix
         Changed in place.
     """
-    dof = len(system.scale)
-    own, x, y = center.unknown, center.x, center.y
+    dof, node_j = len(system.scale), (element + 1) % system.nodes
+    own, rim, x, y = center.unknown, center.rim, center.x, center.y
     for a in range(len(system.vectors)):
         first, weight = system.vectors[a], system.shift[a]
-        node, c = (node_i, first) if first < dof else (node_j, first - dof)
+        node, c = (element, first) if first < dof else (node_j, first - dof)
         fx, fy = _along(system, contact, a, x, y)
         if drifting != 0.0:
             fx, fy = fx + drifting * drift.force[a, 0], fy + drifting * drift.force[a, 1]

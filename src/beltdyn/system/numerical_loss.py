@@ -28,7 +28,7 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
     impulse : ndarray, shape (2, 6 N + D)
         What acts on the bodies beside the forces at the ends, from `missed_impulses`, N m s.
     work
-        Scratch arrays of `assembly`.
+        From `element_workspace`.
 
     Returns
     -------

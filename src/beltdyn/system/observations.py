@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple, get_type_hints
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
-from beltdyn.contact.contact_force import contact_workspace
 from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
+from beltdyn.system.element_state import element_workspace
 
 
 class Per(NamedTuple):
@@ -98,11 +98,8 @@ class Samples(NamedTuple):
     """Pulley that each point counts to, -1 where it is free."""
     nearest: IntArray
     """A point that touches each pulley, or is nearest to where the belt touches it, -1 without contact."""
-    element: FloatArray
-    """Coordinates and velocities of one element, shape (2, 12)."""
-    control: FloatArray
-    control_velocity: FloatArray
-    contact: np.record
+    work: np.record
+    """From `element_workspace`."""
 
 
 def span_count(system: System) -> int:
@@ -149,7 +146,6 @@ def new_observations(system: System, loads: BodyForces, shown: int) -> Observati
 def new_samples(system: System) -> Samples:
     """Make scratch arrays for a system."""
     points = system.length.size * system.control.shape[1] * system.contact.points.size
-    count, vectors = system.control.shape[2:]
     return Samples(
         tension=np.zeros(points),
         speed=np.zeros(points),
@@ -157,8 +153,5 @@ def new_samples(system: System) -> Samples:
         weight=np.zeros(span_count(system)),
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
-        element=np.zeros((2, 2 * len(system.scale))),
-        control=np.zeros((count, 2)),
-        control_velocity=np.zeros((count, 2)),
-        contact=contact_workspace(count, vectors),
+        work=element_workspace(system),
     )

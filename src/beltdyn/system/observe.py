@@ -5,7 +5,7 @@ from math import atan2, sqrt
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.contact.bezier import combine, fill_bernstein, fill_bernstein_rates
+from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstein_rates
 from beltdyn.contact.contact_zone import out_of_reach, touching_intervals
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.penetration import approach, slip_velocity
@@ -14,7 +14,7 @@ from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import BodyForces, System
-from beltdyn.system.assembly import fill_control, gather
+from beltdyn.system.element_state import centreline, gather
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
 from beltdyn.system.state_loads import loads_at
@@ -73,23 +73,20 @@ def fill_observations(
     system: System, position: FloatArray, velocity: FloatArray, shown: BoolArray, samples: Samples, result: Observations
 ) -> None:
     """Fill the observations but for the loads; see `observe_motion`."""
-    show = -1
+    show, work, curves = -1, samples.work, system.control.shape[1]
     for k in range(position.shape[0]):
         show += shown[k]
         samples.nearest[:] = -1
         for element in range(system.length.size):
-            gather(system, element, position[k], samples.element[0])
-            gather(system, element, velocity[k], samples.element[1])
+            gather(system, element, position[k], work.coordinates[0])
+            gather(system, element, velocity[k], work.coordinates[1])
             if shown[k]:
                 _observe_energy(system, element, samples, result, show)
-            for curve in range(system.control.shape[1]):
-                fill_control(system, element, curve, samples.element[0], samples.control)
-                fill_control(system, element, curve, samples.element[1], samples.control_velocity)
-                number = element * system.control.shape[1] + curve
-                length = system.length[element] / system.control.shape[1]
+            for curve in range(curves):
+                piece, number = centreline(system, element, curve, work), element * curves + curve
                 if shown[k]:
-                    _observe_tension(system, length, number, samples, result, show)
-                _observe_points(system, length, number, samples, result, k)
+                    _observe_tension(system, piece, number, work, result, show)
+                _observe_points(system, piece, number, samples, result, k)
                 _observe_contact(system, number, position[k], velocity[k], samples, result, k)
         _observe_spans(system, samples, result, k)
         _observe_bodies(system, position[k], result, k)
@@ -102,7 +99,7 @@ def fill_observations(
 @kernel(inline=True)
 def _observe_energy(system: System, element: int, samples: Samples, result: Observations, k: int) -> None:
     """Energies of an element."""
-    e, v = samples.element[0], samples.element[1]
+    e, v = samples.work.coordinates[0], samples.work.coordinates[1]
     result.strain_energy[k] += strain_energy(system.element, e, system.length[element])
     dof, kinetic, mass = len(system.scale), 0.0, system.mass[element]
     for row in range(2 * dof):
@@ -114,24 +111,23 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
 
 
 @kernel(inline=True)
-def _stretch(system: System, samples: Samples, xi: float, length: float) -> tuple[float, float, float]:
+def _stretch(system: System, piece: Curve, xi: float, rates: FloatArray) -> tuple[float, float, float]:
     """Derivative of the centreline with respect to the belt coordinate, and the tension."""
-    rates = samples.contact.rates
     fill_bernstein_rates(xi, rates)
-    x, y = combine(samples.control, rates)
-    vx, vy = combine(samples.control_velocity, rates)
-    square = length * length
+    x, y = combine(piece.control, rates)
+    vx, vy = combine(piece.velocity, rates)
+    square = piece.length * piece.length
     metric, rate = (x * x + y * y) / square, 2.0 * (x * vx + y * vy) / square
-    return x / length, y / length, tension(system.element, metric, rate)
+    return x / piece.length, y / piece.length, tension(system.element, metric, rate)
 
 
 @kernel(inline=True)
-def _observe_tension(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
+def _observe_tension(system: System, piece: Curve, curve: int, work: np.record, result: Observations, k: int) -> None:
     """Axial force of a curve: its mean, and how much it varies."""
     mean = square = 0.0
     for point in range(system.element.elastic.points.size):
         weight = system.element.elastic.weights[point]
-        _, _, force = _stretch(system, samples, system.element.elastic.points[point], length)
+        _, _, force = _stretch(system, piece, system.element.elastic.points[point], work.contact.rates)
         mean += weight * force
         square += weight * force * force
     result.belt_tension[k, curve] = mean
@@ -139,16 +135,16 @@ def _observe_tension(system: System, length: float, curve: int, samples: Samples
 
 
 @kernel(inline=True)
-def _observe_points(system: System, length: float, curve: int, samples: Samples, result: Observations, k: int) -> None:
+def _observe_points(system: System, piece: Curve, curve: int, samples: Samples, result: Observations, k: int) -> None:
     """Places, tension and speed of the sampling points of a curve, as if they were free."""
-    count, weights = system.contact.points.size, samples.contact.weights
+    count, weights, rates = system.contact.points.size, samples.work.contact.weights, samples.work.contact.rates
     for point in range(count):
         row = curve * count + point
         xi = system.contact.points[point]
         fill_bernstein(xi, weights)
-        x, y = combine(samples.control, weights)
-        vx, vy = combine(samples.control_velocity, weights)
-        qx, qy, samples.tension[row] = _stretch(system, samples, xi, length)
+        x, y = combine(piece.control, weights)
+        vx, vy = combine(piece.velocity, weights)
+        qx, qy, samples.tension[row] = _stretch(system, piece, xi, rates)
         samples.speed[row] = (qx * vx + qy * vy) / sqrt(qx * qx + qy * qy)
         samples.velocity[row, 0], samples.velocity[row, 1] = vx, vy
         result.contact_position[k, row, 0] = x
@@ -168,12 +164,12 @@ def _observe_contact(
     k: int,
 ) -> None:
     """Contact of a curve at its sampling points, and the angle over which it touches."""
-    zone = samples.contact.zone
+    control, zone = samples.work.control, samples.work.contact.zone
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, position, velocity)
-        if out_of_reach(samples.control, pulley):
+        if out_of_reach(control, pulley):
             continue
-        for interval in range(touching_intervals(samples.control, pulley, zone)):
+        for interval in range(touching_intervals(control, pulley, zone)):
             start, end = zone.intervals[interval]
             result.wrap_angle[k, p] += _angle(samples, pulley, start, end)
             samples.nearest[p] = number * system.contact.points.size + _nearest_point(system, 0.5 * (start + end))
@@ -218,7 +214,7 @@ def _nearest_point(system: System, xi: float) -> int:
 @kernel(inline=True)
 def _angle(samples: Samples, pulley: PulleyState, start: float, end: float) -> float:
     """Angle at the pulley's centre between two points of the centreline, rad."""
-    control, weights = samples.control, samples.contact.weights
+    control, weights = samples.work.control, samples.work.contact.weights
     fill_bernstein(start, weights)
     ax, ay = combine(control, weights)
     fill_bernstein(end, weights)

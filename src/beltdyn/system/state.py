@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Path
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import Motion, System
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 
 
@@ -23,6 +23,10 @@ class State:
     position: FloatArray
     velocity: FloatArray
     acceleration: FloatArray
+
+    def at(self, time: float) -> Motion:
+        """The same arrays as the motion at an instant (s)."""
+        return Motion(time, self.position, self.velocity, self.acceleration)
 
     def nodes(self, system: System) -> FloatArray:
         """Nodal coordinates as an array of shape (N, 6)."""

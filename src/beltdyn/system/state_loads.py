@@ -5,15 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
-from beltdyn.elements.dispatch import damping_force
-from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
-from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, Motion, System
-from beltdyn.system.assembly import assembly_workspace, fill_control, gather
+from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
 from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
+from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.pulley_state import pulley_state
 
@@ -48,7 +45,7 @@ def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: F
     """
     history = load_history(system, time.size)
     acceleration = np.zeros(system.first_body + system.bodies.size)
-    scratch = LoadsScratch(acceleration, assembly_workspace(system), np.zeros((0, 0)), new_loads(system))
+    scratch = LoadsScratch(acceleration, element_workspace(system), np.zeros((0, 0)), new_loads(system))
     fill_loads(system, time, position, velocity, scratch, history)
     return history
 
@@ -64,8 +61,8 @@ def fill_loads(
 ) -> None:
     """Fill a history of loads; see `loads_at`."""
     for k in range(time.size):
-        prescribe(system, time[k], position[k], velocity[k], scratch.acceleration)
         motion = Motion(time[k], position[k], velocity[k], scratch.acceleration)
+        prescribe(system, motion)
         find_loads(system, motion, scratch.work, scratch.corner, scratch.loads)
         keep_loads(scratch.loads, history, k)
 
@@ -84,36 +81,22 @@ def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArr
     motion
         The state; prescribed bodies must already have their motion in it.
     work
-        Scratch arrays of `assembly`.
+        From `element_workspace`.
     corner : ndarray, shape (m, m)
         Left as it is.
     loads
         Overwritten.
     """
     clear_loads(loads)
-    damped = is_damped(system.element.section)
     for element in range(system.length.size):
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])
-        if damped:
-            loads.power[MATERIAL_LOSS] += damping_force(
-                system.element,
-                work.coordinates[0],
-                work.coordinates[1],
-                system.length[element],
-                0.0,
-                0.0,
-                work.element,
-            )
+        add_material_damping(system, element, NO_TANGENT, work, loads)
         for curve in range(system.control.shape[1]):
-            fill_control(system, element, curve, work.coordinates[0], work.control)
-            fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
-            length = system.length[element] / system.control.shape[1]
-            piece = Curve(work.control, work.control_velocity, system.control[element, curve], length)
+            piece = centreline(system, element, curve, work)
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
-                if not out_of_reach(work.control, pulley):
+                if not out_of_reach(piece.control, pulley):
                     totals = contact_force(piece, pulley, system.law, system.contact, 0.0, 0.0, work.contact)
                     add_contact(loads, p, totals)
-    time, position, velocity, acceleration = motion.time, motion.position, motion.velocity, motion.acceleration
-    add_machines(system, time, position, velocity, acceleration, 0.0, 0.0, corner, loads)
+    add_machines(system, motion, NO_TANGENT, corner, loads)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.system.arrays import RingMatrix, System
+from beltdyn.system.arrays import NO_TANGENT, Equations, RingMatrix, System, TangentFactors
 from beltdyn.system.assembly import assemble, border_size
-from beltdyn.system.motion import Equations, new_equations
+from beltdyn.system.motion import new_equations
 from beltdyn.system.state import State
 
 Dense = Callable[[RingMatrix, bool], tuple[FloatArray, FloatArray]]
@@ -29,8 +29,7 @@ def linear(system: System, equations: Equations, dense: Dense) -> Callable[..., 
     def at(
         state: State, multipliers: FloatArray, factors: tuple[float, float, float] = (0.0, 0.0, 0.0)
     ) -> tuple[FloatArray, FloatArray]:
-        motion = (state.position, state.velocity, state.acceleration)
-        assemble(system, 0.3, *motion, multipliers, *factors, equations.work, equations.matrix, equations.loads)
+        assemble(system, state.at(0.3), multipliers, TangentFactors(*factors), equations)
         return dense(equations.matrix, system.closed)
 
     return at
@@ -94,21 +93,8 @@ def test_border(system: System) -> None:
 
 def test_belt_and_hubs_push_each_other(system: System, moving: State, equations: Equations) -> None:
     """Elastic forces balance within the belt: what its residual lacks at rest is the force on the hubs."""
-    still = 0.0 * moving.acceleration
-    assemble(
-        system,
-        0.3,
-        moving.position,
-        moving.velocity,
-        still,
-        0.0 * MULTIPLIERS,
-        0.0,
-        0.0,
-        0.0,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+    steady = State(moving.position, moving.velocity, 0.0 * moving.acceleration)
+    assemble(system, steady.at(0.3), 0.0 * MULTIPLIERS, NO_TANGENT, equations)
     hubs = equations.loads.hub.sum(axis=0)
     assert np.linalg.norm(hubs) > 1.0
     forces = equations.matrix.node_side.reshape(system.points * system.nodes, -1)[:, :2]

@@ -7,10 +7,10 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path
-from beltdyn.system.arrays import RingMatrix, System
+from beltdyn.system.arrays import Equations, RingMatrix, System, TangentFactors
 from beltdyn.system.assembly import assemble, border_size
 from beltdyn.system.build import drive_system
-from beltdyn.system.motion import Equations, new_equations, no_multipliers
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State, laid
 
@@ -40,8 +40,7 @@ def moving(system: System, scale: FloatArray) -> State:
 
 
 def residual(system: System, state: State, equations: Equations, factors: tuple[float, float, float]) -> RingMatrix:
-    motion = (state.position, state.velocity, state.acceleration)
-    assemble(system, 0.3, *motion, no_multipliers(system), *factors, equations.work, equations.matrix, equations.loads)
+    assemble(system, state.at(0.3), no_multipliers(system), TangentFactors(*factors), equations)
     return equations.matrix
 
 

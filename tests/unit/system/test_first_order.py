@@ -8,7 +8,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
 from beltdyn.solve.engine import accelerate
-from beltdyn.system.arrays import POWERS, System
+from beltdyn.system.arrays import POWERS, Motion, System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.motion import new_equations, no_multipliers
@@ -33,7 +33,7 @@ def test_rates_are_the_accelerations_of_the_system(system: System, equations: Fi
     """Inverse mass matrix (Eq. 27) or brackets of Eq. 26 against the solution of Eq. 25 by the ring solver."""
     work = new_equations(system)
     velocity, acceleration = moving.velocity.copy(), np.empty_like(moving.velocity)
-    accelerate(system, TIME, moving.position, velocity, acceleration, no_multipliers(system), work)
+    accelerate(system, Motion(TIME, moving.position, velocity, acceleration), no_multipliers(system), work)
     rates = equations.unpack(equations.rates(TIME, equations.pack(moving)))
     np.testing.assert_array_equal(rates[0], velocity)
     np.testing.assert_allclose(rates[1], acceleration, atol=1e-9 * np.max(np.abs(acceleration)))  # rounding

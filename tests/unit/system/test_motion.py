@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
 from beltdyn.solve.engine import accelerate
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations, subtract_multipliers, subtract_solution
@@ -18,39 +18,23 @@ TIME = 0.3
 
 def test_accelerations_leave_no_residual(system: System, moving: State) -> None:
     equations = new_equations(system)
-    velocity, acceleration, multipliers = (
-        moving.velocity.copy(),
-        np.empty_like(moving.position),
-        np.empty(len(system.scale)),
-    )
-    assert accelerate(system, TIME, moving.position, velocity, acceleration, multipliers, equations)
+    motion = Motion(TIME, moving.position, moving.velocity.copy(), np.empty_like(moving.position))
+    multipliers = np.empty(len(system.scale))
+    assert accelerate(system, motion, multipliers, equations)
     forces = np.max(np.abs(equations.matrix.node_side))
-    assemble(
-        system,
-        TIME,
-        moving.position,
-        velocity,
-        acceleration,
-        multipliers,
-        0.0,
-        0.0,
-        0.0,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+    assemble(system, motion, multipliers, NO_TANGENT, equations)
     np.testing.assert_allclose(equations.matrix.node_side, 0.0, atol=1e-10 * forces)  # rounding
     np.testing.assert_allclose(equations.matrix.border_side, 0.0, atol=1e-10 * forces)
 
 
 def test_prescribed_pulley_keeps_its_profile(small: Drive, system: System, moving: State) -> None:
     equations = new_equations(system)
-    velocity, acceleration = moving.velocity.copy(), np.empty_like(moving.position)
-    accelerate(system, TIME, moving.position, velocity, acceleration, np.empty(len(system.scale)), equations)
+    motion = Motion(TIME, moving.position, moving.velocity.copy(), np.empty_like(moving.position))
+    accelerate(system, motion, np.empty(len(system.scale)), equations)
     speed = small.pulleys[0].speed
     assert speed is not None
-    assert velocity[-2] == pytest.approx(float(speed.at(TIME)))
-    assert acceleration[-2] == pytest.approx(12.0 / 0.55)
+    assert motion.velocity[-2] == pytest.approx(float(speed.at(TIME)))
+    assert motion.acceleration[-2] == pytest.approx(12.0 / 0.55)
 
 
 @pytest.fixture
@@ -63,9 +47,7 @@ def untouched(drive: Drive) -> Callable[[Pulley], System]:
 def test_free_pulley_turns_by_torque_over_inertia(untouched: Callable[[Pulley], System]) -> None:
     system = untouched(Pulley(name="far", center=(0, 50), radius=0.1, inertia=0.4, torque=Constant(value=-2.0)))
     state, equations = straight(system), new_equations(system)
-    assert accelerate(
-        system, TIME, state.position, state.velocity, state.acceleration, np.empty(len(system.scale)), equations
-    )
+    assert accelerate(system, state.at(TIME), np.empty(len(system.scale)), equations)
     np.testing.assert_allclose(state.acceleration[:-1], 0.0, atol=1e-7)  # rounding of 1e4 N on grams
     assert state.acceleration[-1] == pytest.approx(-5.0)
 
@@ -74,15 +56,7 @@ def test_massless_belt_is_singular(untouched: Callable[[Pulley], System]) -> Non
     system = untouched(Pulley(name="far", center=(0, 50), radius=0.1, inertia=0.4))
     system = system._replace(mass=0.0 * system.mass)
     state = straight(system)
-    assert not accelerate(
-        system,
-        TIME,
-        state.position,
-        state.velocity,
-        state.acceleration,
-        np.empty(len(system.scale)),
-        new_equations(system),
-    )
+    assert not accelerate(system, state.at(TIME), np.empty(len(system.scale)), new_equations(system))
 
 
 def test_subtraction_leaves_prescribed_pulleys(system: System, moving: State) -> None:

@@ -8,8 +8,8 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.system.arrays import Motion, System
-from beltdyn.system.assembly import assembly_workspace
 from beltdyn.system.build import drive_system
+from beltdyn.system.element_state import element_workspace
 from beltdyn.system.joint_constraint import mass_matrix
 from beltdyn.system.numerical_loss import numerical_loss
 from beltdyn.system.state import State
@@ -19,7 +19,7 @@ LENGTH = 2e-4
 
 def lost(system: System, before: Motion, after: Motion, impulse: FloatArray | None = None) -> float:
     given = np.zeros((2, before.position.size)) if impulse is None else impulse
-    return float(numerical_loss(system, before, after, given, assembly_workspace(system)))
+    return float(numerical_loss(system, before, after, given, element_workspace(system)))
 
 
 def some_motion(system: System, time: float, seed: int) -> Motion:

@@ -8,9 +8,9 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.solve.engine import linearise
-from beltdyn.system.arrays import RingMatrix, System
+from beltdyn.system.arrays import Equations, RingMatrix, System, TangentFactors
 from beltdyn.system.build import belt_system
-from beltdyn.system.motion import Equations, new_equations, no_multipliers
+from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import straight
 from beltdyn.system.supports import add_nodal_loads
 
@@ -25,18 +25,7 @@ def belt(drive: Drive) -> Belt:
 
 def solved(system: System) -> Equations:
     state, equations = straight(system), new_equations(system)
-    assert linearise(
-        system,
-        0.0,
-        state.position,
-        state.velocity,
-        state.acceleration,
-        no_multipliers(system),
-        1.0,
-        0.0,
-        1.0,
-        equations,
-    )
+    assert linearise(system, state.at(0.0), no_multipliers(system), TangentFactors(1.0, 0.0, 1.0), equations)
     return equations
 
 

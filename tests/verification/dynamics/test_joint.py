@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.engine import accelerate
-from beltdyn.system.arrays import System
+from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
 from beltdyn.system.joint_constraint import joint_constraint
@@ -40,7 +40,8 @@ def accelerations(system: System, position: FloatArray, velocity: FloatArray) ->
     """Of nodes, shape (N, 6), by the ring solver."""
     result, pulleys = np.empty(position.size + 2), np.zeros(2)
     where, how = np.append(position, pulleys), np.append(velocity, pulleys)
-    assert accelerate(system, TIME, where, how, result, no_multipliers(system), new_equations(system))
+    motion = Motion(TIME, where, how, result)
+    assert accelerate(system, motion, no_multipliers(system), new_equations(system))
     return result[:-2].reshape(-1, 6)
 
 
@@ -51,20 +52,7 @@ def test_accelerations(small: Drive, tied: Drive, nodes: FloatArray, measured: M
     equations, zero = new_equations(joined), np.zeros(doubled[0].size + 2)
     position, velocity = np.append(doubled[0], [0, 0]), np.append(doubled[1], [0, 0])
     velocity[-2] = small.pulleys[0].speed.at(TIME)  # type: ignore[union-attr]
-    assemble(
-        joined,
-        TIME,
-        position,
-        velocity,
-        zero,
-        no_multipliers(joined),
-        0.0,
-        0.0,
-        0.0,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+    assemble(joined, Motion(TIME, position, velocity, zero), no_multipliers(joined), NO_TANGENT, equations)
     by_brackets = joint_constraint(joined).accelerations(-equations.matrix.node_side.ravel()).reshape(-1, 6)
     size = np.max(np.abs(by_node))
     differences = {

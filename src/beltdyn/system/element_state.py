@@ -1,0 +1,129 @@
+"""One element of the belt at a state: its coordinates, its centreline and the damping of its material."""
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.bezier import Curve
+from beltdyn.contact.contact_force import contact_record
+from beltdyn.elements.dispatch import damping_force
+from beltdyn.elements.section import is_damped
+from beltdyn.kernel import kernel
+from beltdyn.records import blank, record
+from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, System, TangentFactors
+from beltdyn.system.discretization import element_kind
+from beltdyn.system.moving_center import drift_record
+
+
+def element_workspace(system: System) -> np.record:
+    """Make the scratch arrays for one element after the other of a system."""
+    count, vectors = system.control.shape[2:]
+    return blank(
+        record(
+            element=element_kind(system).workspace,  # residual and tangent of one element
+            contact=contact_record(count, vectors),
+            coordinates=f"(3,{2 * len(system.scale)})f8",  # position, velocity and acceleration of one element
+            control=f"({count},2)f8",  # control points of a curve of the centreline
+            control_velocity=f"({count},2)f8",
+            drift=drift_record(vectors),  # by a change of the velocity of a pulley's centre
+        )
+    )
+
+
+@kernel(inline=True)
+def gather(system: System, element: int, vector: FloatArray, coordinates: FloatArray) -> None:
+    """Coordinates of an element from those of its nodes.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element
+        Which one.
+    vector : ndarray, shape (n N + D,)
+        Positions, velocities or accelerations.
+    coordinates : ndarray, shape (2 n,)
+        Overwritten.
+    """
+    dof, node_j = len(system.scale), (element + 1) % system.nodes
+    for c in range(dof):
+        coordinates[c] = vector[dof * element + c]
+        coordinates[dof + c] = vector[dof * node_j + c]
+
+
+@kernel(inline=True)
+def add_material_damping(
+    system: System, element: int, factors: TangentFactors, work: np.record, loads: BodyForces
+) -> None:
+    """Add the damping of the belt's material to the residual and tangent of an element, and its loss to the loads.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element
+        Which one.
+    factors
+        Of the derivatives in the tangent.
+    work
+        From `element_workspace`, with the coordinates of the element and their rates.
+    loads
+        Changed in place.
+    """
+    if is_damped(system.element.section):
+        loads.power[MATERIAL_LOSS] += damping_force(
+            system.element,
+            work.coordinates[0],
+            work.coordinates[1],
+            system.length[element],
+            factors.by_position,
+            factors.by_velocity,
+            work.element,
+        )
+
+
+@kernel(inline=True)
+def centreline(system: System, element: int, curve: int, work: np.record) -> Curve:
+    """A curve of the centreline of an element.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element, curve
+        Which curve of which element.
+    work
+        From `element_workspace`, with the coordinates of the element and their rates; the control points are
+        written into them.
+
+    Returns
+    -------
+    Curve
+        Valid until `work` is used for the next curve.
+    """
+    fill_control(system, element, curve, work.coordinates[0], work.control)
+    fill_control(system, element, curve, work.coordinates[1], work.control_velocity)
+    length = system.length[element] / system.control.shape[1]
+    return Curve(work.control, work.control_velocity, system.control[element, curve], length)
+
+
+@kernel
+def fill_control(system: System, element: int, curve: int, coordinates: FloatArray, points: FloatArray) -> None:
+    """Control points of a curve of the centreline from the coordinates of its element.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element, curve
+        Which curve of which element.
+    coordinates : ndarray, shape (2 n,)
+        Nodal coordinates (or velocities) of the element.
+    points : ndarray, shape (n, 2)
+        Overwritten.
+    """
+    control, vectors = system.control[element, curve], system.vectors
+    for a in range(points.shape[0]):
+        for axis in range(2):
+            points[a, axis] = 0.0
+            for b in range(len(vectors)):
+                points[a, axis] += control[a, b] * coordinates[vectors[b] + axis]
