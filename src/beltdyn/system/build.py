@@ -68,6 +68,7 @@ def belt_system(
     tensioners: Sequence[Tensioner] = (),
     path: Path | None = None,
     gravity: tuple[float, float] = (0.0, 0.0),
+    lengths: FloatArray | None = None,
     fixed: Sequence[tuple[int, int]] = (),
     forces: Sequence[tuple[int, tuple[float, float]]] = (),
     moments: Sequence[tuple[int, float]] = (),
@@ -91,6 +92,8 @@ def belt_system(
         The path around the pulleys; needed where there are tensioners.
     gravity
         Acceleration of gravity, m/s^2; the belt's weight joins the forces on the nodes.
+    lengths : ndarray, shape (elements,), optional
+        Reference lengths of the elements, m; by default they are equal.
     fixed
         Pairs (node, coordinate) that do not move; coordinates 0 to 5 of the paper's element are r, r_x, r_y (Eq. 6).
     forces
@@ -110,7 +113,7 @@ def belt_system(
     ------
     ModelError
         If there are pulleys but no contact, or the kind of elements has no ends to leave open or nothing that a moment
-        turns.
+        turns, or the lengths do not make the belt.
     """
     if pulleys and contact is None:
         raise ModelError("contact is missing: a belt on pulleys needs its constants. Give a Contact.")
@@ -124,7 +127,7 @@ def belt_system(
             f'moments do not fit belt.discretization = "{belt.discretization}", whose nodes have nothing that turns. '
             'Leave them out, or choose discretization = "ancf".'
         )
-    mesh = discretize(belt)
+    mesh = discretize(belt, lengths)
     _attach(mesh.mass, masses)
     elements = mesh.length.size
     nodes = elements if closure == "shared_node" else elements + 1

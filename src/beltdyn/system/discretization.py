@@ -6,6 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ELEMENTS, Element, ElementKind, Section
+from beltdyn.errors import ModelError
 from beltdyn.model import Belt
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.system.arrays import System
@@ -29,21 +30,35 @@ class Discretization(NamedTuple):
     turned: int
 
 
-def discretize(belt: Belt) -> Discretization:
-    """Cut a belt into equal elements.
+def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
+    """Cut a belt into elements.
 
     Parameters
     ----------
     belt
         The belt.
+    lengths : ndarray, shape (elements,), optional
+        Reference lengths of the elements, m; by default they are equal.
 
     Returns
     -------
     Discretization
         Elements of the kind ``belt.element_kind``.
+
+    Raises
+    ------
+    ModelError
+        If the lengths do not make the belt.
     """
     kind, section = belt.element_kind, belt_section(belt)
-    length = np.full(belt.elements, belt.given_length / belt.elements)
+    whole = belt.given_length
+    length = np.full(belt.elements, whole / belt.elements) if lengths is None else np.asarray(lengths, float)
+    if length.size != belt.elements or length.min() <= 0.0 or not np.isclose(length.sum(), whole, rtol=1e-9):
+        raise ModelError(
+            f"{length.size} elements, the shortest {length.min():g} m long and {length.sum():.10g} m in all, do not "
+            f"make a belt with belt.elements = {belt.elements} and belt.length = {whole:.10g} m. "
+            "Give each element a positive length, so that they add up to that of the belt."
+        )
     return Discretization(
         element=kind.element(section, _elastic_points(belt)),
         points=kind.points,

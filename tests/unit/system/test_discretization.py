@@ -9,10 +9,11 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Belt, Drive, Path
 from beltdyn.quadrature import gauss_points, lobatto_points
-from beltdyn.system.arrays import System
-from beltdyn.system.assembly import assemble, fill_control
+from beltdyn.system.arrays import NO_TANGENT, Motion, System
+from beltdyn.system.assembly import assemble
 from beltdyn.system.build import Closure, belt_system, drive_system
 from beltdyn.system.discretization import curve_lengths, discretize, nodal_coordinates, point_coordinates
+from beltdyn.system.element_state import fill_control
 from beltdyn.system.joint_constraint import mass_matrix
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
@@ -71,6 +72,24 @@ def test_lengths_and_points(drive: Drive, kind: str, curves: int) -> None:
     system = belt_system(cut(drive, kind, 12), closure="shared_node")
     np.testing.assert_allclose(curve_lengths(system), np.full(curves, length))
     np.testing.assert_allclose(point_coordinates(system), length * np.arange(curves), atol=EXACT)
+
+
+def test_lengths_as_given(drive: Drive) -> None:
+    belt = cut(drive, "truss", 4)
+    lengths = belt.given_length * np.array([0.1, 0.2, 0.3, 0.4])
+    system = belt_system(belt, closure="shared_node", lengths=lengths)
+    np.testing.assert_array_equal(system.length, lengths)
+    np.testing.assert_allclose(
+        point_coordinates(system), belt.given_length * np.array([0.0, 0.1, 0.3, 0.6]), atol=EXACT
+    )
+    np.testing.assert_allclose(system.mass[:, 0, 0], 0.5 * belt.mass_per_length * lengths)
+
+
+@pytest.mark.parametrize("shares", [[0.3, 0.3, 0.4], [0.1, 0.2, 0.3, 0.5], [-0.1, 0.4, 0.3, 0.4]])
+def test_lengths_must_make_the_belt(drive: Drive, shares: list[float]) -> None:
+    belt = cut(drive, "truss", 4)
+    with pytest.raises(ModelError, match=r"do not make a belt with belt\.elements = 4 .* Give each element a positive"):
+        discretize(belt, belt.given_length * np.array(shares))
 
 
 @pytest.mark.parametrize("kind", LINKS)
@@ -147,19 +166,6 @@ def test_forces_at_rest_are_the_slope_of_the_energies(make_drive: Make, kind: st
 def forces(system: System, position: FloatArray) -> FloatArray:
     """Residual of the belt at rest, shape (6 N,)."""
     equations, still = new_equations(system), np.zeros_like(position)
-    assemble(
-        system,
-        0.0,
-        position,
-        still,
-        still,
-        no_multipliers(system),
-        0.0,
-        0.0,
-        0.0,
-        equations.work,
-        equations.matrix,
-        equations.loads,
-    )
+    assemble(system, Motion(0.0, position, still, still), no_multipliers(system), NO_TANGENT, equations)
     assert np.max(equations.loads.stored) > 0.0
     return np.asarray(equations.matrix.node_side).ravel()

@@ -1,5 +1,7 @@
 """Wear intensity: work of friction, by place on the arc and by place on the belt (Archard 1953: wear grows with it)."""
 
+from itertools import accumulate
+
 import numpy as np
 import xarray as xr
 
@@ -79,8 +81,9 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}
     attributes = {"units": "J/m", "long_name": "Wear intensity on the belt"}
-    length = run.drive.belt_length / work.shape[1]
-    return xr.DataArray(work / length, coordinates, ("pulley", "element"), attrs=attributes)
+    middles = dataset["element_coordinate"].values
+    ends = np.fromiter(accumulate(middles, lambda end, middle: 2.0 * middle - end, initial=0.0), float)
+    return xr.DataArray(work / np.diff(ends), coordinates, ("pulley", "element"), attrs=attributes)
 
 
 def _work(run: Run, name: str, start: float | None, end: float | None) -> tuple[xr.Dataset, FloatArray]:
