@@ -7,6 +7,7 @@ import pytest
 
 from beltdyn.model import Drive
 from beltdyn.solve.engine import accelerate
+from beltdyn.system.arrays import Motion
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.first_order import FirstOrder
@@ -82,7 +83,8 @@ def test_held_coordinates_have_no_acceleration_in_the_first_order_form(pulled: D
     rates = equations.unpack(equations.rates(0.0, equations.pack(state)))[1]
     acceleration = np.empty_like(rates)
     work = new_equations(system)
-    accelerate(system, 0.0, state.position, state.velocity.copy(), acceleration, no_multipliers(system), work)
+    motion = Motion(0.0, state.position, state.velocity.copy(), acceleration)
+    accelerate(system, motion, no_multipliers(system), work)
     assert not np.any(rates[: system.first_body][system.supports.fixed])
     np.testing.assert_allclose(rates, acceleration, atol=1e-9 * np.abs(acceleration).max())  # rounding
 
