@@ -11,10 +11,10 @@ from scipy.optimize import curve_fit
 
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
-from beltdyn.cli.sweep import run_up
 from beltdyn.model import install
 from beltdyn.plot.style import new_figure, styled
 from beltdyn.plot.sweep import orders
+from beltdyn.solve.sweep import run_up
 
 TURN = 0.075
 """A turn of the crank at idle, s."""

@@ -8,17 +8,18 @@ from typing import Any
 
 import lazy_loader
 
-from beltdyn.analyses import ANALYSES
+from beltdyn.analyses import ANALYSES as _ANALYSES
 
 __version__ = "0.1.0"
 
 _load, _names, _listed = lazy_loader.attach_stub(__name__, __file__)
-__all__ = sorted({*_listed, *ANALYSES})
+_functions = {analysis.public_name: analysis for analysis in _ANALYSES.values()}
+__all__ = sorted({*_listed, *_functions})
 
 
 def __getattr__(name: str) -> Any:
-    return ANALYSES[name].function if name in ANALYSES else _load(name)
+    return _functions[name].function if name in _functions else _load(name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*_names(), *ANALYSES})
+    return sorted({*_names(), *_functions})

@@ -56,6 +56,7 @@ from .results import (
     Result,
     Run,
     SpanSummary,
+    StaticResult,
     Summary,
     TensionerSummary,
     Variable,
@@ -84,6 +85,7 @@ from .solve import (
     find_equilibrium,
     simulate,
     simulate_all,
+    sweep,
 )
 
 __version__: str
@@ -135,6 +137,7 @@ __all__ = [
     "SlidingTensioner",
     "SpanSummary",
     "StandardIntegrator",
+    "StaticResult",
     "Step",
     "StepError",
     "Stepwise",
@@ -170,6 +173,7 @@ __all__ = [
     "simulate",
     "simulate_all",
     "summarize",
+    "sweep",
     "tensioner_balances",
     "theory",
     "write_csv",

@@ -1,8 +1,13 @@
-"""Analyses by name: each is a function in a file of its own, a name of the package and a command."""
+"""Analyses by name: each is a function of a drive, which gives a result, a command and the files that it writes."""
 
 from collections.abc import Callable
 from importlib import import_module
+from inspect import signature
+from pathlib import Path
 from typing import Any, NamedTuple
+
+RUN, STATIC = "run", "static"
+"""Kinds of results that have a class of their own: those that grow over time, of any analysis, and those at rest."""
 
 
 class Analysis(NamedTuple):
@@ -11,27 +16,88 @@ class Analysis(NamedTuple):
     Attributes
     ----------
     name : str
-        Name of the function, of ``beltdyn.NAME``, of the command and of the kind of its results.
-    module : str
-        Module that holds the function.
+        Name of the command, and of the kind of its results; those over time are of the kind `RUN`.
+    place : str
+        "MODULE:FUNCTION"; the function is ``beltdyn.FUNCTION`` too.
     purpose : str
         What it tells, in one line for the help of the command line.
     """
 
     name: str
-    module: str
+    place: str
     purpose: str
 
     @property
+    def public_name(self) -> str:
+        """Name of the function."""
+        return self.place.partition(":")[2]
+
+    @property
     def function(self) -> Callable[..., Any]:
-        """The function ``f(drive, *, ...) -> beltdyn.results.Result``."""
-        function: Callable[..., Any] = getattr(import_module(self.module), self.name)
+        """The function ``f(drive, *, ...) -> beltdyn.Result``."""
+        module, _, name = self.place.partition(":")
+        function: Callable[..., Any] = getattr(import_module(module), name)
         return function
 
+    @property
+    def grows(self) -> bool:
+        """Whether results are written as they come: the function has a parameter ``output`` then."""
+        return "output" in signature(self.function).parameters
 
-_ALL: tuple[Analysis, ...] = (
+    def result_file(self, drive_file: Path) -> Path:
+        """The result file of a drive file where none is named.
+
+        Parameters
+        ----------
+        drive_file : Path
+            Such as ``drive.toml``.
+
+        Returns
+        -------
+        Path
+            ``drive.nc`` of a run, and ``drive-NAME.nc`` of other analyses.
+        """
+        return drive_file.with_name(f"{drive_file.stem}{'' if self.name == RUN else f'-{self.name}'}.nc")
+
+    def write(self, drive: Any, path: Path, progress: Any = None, overwrite: bool = False, **options: Any) -> Any:
+        """Analyse a drive, with the results in a file.
+
+        A function that has a parameter ``output`` writes there as it goes, and takes ``overwrite`` too; what others
+        give is saved at the end. One that has a parameter ``progress`` tells of it.
+
+        Parameters
+        ----------
+        drive : Drive
+            The drive.
+        path : Path
+            The result file.
+        progress : callable, optional
+            Called now and then with a `beltdyn.Progress`.
+        overwrite : bool
+            Replace any regular file, and not only results.
+        **options
+            Those of the function.
+
+        Returns
+        -------
+        Result
+            What the function gave.
+        """
+        function = self.function
+        shared = {"output": path, "progress": progress, "overwrite": overwrite}
+        taken = shared.keys() & signature(function).parameters.keys()
+        result = function(drive, **{name: shared[name] for name in taken}, **options)
+        if not self.grows:
+            result.save(path, overwrite)
+        return result
+
+
+_ALL = (
+    Analysis(RUN, "beltdyn.solve.simulate:simulate", "Simulate drives over time."),
+    Analysis("sweep", "beltdyn.solve.sweep:sweep", "Run a drive up through a range of speeds."),
+    Analysis(STATIC, "beltdyn.solve.equilibrium:equilibrium", "Find the static equilibrium of a drive at rest."),
     # one line for each
 )
 
 ANALYSES = {analysis.name: analysis for analysis in _ALL}
-"""All analyses by name, but for those over time and at rest, whose commands do more."""
+"""All analyses by name."""

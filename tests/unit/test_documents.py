@@ -4,46 +4,40 @@ import re
 import tomllib
 from importlib.resources import files
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import matplotlib.pyplot as plt
 import pytest
 import tomli_w
 
-from beltdyn.machines import Constant, CosineRamp, CosineRampPublished, Profile, Ramp, Step, Table
-from beltdyn.model import (
-    Belt,
-    Contact,
-    Drive,
-    FixedTensioner,
-    FrictionClutch,
-    Harmonic,
-    Isolator,
-    LoadTable,
-    Motor,
-    OneWayClutch,
-    Pulley,
-    Resistance,
-    RotaryTensioner,
-    Simulation,
-    SlidingTensioner,
-    dumps,
-    loads,
-)
+from beltdyn.analyses import ANALYSES, RUN, STATIC
+from beltdyn.machines.links import kinds as links
+from beltdyn.machines.loads import kinds as loads_
+from beltdyn.machines.profiles import kinds as profiles
+from beltdyn.machines.tensioners import kinds as tensioners
+from beltdyn.model import Belt, Contact, Drive, Harmonic, Pulley, Simulation, dumps, loads
 from beltdyn.model.belt_form import Sold, Stiffnesses
 from beltdyn.model.catalogue import Entry
 from beltdyn.parts.part import Part
+from beltdyn.plot import FIGURES
+from beltdyn.plot.registry import on_request
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
 MACHINES = ROOT / "docs" / "machines.md"
 DRIVE_FILE = ROOT / "docs" / "drive_file.md"
+RESULTS = ROOT / "docs" / "results.md"
+
+
+def kinds_of(family: ModuleType) -> list[type[Part]]:
+    """The kinds that a family of machines has registered."""
+    return [kind for kind in vars(family).values() if isinstance(kind, type)]
+
+
 PARTS = {
     DRIVE_FILE: [Belt, Pulley, Contact, Simulation],
-    MACHINES: [
-        *(Harmonic, Resistance, LoadTable, Motor, Isolator, OneWayClutch, FrictionClutch),
-        *(FixedTensioner, SlidingTensioner, RotaryTensioner),
-    ],
+    MACHINES: [Harmonic, *(kind for family in (loads_, links, tensioners) for kind in kinds_of(family))],
 }
 
 
@@ -88,8 +82,8 @@ def test_every_key_of_a_machine_stands_under_its_kind(part: type[Part]) -> None:
     assert missing == shared
 
 
-@pytest.mark.parametrize("profile", [Constant, Step, Ramp, CosineRamp, CosineRampPublished, Table])
-def test_every_key_of_a_profile_is_documented(profile: type[Profile]) -> None:
+@pytest.mark.parametrize("profile", kinds_of(profiles))
+def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
     kind = profile.model_fields["kind"].default or "table"
     text = DRIVE_FILE.read_text(encoding="utf-8")
     rows = [row for row in text.splitlines() if row.startswith(f'| `{{ kind = "{kind}",')]
@@ -164,3 +158,21 @@ def test_the_map_names_every_folder_and_files_that_exist() -> None:
     named = re.findall(r"`(\w+(?:/\w+)*\.py)`", map_)
     assert len(named) > 20
     assert [name for name in named if not (source / name).exists()] == []
+
+
+def test_the_results_page_names_every_figure() -> None:
+    """Those that are drawn where none is chosen, and those on request; and which show a drive at rest."""
+    text = RESULTS.read_text(encoding="utf-8")
+    section = text[text.index("## Figures") :]
+    essential, others = section.split("Others are drawn")[:2]
+    for name, figure in FIGURES.items():
+        assert name in (others if figure.by_default is on_request else essential), name
+    rest = re.search(r"Of a drive at rest there are (.*?)\.", section, re.DOTALL)
+    assert rest is not None
+    named = set(re.findall(r"`(\w+)`", rest.group(1)))
+    assert named == {name for name, figure in FIGURES.items() if STATIC in figure.of and RUN in figure.of}
+
+
+def test_the_commands_page_has_every_analysis() -> None:
+    text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    assert [name for name in ANALYSES if f"| `beltdyn {name} FILE" not in text] == []

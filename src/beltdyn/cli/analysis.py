@@ -1,29 +1,41 @@
-"""The command of an analysis, made of its function: options, tables, warnings, and a result file."""
+"""The command of an analysis, made of its function: options, progress, tables, warnings, and result files."""
 
 import re
 from collections.abc import Callable
 from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Parameter as Option
+from cyclopts.validators import Number
 
 from beltdyn.analyses import Analysis
-from beltdyn.cli.console import show, show_table, show_warnings
-from beltdyn.cli.output import require_output
+from beltdyn.cli.batch import analyse_several
+from beltdyn.cli.output import analyse_to, doubt, ended, require_output, write_tables
 
-if TYPE_CHECKING:
-    from beltdyn.results import Result
+SHARED = ("output", "progress", "overwrite")
+"""Parameters of functions that every command fills in itself."""
 
-_OUTPUT = """
+_ABOUT = """
+Several drives are computed side by side on all cores. Ctrl-C, or the signal to terminate, ends the command and keeps
+what was computed. Earlier results are replaced, and no other files.
+"""
+
+_PARAMETERS = """
 output
-    The result file; by default the drive file's name with the name of the analysis.
+    The result file; by default {file}, beside the drive file. Of several drives, the folder for these.
+jobs
+    How many drives to compute at a time; by default as many as there are cores.
+csv
+    Write plain tables too, into a folder beside the result file, named after it with -tables.
+strict
+    End with an error (exit code 4) where a warning makes results doubtful; they are kept.
 force
-    Replace other files than results too.
+    Replace other files too.
 """
 
 
-def analysis_command(analysis: Analysis) -> Callable[..., None]:
+def analysis_command(analysis: Analysis) -> Callable[..., int]:
     """Make the command of an analysis.
 
     Parameters
@@ -38,55 +50,57 @@ def analysis_command(analysis: Analysis) -> Callable[..., None]:
     """
     function = analysis.function
 
-    def command(file: Path, /, *, output: Path | None = None, force: bool = False, **options: Any) -> None:
+    def command(
+        file: Path,
+        /,
+        *more: Path,
+        output: Annotated[Path | None, Option(alias="-o")] = None,
+        jobs: Annotated[int | None, Option(alias="-j", validator=Number(gte=1))] = None,
+        csv: Annotated[bool, Option(negative="")] = False,
+        strict: Annotated[bool, Option(negative="")] = False,
+        force: Annotated[bool, Option(negative="")] = False,
+        **options: Any,
+    ) -> int:
+        files = (file, *more)
+        if more:
+            return analyse_several(analysis, files, output, jobs, csv=csv, strict=strict, force=force, **options)
         from beltdyn.model import load
 
-        drive = load(file)
-        path = output or file.with_name(f"{file.stem}-{analysis.name}.nc")
-        require_output(path, (file,), csv=False, force=force)
-        result = function(drive, **options)
-        show_result(result)
-        result.save(path, force)
-        show(f"\nResults: {path}")
+        drive, path = load(file), output or analysis.result_file(file)
+        require_output(path, files, csv, force)
+        result = analyse_to(analysis, drive, path, force, **options)
+        if csv:
+            write_tables(result, path, force)
+        return ended(result) or (doubt(result.warnings) if strict else 0)
 
-    own = [one for one in signature(function, eval_str=True).parameters.values() if one.kind is Parameter.KEYWORD_ONLY]
-    common = [
-        Parameter("file", Parameter.POSITIONAL_ONLY, annotation=Path),
-        Parameter(
-            "output", Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[Path | None, Option(alias="-o")]
-        ),
-        Parameter("force", Parameter.KEYWORD_ONLY, default=False, annotation=Annotated[bool, Option(negative="")]),
-    ]
-    command.__signature__ = signature(command).replace(parameters=[*common, *own])  # type: ignore[attr-defined]
-    command.__annotations__ = {one.name: one.annotation for one in (*common, *own)}
+    own = {
+        name: one.replace(kind=Parameter.KEYWORD_ONLY)
+        for name, one in signature(function, eval_str=True).parameters.items()
+        if one.kind is Parameter.KEYWORD_ONLY and name not in SHARED
+    }
+    common = [one for one in signature(command).parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
+    if not _is_over_time(function):
+        common = [one for one in common if one.name != "csv"]
+    parameters = [*common[:2], *own.values(), *common[2:]]
+    command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
+    command.__annotations__ = {one.name: one.annotation for one in parameters}
     command.__name__ = analysis.name
-    command.__doc__ = _help(function)
+    command.__doc__ = _help(analysis, own)
     return command
 
 
-def _help(function: Callable[..., Any]) -> str:
-    """The docstring of a function of a drive as that of a command on a drive file."""
-    text = cleandoc(function.__doc__ or "")
+def _is_over_time(function: Callable[..., Any]) -> bool:
+    """Whether a function gives runs, of which there are plain tables."""
+    from beltdyn.results import Run
+
+    return signature(function, eval_str=True).return_annotation is Run
+
+
+def _help(analysis: Analysis, own: dict[str, Parameter]) -> str:
+    """The docstring of a function of a drive as that of a command on drive files."""
+    text = cleandoc(analysis.function.__doc__ or "")
     summary, _, rest = text.partition("\n\nParameters\n----------\n")
-    entries = re.split(r"\n(?=\S)", rest.partition("\n\n")[0])[1:]  # the first is the drive
-    parameters = "\n".join(["file", "    The drive file, TOML.", *entries, _OUTPUT.strip()])
-    return f"{summary}\n\nParameters\n----------\n{parameters}\n"
-
-
-def show_result(result: "Result") -> None:
-    """Write a table for each dimension along which single numbers stand, and the warnings.
-
-    Parameters
-    ----------
-    result
-        The result.
-    """
-    dataset = result.dataset
-    for dimension in dataset.dims:
-        columns = [variable for variable in dataset.data_vars.values() if variable.dims == (dimension,)]
-        if columns:
-            labels = [str(label) for label in dataset[dimension].values]
-            rows = zip(labels, *([f"{value:.5g}" for value in column.values] for column in columns), strict=True)
-            headings = (f"{column.attrs['long_name']}\n{column.attrs['units']}" for column in columns)
-            show_table("", (str(dataset[dimension].attrs.get("long_name", dimension)), *headings), rows)
-    show_warnings(result.warnings)
+    entries = [entry for entry in re.split(r"\n(?=\S)", rest.partition("\n\n")[0]) if entry.partition("\n")[0] in own]
+    shared = _PARAMETERS.strip().format(file=analysis.result_file(Path("FILE.toml")))
+    files = ["file", "    The drive file, TOML.", "more", "    More drive files."]
+    return f"{summary}\n{_ABOUT}\nParameters\n----------\n" + "\n".join([*files, *entries, shared]) + "\n"

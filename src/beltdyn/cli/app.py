@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from cyclopts import App, CycloptsError
 
 from beltdyn import __version__
-from beltdyn.analyses import ANALYSES
+from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
@@ -16,10 +16,7 @@ from beltdyn.cli.demo import demo
 from beltdyn.cli.new import new
 from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
-from beltdyn.cli.run import run
 from beltdyn.cli.schema import schema
-from beltdyn.cli.static import static
-from beltdyn.cli.sweep import sweep
 from beltdyn.errors import BeltdynError
 from beltdyn.signals import ending_in_order, exit_code
 
@@ -33,22 +30,16 @@ app = App(
     "`beltdyn run drive.toml`.",
     suppress_keyboard_interrupt=False,
 )
-_COMMANDS: tuple[Callable[..., object], ...] = (
-    new,
-    check,
-    run,
-    sweep,
-    static,
-    plot,
-    demo,
-    paper,
-    catalogue,
-    schema,
+_COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
+    *(new, check),
+    *ANALYSES.values(),
+    *(plot, demo, paper, catalogue, schema),
 )
-for position, command in enumerate(_COMMANDS):
-    app.command(command, sort_key=position)
-for analysis in ANALYSES.values():
-    app.command(App(name=analysis.name, help=analysis.purpose, sort_key=len(_COMMANDS)))
+for position, one in enumerate(_COMMANDS):
+    if isinstance(one, Analysis):
+        app.command(App(name=one.name, help=one.purpose, sort_key=position))
+    else:
+        app.command(one, sort_key=position)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -77,7 +68,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _exit_code(arguments: Sequence[str] | None) -> int:
     for name in ANALYSES.keys() & set(sys.argv[1:2] if arguments is None else arguments[:1]):
-        app[name].default(analysis_command(ANALYSES[name]))  # imported here, where it is used
+        if app[name].default_command is None:  # its function is imported here, where it is used
+            app[name].default(analysis_command(ANALYSES[name]))
+            app[name].help = None  # that of the function says more
     try:
         return app(arguments, exit_on_error=False, result_action="return_int_as_exit_code_else_zero") or 0
     except CycloptsError:

@@ -1,10 +1,11 @@
-"""`beltdyn run` of several drives."""
+"""An analysis of several drives."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_error, show_table, show_warnings
 from beltdyn.cli.output import doubt, require_output, show_leftovers, write_tables
 from beltdyn.cli.progress import runs_bar
@@ -16,13 +17,23 @@ if TYPE_CHECKING:
     from beltdyn.solve import Ending
 
 
-def run_several(
-    files: Sequence[Path], folder: Path | None, jobs: int | None, *, csv: bool, strict: bool, force: bool
+def analyse_several(
+    analysis: Analysis,
+    files: Sequence[Path],
+    folder: Path | None,
+    jobs: int | None,
+    *,
+    csv: bool,
+    strict: bool,
+    force: bool,
+    **options: Any,
 ) -> int:
-    """Simulate drives side by side, and show a table of them.
+    """Analyse drives side by side, and show a table of them.
 
     Parameters
     ----------
+    analysis
+        The analysis.
     files
         Drive files.
     folder
@@ -35,6 +46,8 @@ def run_several(
         Whether warnings are errors.
     force
         Whether to replace other files than earlier results.
+    **options
+        Those of the analysis.
 
     Returns
     -------
@@ -48,17 +61,18 @@ def run_several(
         files than earlier results would be replaced.
     """
     drives = _load_all(files)
-    results = _result_files(files, folder)
+    results = _result_files(analysis, files, folder)
     for path in results.values():
         require_output(path, files, csv, force)
     if folder is not None:
         from beltdyn.results.atomic import make_folder
 
         make_folder(folder)
-    from beltdyn.solve import simulate_all
+    from beltdyn.solve.batch import analyse_all
 
     with runs_bar() as report:
-        endings = simulate_all({results[file]: drives[file] for file in files}, report, jobs, force)
+        wanted = {results[file]: drives[file] for file in files}
+        endings = analyse_all(analysis, wanted, report, jobs, force, **options)
     ends = {file: endings[results[file]] for file in files}
     _show_endings(ends, results)
     for path in results.values():
@@ -70,7 +84,7 @@ def run_several(
         return exit_code()
     if any(end.error for end in ends.values()):
         return SimulationError.exit_code
-    return doubt([warning for end in ends.values() if end.summary for warning in end.summary.warnings]) if strict else 0
+    return doubt([warning for end in ends.values() for warning in end.warnings]) if strict else 0
 
 
 def _load_all(files: Sequence[Path]) -> dict[Path, "Drive"]:
@@ -89,9 +103,9 @@ def _load_all(files: Sequence[Path]) -> dict[Path, "Drive"]:
     return drives
 
 
-def _result_files(files: Sequence[Path], folder: Path | None) -> dict[Path, Path]:
+def _result_files(analysis: Analysis, files: Sequence[Path], folder: Path | None) -> dict[Path, Path]:
     """The result file of every drive file."""
-    results = [(folder or file.parent) / f"{file.stem}.nc" for file in files]
+    results = [(folder or file.parent) / analysis.result_file(file).name for file in files]
     for path, count in Counter(path.resolve() for path in results).items():
         if count > 1:
             sharing = [str(file) for file, result in zip(files, results, strict=True) if result.resolve() == path]
@@ -103,29 +117,26 @@ def _result_files(files: Sequence[Path], folder: Path | None) -> dict[Path, Path
 
 def _show_endings(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path]) -> None:
     """Write a table of all, their warnings, and why some failed."""
-    show_table(
-        "\nDrives",
-        ("", "status", "speed of the last pulley", "steps", "time taken", "warnings", "results"),
-        [(str(file), end.status, *_numbers(end), *_result(end, results[file])) for file, end in ends.items()],
-    )
+    headings = ("", "status", "speed of the last pulley", "steps", "time taken", "warnings", "results")
+    rows = [(str(file), end.status, *_numbers(end), str(results[file]) * end.kept) for file, end in ends.items()]
+    filled = [column for column in zip(headings, *rows, strict=True) if any(column[1:])]
+    headings, *rows = zip(*filled, strict=True)
+    show_table("\nDrives", headings, rows)
     show()
     for file, end in ends.items():
-        show_warnings(f"{file}: {warning}" for warning in (end.summary.warnings if end.summary else ()))
+        show_warnings(f"{file}: {warning}" for warning in end.warnings)
     for file, end in ends.items():
         for line in end.error.splitlines():
             show_error(f"{file}: {line}")
 
 
 def _numbers(end: "Ending") -> tuple[str, str, str, str]:
-    summary = end.summary
+    """Numbers of a run, and how many warnings there are."""
+    summary, warnings = end.summary, f"{len(end.warnings)}" * end.kept
     if summary is None:
-        return ("",) * 4
+        return "", "", "", warnings
     speed = f"{summary.pulleys[-1].speed:z.4f} rad/s"
-    return speed, f"{summary.steps}", f"{summary.wall_time:.3g} s", f"{len(summary.warnings)}"
-
-
-def _result(end: "Ending", path: Path) -> tuple[str]:
-    return (str(path) if end.summary else "",)
+    return speed, f"{summary.steps}", f"{summary.wall_time:.3g} s", warnings
 
 
 def _write_all_tables(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path], force: bool) -> None:
@@ -133,7 +144,7 @@ def _write_all_tables(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path
     from beltdyn.results import open_run
 
     for file, end in ends.items():
-        if end.summary:
+        if end.kept:
             run = open_run(results[file])
             write_tables(run, results[file], force)
             run.dataset.close()

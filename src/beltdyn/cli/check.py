@@ -106,7 +106,7 @@ def _origin(drive: "Drive", installation: "Installation", asked_for: bool) -> st
         return ", which the pulled end sets"
     gained = installation.tension / installation.laid_tension - 1
     change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than laid"
-    return f"{asked}: {change}, since the belt sinks into the pulleys and resists bending"
+    return f"{asked}: {change}, by penetration into the pulleys and bending stiffness"
 
 
 def _layers(drive: "Drive", installation: "Installation") -> str:
@@ -116,7 +116,7 @@ def _layers(drive: "Drive", installation: "Installation") -> str:
     from beltdyn.model import layer_lengths
 
     bending, sinking = layer_lengths(drive, installation.tension)
-    return f"; the belt turns onto pulleys within {bending:.2g} m by bending, {sinking:.2g} m by sinking in"
+    return f"; transition lengths at the ends of arcs: {bending:.2g} m of bending, {sinking:.2g} m of penetration"
 
 
 def _pulleys(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:

@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+from beltdyn.analyses import ANALYSES, RUN
 from beltdyn.cli.console import show
 from beltdyn.cli.new import refuse_existing, write_text
-from beltdyn.cli.output import ended, simulate_to
+from beltdyn.cli.output import analyse_to, ended
 from beltdyn.cli.plot import draw
 
 
@@ -24,7 +25,7 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
         refuse_existing(file)
         write_text(file, demo_text())
     show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
-    run = simulate_to(load(file), folder / "two_pulley.nc")
+    run = analyse_to(ANALYSES[RUN], load(file), folder / "two_pulley.nc")
     if run.status == "completed":
         draw(run, folder, animate=False)
     return ended(run)

@@ -2,19 +2,22 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_error
 from beltdyn.cli.progress import progress_bar
-from beltdyn.cli.summary import show_summary
+from beltdyn.cli.result import show_result
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
-    from beltdyn.results import Run
+    from beltdyn.results import Result
 
 DOUBTFUL = 4
+
+_NOTHING_KEPT = "No results are kept."
 
 
 def require_output(path: Path, files: Iterable[Path], csv: bool, force: bool) -> None:
@@ -41,37 +44,34 @@ def tables_folder(path: Path) -> Path:
     return path.with_name(f"{path.stem}-tables")
 
 
-def write_tables(run: "Run", path: Path, force: bool) -> None:
-    """Write plain tables into a folder beside the result file, and name them."""
-    from beltdyn.results import write_csv
+def write_tables(run: "Result", path: Path, force: bool) -> None:
+    """Write plain tables into a folder beside the result file, and name them; none of a run without outputs."""
+    from beltdyn.results import Run, write_csv
 
-    show(f"Tables: {', '.join(str(table) for table in write_csv(run, tables_folder(path), force))}")
+    if isinstance(run, Run) and run.outputs:
+        show(f"Tables: {', '.join(str(table) for table in write_csv(run, tables_folder(path), force))}")
 
 
-def simulate_to(drive: "Drive", path: Path, force: bool = False) -> "Run":
-    """Simulate into a file with a progress bar, and show the summary.
+def analyse_to(analysis: Analysis, drive: "Drive", path: Path, force: bool = False, **options: Any) -> "Result":
+    """Analyse a drive into a file with a progress bar, and show the result.
 
     Raises
     ------
     SimulationError
-        If the simulation cannot go on.
+        If the analysis cannot go on.
     """
-    from beltdyn.results import describe_size
-    from beltdyn.solve import simulate
-
-    show(f"Results of about {describe_size(drive)}")
     try:
         with progress_bar() as report:
-            finished = simulate(drive, path, report, force)
+            result: Result = analysis.write(drive, path, report, force, **options)
     except SimulationError:
-        show(_kept(path))
+        show(_kept(path) if analysis.grows else _NOTHING_KEPT)
         raise
-    show_summary(finished)
-    if finished.status == "interrupted":
+    show_result(result)
+    if result.status == "interrupted":
         show("\nInterrupted: what was computed is kept.")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
     show_leftovers(path)
-    return finished
+    return result
 
 
 def show_leftovers(path: Path) -> None:
@@ -91,7 +91,7 @@ def _kept(path: Path) -> str:
             outputs = dataset.sizes["time"]
     except ModelError:
         outputs = 0
-    return f"What was computed is in {path}" if outputs else "No outputs are kept."
+    return f"What was computed is in {path}" if outputs else _NOTHING_KEPT
 
 
 def doubt(warnings: Sequence[str]) -> int:
@@ -103,6 +103,6 @@ def doubt(warnings: Sequence[str]) -> int:
     return DOUBTFUL
 
 
-def ended(run: "Run") -> int:
-    """Exit code of a run that ended without an error."""
-    return exit_code() if run.status == "interrupted" else 0
+def ended(result: "Result") -> int:
+    """Exit code of an analysis that ended without an error."""
+    return exit_code() if result.status == "interrupted" else 0

@@ -28,15 +28,15 @@ def plot(
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another analysis.
+        The result file, NetCDF, written by `beltdyn run` or another command.
     output
         The folder of the figures; by default beside the result file, named after it with -figures.
     figures
-        Names of figures with commas between, such as slip,hub_loads; by default the essential ones. The others are
-        mid_spans, tension_spectrum, wear_by_arc, wear_by_belt, waterfall and orders.
+        Names of figures with commas between, such as slip,hub_loads; by default the essential ones. A name that is not
+        known gives the list of all.
     pulley
         The pulley of hub loads and contact, by default all; and the one whose speed counts in waterfall and orders, by
-        default the first.
+        default the one that was swept, or else the first.
     variable
         What waterfall and orders show, such as span_tension, pulley_speed or pulley_torque.
     animate

@@ -6,27 +6,28 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from beltdyn.analyses import RUN, STATIC
 from beltdyn.plot.drive import DrivePicture, draw_rotation, size_of
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import axes_or_new, new_figure
-from beltdyn.results import Run
+from beltdyn.results import Result, Run, StaticResult
 
 
-def _one_large_panel(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+def _one_large_panel(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a figure of one panel, as large as the drive asks for."""
     page = new_figure(size_of(run.drive))
     draw(run, ax=page.add_subplot())
     return page
 
 
-@figure(always, _one_large_panel)
-def configuration(run: Run, time: float | None = None, ax: Axes | None = None) -> Axes:
+@figure(always, _one_large_panel, of=(RUN, STATIC))
+def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw belt and pulleys at one instant, the belt's tension in color.
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Run or StaticResult
+        The run, or the drive at rest.
     time : float, optional
         The instant, s; the output of fields nearest to it is drawn. The last one by default.
     ax : Axes, optional

@@ -10,39 +10,40 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
+from beltdyn.analyses import RUN, STATIC
 from beltdyn.arrays import FloatArray
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, unit
 from beltdyn.plot.wrap import Wrap, unwrap
-from beltdyn.results import Run, derived
+from beltdyn.results import Result, Run, StaticResult, derived
 
 Kind = Literal["normal", "friction"]
 _KILO = 1e3
 _SLIDING = "#f6d9c9"
 
 
-def _pulleys(run: Run, choice: Choice) -> list[list[int]]:
+def _pulleys(run: Result, choice: Choice) -> list[list[int]]:
     """Numbers of the chosen pulleys, in rows."""
     return rows(list(range(len(run.drive.pulleys))) if choice.pulley is None else [choice.pulley])
 
 
-def _kinds_by_pulleys(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each kind of force and pulley."""
     blocks = [(block, kind) for block in _pulleys(run, choice) for kind in get_args(Kind)]
     return panels([[partial(draw, run, number, kind=kind) for number in block] for block, kind in blocks])
 
 
-def _by_pulleys(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each pulley, with one legend for all."""
     page = panels([[partial(draw, run, number) for number in row] for row in _pulleys(run, choice)])
     page.legend(*page.axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
     return page
 
 
-@figure(always, _kinds_by_pulleys)
+@figure(always, _kinds_by_pulleys, of=(RUN, STATIC))
 def contact_forces(
-    run: Run, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
+    run: Run | StaticResult, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
 ) -> Axes:
     """Draw the contact forces on the belt from where it enters a pulley to where it leaves.
 
@@ -51,8 +52,8 @@ def contact_forces(
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Run or StaticResult
+        The run, or the drive at rest.
     pulley : str or int
         Name or number of the pulley.
     time : float, optional
@@ -96,16 +97,18 @@ def contact_forces(
     return ax
 
 
-@figure(always, _by_pulleys)
-def contact_pressure(run: Run, pulley: str | int, time: float | None = None, ax: Axes | None = None) -> Axes:
+@figure(always, _by_pulleys, of=(RUN, STATIC))
+def contact_pressure(
+    run: Run | StaticResult, pulley: str | int, time: float | None = None, ax: Axes | None = None
+) -> Axes:
     """Draw pressure and shear over the angle on a pulley from where the belt enters.
 
     The shaded part of the arc slides: there friction is fully used. What the mesh does not resolve is marked.
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Run or StaticResult
+        The run, or the drive at rest.
     pulley : str or int
         Name or number of the pulley.
     time : float, optional

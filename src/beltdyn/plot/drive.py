@@ -16,7 +16,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
 from beltdyn.plot.curve import centerline, element_lengths
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
-from beltdyn.results import Run
+from beltdyn.results import Run, StaticResult
 
 _ARROW_RADIUS = 0.62
 _ARROW_ANGLE = np.radians(60.0)
@@ -34,15 +34,15 @@ class DrivePicture:
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Run or StaticResult
+        The run, or the drive at rest.
     ax : Axes
         Where to draw.
     norm : Normalize
         Tensions, N, at the ends of the color scale.
     """
 
-    def __init__(self, run: Run, ax: Axes, norm: Normalize) -> None:
+    def __init__(self, run: Run | StaticResult, ax: Axes, norm: Normalize) -> None:
         self._kind = run.drive.belt.element_kind
         self._lengths = element_lengths(run.dataset, run.drive.belt_length)
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
@@ -185,13 +185,14 @@ def _draw_pulley(ax: Axes, pulley: Pulley, number: int) -> _Body:
     return _Body(rim, hub, ax.plot([], [], color=color(number), linewidth=3.0, zorder=2)[0])
 
 
-def _frame(ax: Axes, run: Run) -> None:
+def _frame(ax: Axes, run: Run | StaticResult) -> None:
     """Make room for the pulleys, and for the belt at any time."""
     positions = run.dataset["node_position"]
     centers = run.drive.centers
     radii = np.array([[pulley.radius] for pulley in run.drive.pulleys])
-    low = np.min([positions.min(("field_time", "node")), *(centers - radii)], axis=0)
-    high = np.max([positions.max(("field_time", "node")), *(centers + radii)], axis=0)
+    places = positions.values.reshape(-1, 2)
+    low = np.min([places.min(axis=0), *(centers - radii)], axis=0)
+    high = np.max([places.max(axis=0), *(centers + radii)], axis=0)
     ax.set(xlabel=f"x [{positions.attrs['units']}]", ylabel=f"y [{positions.attrs['units']}]")
     make_room(ax, np.array([low, high]))
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.registry import FIGURES, Choice
+from beltdyn.plot.registry import FIGURES, Choice, require_kind
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run, derived
@@ -31,8 +31,8 @@ def save_all(
     figures : iterable of str, optional
         Names out of `FIGURES`; by default the essential ones, those over time only if there is more than one output.
     pulley : str or int, optional
-        Name or number of the pulley of hub loads and contact, all by default, and of the speed in a sweep, the first by
-        default.
+        Name or number of the pulley of hub loads and contact, all by default, and of the speed in a sweep, by default
+        the one that was swept, or else the first.
     variable : str
         What is drawn in a sweep: a variable over time and pulley, span or tensioner.
     overwrite : bool
@@ -51,13 +51,14 @@ def save_all(
     """
     if isinstance(run, Run):
         run.require_output()
-    known = {name: figure for name, figure in FIGURES.items() if figure.of == run.kind}
+    known = {name: figure for name, figure in FIGURES.items() if run.kind in figure.of}
     if not known:
         raise ModelError(f"there is no figure of {run.kind}. Look at its dataset: `bd.open_result(path).dataset`.")
     chosen = tuple(figures if figures is not None else (name for name in known if known[name].by_default(run)))
-    unknown = [name for name in chosen if name not in known]
-    if unknown:
-        raise ModelError(f"figure {unknown[0]!r} is not known. Choose out of {', '.join(known)}.")
+    for name in chosen:
+        if name not in FIGURES:
+            raise ModelError(f"figure {name!r} is not known. Choose out of {', '.join(known)}.")
+        require_kind(name, run, FIGURES[name].of)
     choice = Choice(None if pulley is None else derived.pulley_number(run, pulley), variable)
     paths = {name: Path(folder) / f"{name}.png" for name in chosen}
     for path in paths.values():

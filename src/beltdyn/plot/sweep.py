@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
 from beltdyn.plot.panels import panels, rows
-from beltdyn.plot.registry import Choice, figure, on_request
+from beltdyn.plot.registry import Choice, figure
 from beltdyn.plot.style import axes_or_new, color, dash, label, unit
 from beltdyn.results import Run, derived
 
@@ -27,11 +27,17 @@ _DISTANCE = 0.4
 def _one_by_one(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
     """Lay out a panel for each pulley, span or tensioner that the chosen variable is recorded for."""
     names = names_of(run, choice.variable)
-    calls = [partial(draw, run, choice.variable, name, choice.pulley or 0) for name in names]
+    pulley = run.dataset.attrs.get("swept_pulley", 0) if choice.pulley is None else choice.pulley
+    calls = [partial(draw, run, choice.variable, name, pulley) for name in names]
     return panels(rows(calls), sharey=False)
 
 
-@figure(on_request, _one_by_one)
+def _of_sweeps(run: Run) -> bool:
+    """Draw a figure of every run-up that has come to its end."""
+    return "swept_pulley" in run.dataset.attrs and run.status == "completed"
+
+
+@figure(_of_sweeps, _one_by_one)
 def waterfall(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:
@@ -87,7 +93,7 @@ def waterfall(
     return ax
 
 
-@figure(on_request, _one_by_one)
+@figure(_of_sweeps, _one_by_one)
 def orders(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:

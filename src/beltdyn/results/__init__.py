@@ -14,6 +14,7 @@ from beltdyn.results.result import Result, build_result
 from beltdyn.results.run import Run, open_result, open_run
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.size import describe_size, expected_bytes, require_room
+from beltdyn.results.static import StaticResult, static_result
 from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tables import write_csv
 
@@ -35,6 +36,7 @@ __all__ = [
     "Result",
     "Run",
     "SpanSummary",
+    "StaticResult",
     "Status",
     "Summary",
     "TensionerSummary",
@@ -48,6 +50,7 @@ __all__ = [
     "power_balance",
     "provenance",
     "require_room",
+    "static_result",
     "summarize",
     "write_csv",
 ]

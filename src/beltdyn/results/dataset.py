@@ -9,10 +9,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
 from beltdyn.results.layout import Layout
 from beltdyn.results.lock import lock_file
-from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, RUN, TIMES, VARIABLES, Variable
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -96,6 +96,22 @@ class GrowingFile:
                 file.attrs.update(attributes)
             staged.commit(reserve=0)
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether it holds no outputs."""
+        return not any(self._outputs.values())
+
+    def remove(self, path: Path) -> None:
+        """Remove the file, if it is still the one that was created.
+
+        Raises
+        ------
+        OSError
+            If it is not there.
+        """
+        self._open(path).close()
+        path.unlink()
+
     def _open(self, path: Path) -> StagedFile:
         """Open the file, if it is still the one that was created."""
         file = StagedFile(path)

@@ -4,7 +4,8 @@ import platform
 from datetime import UTC, datetime
 from importlib.metadata import version
 
-from beltdyn.results.schema import FORMAT, RUN
+from beltdyn.analyses import RUN
+from beltdyn.results.schema import FORMAT
 
 _PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
 

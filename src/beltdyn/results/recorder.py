@@ -168,7 +168,7 @@ class FileRecorder:
             raise OutputError(unwritable(self.path, error)) from error
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Take the end of the simulation; see `Recorder.close`.
+        """Take the end of the simulation; see `Recorder.close`. A file of a failure without outputs is removed.
 
         Raises
         ------
@@ -176,7 +176,10 @@ class FileRecorder:
             If the file can no longer be written; it keeps what it holds.
         """
         try:
-            self._file.finish(self._target, {**attributes, "status": status})
+            if status == "failed" and self._file.is_empty:
+                self._file.remove(self._target)
+            else:
+                self._file.finish(self._target, {**attributes, "status": status})
         except OSError as error:
             raise OutputError(unwritable(self.path, error)) from error
         finally:

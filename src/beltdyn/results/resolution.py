@@ -58,9 +58,29 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
     Resolution
         Validated against converged meshes in the documentation.
     """
-    tension = min(float(np.mean(_last(recorded, "belt_tension", "field_time"))), install(drive).tension)
     speeds = _last(recorded, "belt_speed", "time")
     square = float(np.mean(speeds[np.isfinite(speeds)] ** 2)) if np.any(np.isfinite(speeds)) else 0.0
+    return mesh_resolution(drive, float(np.mean(_last(recorded, "belt_tension", "field_time"))), square)
+
+
+def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:
+    """Estimate how well a mesh resolves what it computes at a tension and speed of the belt.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive, from which the tension is taken where it is less.
+    tension : float
+        Mean tension of the belt, N.
+    square : float
+        Mean square of the belt's speed, m^2/s^2; zero at rest.
+
+    Returns
+    -------
+    Resolution
+        See `estimate_resolution`.
+    """
+    tension = min(tension, install(drive).tension)
     running = Running(tension, drive.belt.mass_per_length * square)
     if not running.tension > running.lifted:
         return Resolution(dict.fromkeys(ERROR_LIMITS, math.nan), {}, (math.nan, math.nan))

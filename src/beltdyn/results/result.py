@@ -11,7 +11,7 @@ from beltdyn.model import Drive, loads
 from beltdyn.results.atomic import atomic_path
 from beltdyn.results.dataset import is_result, kind_of, unreadable
 from beltdyn.results.provenance import provenance
-from beltdyn.results.schema import DERIVED, Variable
+from beltdyn.results.schema import Variable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,6 +48,16 @@ class Result:
         return self._dataset
 
     @property
+    def stored(self) -> "xr.Dataset":
+        """What a file holds."""
+        return self.dataset
+
+    @property
+    def status(self) -> str:
+        """How the analysis ended: "completed", or else no result but a `Run` is there."""
+        return str(self.dataset.attrs["status"])
+
+    @property
     def kind(self) -> str:
         """Name of the analysis, or "run" where results grow over time; a figure belongs to one kind."""
         return kind_of(self.dataset)
@@ -79,7 +89,7 @@ class Result:
         """
         path = Path(path)
         with atomic_path(path, is_result, overwrite) as temporary:
-            self.dataset.load().drop_vars(DERIVED, errors="ignore").to_netcdf(temporary, engine="h5netcdf")
+            self.stored.load().to_netcdf(temporary, engine="h5netcdf")
         return path
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import h5py
 import numpy as np
 
+from beltdyn.analyses import RUN, STATIC
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.checks import Finding, find
@@ -16,7 +17,8 @@ from beltdyn.results.dataset import kind_of, open_dataset, read_dataset, unreada
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
 from beltdyn.results.result import Result, drive_of
-from beltdyn.results.schema import RUN
+from beltdyn.results.schema import DERIVED
+from beltdyn.results.static import StaticResult
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,6 +61,11 @@ class Run(Result):
         if self._dataset is None:
             self._dataset = open_dataset(self._file)
         return self._dataset
+
+    @property
+    def stored(self) -> "xr.Dataset":
+        """What a file holds: variables that are parts of others are added when it is opened."""
+        return self.dataset.drop_vars(DERIVED, errors="ignore")
 
     @property
     def fields(self) -> "xr.Dataset":
@@ -232,7 +239,7 @@ def open_result(path: Path | str) -> Result:
     Returns
     -------
     Result
-        A `Run` where results grow over time.
+        A `Run` where results grow over time, a `StaticResult` of a drive at rest.
 
     Raises
     ------
@@ -248,8 +255,9 @@ def open_result(path: Path | str) -> Result:
     path = Path(path)
     dataset = read_dataset(path)
     try:
-        if kind_of(dataset) != RUN:
-            return Result(dataset, drive_of(dataset, path), path)
+        kind = kind_of(dataset)
+        if kind != RUN:
+            return (StaticResult if kind == STATIC else Result)(dataset, drive_of(dataset, path), path)
     except ModelError:
         dataset.close()
         raise

@@ -7,9 +7,6 @@ FORMAT = (1, 0)
 """Version of the result file. The first number grows when earlier readers would misread a file, the second when a file
 holds more than before."""
 
-RUN = "run"
-"""Kind of the results that grow over time. Those of other analyses are of a kind named after the analysis."""
-
 AXIS_NAMES = ("x", "y")
 """Names of the two directions of the plane."""
 
@@ -34,6 +31,8 @@ class Variable:
         NumPy data type; "str" for names.
     core : bool
         Whether a file without it is no result: summary, warnings and the essential figures need it.
+    at_rest : bool
+        Whether a drive in static equilibrium has it, too.
     """
 
     dims: tuple[str, ...]
@@ -41,6 +40,7 @@ class Variable:
     long_name: str
     dtype: str = "float64"
     core: bool = True
+    at_rest: bool = False
 
     @property
     def attributes(self) -> dict[str, str]:
@@ -83,28 +83,30 @@ _OUTPUTS = {
     "shaft_angle": Variable(_PULLEY, "rad", "Shaft angle"),
     "pulley_torque": Variable(_PULLEY, "N m", "Torque of the belt on the pulley"),
     "shaft_torque": Variable(_PULLEY, "N m", "Torque on the pulley's shaft"),
-    "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
-    "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
-    "pulley_center": Variable((*_PULLEY, "axis"), "m", "Center of the pulley"),
+    "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley", at_rest=True),
+    "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle", at_rest=True),
+    "pulley_center": Variable((*_PULLEY, "axis"), "m", "Center of the pulley", at_rest=True),
     "sliding_speed": Variable(_PULLEY, "m/s", "Velocity at which the whole arc slides", SHORT),
     "sliding_share": Variable(_PULLEY, "1", "Share of the arc that slides", SHORT),
     "friction_power": Variable(_PULLEY, "W", "Power lost in friction"),
     "contact_damping_power": Variable(_PULLEY, "W", "Power lost in contact damping"),
-    "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position"),
+    "tensioner_position": Variable(_TENSIONER, "m, rad", "Tensioner position", at_rest=True),
     "tensioner_speed": Variable(_TENSIONER, "m/s, rad/s", "Tensioner speed", core=False),
-    "node_position": Variable(("field_time", "node", "axis"), "m", "Node position"),
-    "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates"),
+    "node_position": Variable(("field_time", "node", "axis"), "m", "Node position", at_rest=True),
+    "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates", at_rest=True),
     "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT, core=False),
-    "belt_tension": Variable(_ELEMENT, "N", "Belt tension"),
-    "tension_variation": Variable(_ELEMENT, "N", "Variation of the tension within an element", SHORT, core=False),
-    "span_tension": Variable(_SPAN, "N", "Span tension"),
+    "belt_tension": Variable(_ELEMENT, "N", "Belt tension", at_rest=True),
+    "tension_variation": Variable(
+        _ELEMENT, "N", "Variation of the tension within an element", SHORT, core=False, at_rest=True
+    ),
+    "span_tension": Variable(_SPAN, "N", "Span tension", at_rest=True),
     "belt_speed": Variable(_SPAN, "m/s", "Belt speed"),
-    "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT, core=False),
-    "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT),
+    "mid_span_displacement": Variable(_SPAN, "m", "Mid-span displacement", SHORT, core=False, at_rest=True),
+    "normal_force": Variable(_POINT, "N/m", "Normal force on the belt", SHORT, at_rest=True),
     "friction_force": Variable(_POINT, "N/m", "Friction force on the belt", SHORT),
     "slip_velocity": Variable(_POINT, "m/s", "Slip velocity", SHORT),
-    "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point", SHORT),
-    "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8"),
+    "contact_position": Variable((*_POINT, "axis"), "m", "Position of the contact point", SHORT, at_rest=True),
+    "contact_pulley": Variable(_POINT, "1", "Pulley in contact by number, -1 where free", "int8", at_rest=True),
     "friction_work_on_arc": Variable(
         _ARC, "J", "Work of friction since the output before, on the arc", SHORT, core=False
     ),
@@ -116,10 +118,10 @@ _OUTPUTS = {
         core=False,
     ),
     "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
-    "strain_energy": Variable(_OVER_TIME, "J", "Strain energy"),
-    "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy"),
-    "spring_energy": Variable(_OVER_TIME, "J", "Energy of tensioners and couplings"),
-    "potential_energy": Variable(_OVER_TIME, "J", "Potential energy of weight and forces at ends"),
+    "strain_energy": Variable(_OVER_TIME, "J", "Strain energy", at_rest=True),
+    "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy", at_rest=True),
+    "spring_energy": Variable(_OVER_TIME, "J", "Energy of tensioners and couplings", at_rest=True),
+    "potential_energy": Variable(_OVER_TIME, "J", "Potential energy of weight and forces at ends", at_rest=True),
     "driver_work": Variable(_OVER_TIME, "J", "Work of the drivers"),
     "torque_work": Variable(_OVER_TIME, "J", "Work of the applied torques"),
     "friction_loss": Variable(_OVER_TIME, "J", "Loss in friction"),

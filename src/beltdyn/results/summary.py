@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from beltdyn.errors import ModelError
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.closure import largest_closure
 from beltdyn.results.cycles import mean_window
@@ -84,7 +85,7 @@ class Summary:
 
 
 def summarize(run: Run) -> Summary:
-    """Sum up a run.
+    """Sum up a run; results of other analyses have dimensions of their own.
 
     Parameters
     ----------
@@ -99,13 +100,15 @@ def summarize(run: Run) -> Summary:
     Raises
     ------
     ModelError
-        If the run holds no output.
+        If the run holds no output, or the result is no run.
 
     Examples
     --------
     >>> bd.summarize(run).pulleys[1].name
     'driven'
     """
+    if not isinstance(run, Run):
+        raise ModelError(f"a summary needs results over time, and these are of {run.kind}. Look at their dataset.")
     run.require_output()
     with run.recorded() as recorded:
         return _summarize(run, recorded)

@@ -1,13 +1,15 @@
-"""Solvers: static equilibrium, and simulation over time of one drive or many."""
+"""Analyses: a simulation over time, of one drive or many, a run-up, and static equilibrium; and their solvers."""
 
 from beltdyn.solve.batch import Ending, simulate_all
+from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
 from beltdyn.solve.progress import BatchProgress, Progress
-from beltdyn.solve.simulate import equilibrium, simulate
+from beltdyn.solve.simulate import simulate
 from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.static import Equilibrium, find_equilibrium
 from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
+from beltdyn.solve.sweep import sweep
 
 __all__ = [
     "BatchProgress",
@@ -26,4 +28,5 @@ __all__ = [
     "find_equilibrium",
     "simulate",
     "simulate_all",
+    "sweep",
 ]

@@ -16,15 +16,15 @@ from pathlib import Path
 from threading import Event, Lock, Thread, current_thread, main_thread
 from time import sleep
 from types import FrameType, ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from beltdyn.analyses import ANALYSES, RUN, Analysis
 from beltdyn.errors import BeltdynError, SimulationError
 from beltdyn.model import Drive
-from beltdyn.results import Run, Summary, summarize
+from beltdyn.results import Result, Run, Summary, summarize
 from beltdyn.signals import ENDING
 from beltdyn.solve.compilation import compile_kernels, usable_cores
 from beltdyn.solve.progress import BatchProgress, Progress
-from beltdyn.solve.simulate import simulate
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -40,15 +40,17 @@ _THREADS = "OMP_NUM_THREADS"
 
 @dataclass(frozen=True, slots=True)
 class _Work:
-    """What is asked of every simulation: the last two arguments of `simulate_all`."""
+    """What is asked of every drive: arguments of `analyse_all`."""
 
+    analysis: Analysis
+    options: Mapping[str, Any]
     overwrite: bool
     finish: Callable[[Run], None] | None
 
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a simulation ended.
+    """How the analysis of a drive ended.
 
     Attributes
     ----------
@@ -57,12 +59,18 @@ class Ending:
     error : str
         Why it failed; empty otherwise.
     summary : Summary or None
-        The numbers that sum up what was computed; None where there is no output.
+        The numbers that sum up a run; None where there is no output, and of other results than runs.
+    warnings : tuple of str
+        What makes the results doubtful.
+    kept : bool
+        Whether there are results in the file.
     """
 
     status: str
     error: str = ""
     summary: Summary | None = None
+    warnings: tuple[str, ...] = ()
+    kept: bool = False
 
 
 def simulate_all(
@@ -72,7 +80,7 @@ def simulate_all(
     overwrite: bool = False,
     finish: Callable[[Run], None] | None = None,
 ) -> dict[Path, Ending]:
-    """Simulate drives side by side, each by one thread of a process of its own.
+    """Simulate drives side by side, each by one thread of a process of its own, as `analyse_all` does.
 
     Kernels are compiled first, once, unless they are on the disk already.  A simulation that fails leaves the others
     alone.  Ctrl-C ends those on their way, which keep what they computed.  Processes do not run the caller's script
@@ -96,9 +104,37 @@ def simulate_all(
     dict
         Result file -> how its simulation ended, in the order of `drives`.
     """
+    return analyse_all(ANALYSES[RUN], drives, progress, jobs, overwrite, finish)
+
+
+def analyse_all(
+    analysis: Analysis,
+    drives: Mapping[Path, Drive] | Mapping[str, Drive],
+    progress: Callable[[BatchProgress], None] | None = None,
+    jobs: int | None = None,
+    overwrite: bool = False,
+    finish: Callable[[Run], None] | None = None,
+    **options: Any,
+) -> dict[Path, Ending]:
+    """Analyse drives side by side, each by one thread of a process of its own.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        The analysis.
+    drives, progress, jobs, overwrite, finish
+        As for `simulate_all`.
+    **options
+        Those of the analysis.
+
+    Returns
+    -------
+    dict
+        Result file -> how its analysis ended, in the order of `drives`.
+    """
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}
-    waiting, work = _longest_first(files), _Work(overwrite, finish)
+    waiting, work = _longest_first(files), _Work(analysis, options, overwrite, finish)
     stop = _SPAWN.Event()
 
     def tell(running: Mapping[Path, float], ended: int) -> None:
@@ -240,7 +276,7 @@ def _exit_when_told() -> None:
 
 
 def _simulate(place: int, file: Path, drive: Drive, work: _Work) -> Ending:
-    """Simulate a drive into a file, and finish what is complete."""
+    """Analyse a drive into a file, and finish what is complete."""
     if _stop.is_set():
         return Ending("not started")
     if _leaving.is_set():
@@ -255,13 +291,13 @@ def _simulate(place: int, file: Path, drive: Drive, work: _Work) -> Ending:
 
     try:
         with _working:
-            run = simulate(drive, file, heed, work.overwrite)
-            ending = _ended(run)
-            if work.finish is not None and run.status == "completed":
-                work.finish(run)
+            result = work.analysis.write(drive, file, heed, work.overwrite, **work.options)
+            ending = _ended(result)
+            if work.finish is not None and result.status == "completed":
+                work.finish(result)
             return ending
     except SimulationError as error:
-        return _kept(drive, file, str(error))
+        return _kept(drive, file, str(error)) if work.analysis.grows else Ending("failed", str(error))
     except BeltdynError as error:
         return Ending("failed", str(error))
     except Exception as error:
@@ -276,5 +312,8 @@ def _kept(drive: Drive, file: Path, error: str) -> Ending:
         return Ending("failed", error)
 
 
-def _ended(run: Run) -> Ending:
-    return Ending(run.status, summary=summarize(run) if run.outputs else None)
+def _ended(result: Result) -> Ending:
+    if isinstance(result, Run) and not result.outputs:
+        return Ending(result.status)
+    summary = summarize(result) if isinstance(result, Run) else None
+    return Ending(result.status, summary=summary, warnings=tuple(result.warnings), kept=True)

@@ -57,6 +57,8 @@ class Recording:
         Whom to tell.
     overwrite
         Replace any regular file, and not only earlier results.
+    **attributes
+        Global attributes of the dataset, which an analysis adds.
 
     Raises
     ------
@@ -72,17 +74,16 @@ class Recording:
         title: str,
         progress: Report | None,
         overwrite: bool = False,
+        **attributes: str,
     ) -> None:
         self.statistics = Statistics()
         self.integrator: str = drive.simulation.integrator
         self._drive, self._system, self._progress = drive, system, progress
         self._path = Path(output) if output is not None else None
-        self._title = title
-        layout, attributes = result_layout(drive, system), provenance(drive.text, title)
+        self._title, self._about = title, attributes
+        layout, origin = result_layout(drive, system), provenance(drive.text, title) | attributes
         self._recorder: Recorder = (
-            FileRecorder(self._path, layout, attributes, overwrite)
-            if self._path
-            else MemoryRecorder(layout, attributes)
+            FileRecorder(self._path, layout, origin, overwrite) if self._path else MemoryRecorder(layout, origin)
         )
         self._instants = drive.simulation.instants
         self._filter = BandLimit(self._instants.interval)
@@ -108,14 +109,18 @@ class Recording:
     ) -> bool:
         """Write what waits and close the results with their status."""
         interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
-        status: Status = "failed"
+        self.end("interrupted" if interrupted else "completed" if kind is None else "failed")
+        return interrupted
+
+    def end(self, status: Status) -> None:
+        """Write what waits, and close the results with their status; "failed" if what waits cannot be written."""
         with uninterrupted():
+            written = False
             try:
                 self._write()
-                status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+                written = True
             finally:
-                self._recorder.close(status, self._attributes() | self._findings)
-        return interrupted
+                self._recorder.close(status if written else "failed", self._attributes() | self._findings)
 
     def prepare(self) -> None:
         """Compile the kernels, so that the time taken is that of the simulation."""
@@ -136,7 +141,7 @@ class Recording:
         """
         layout = result_layout(drive, system)
         if drive is not self._drive:
-            attributes = provenance(drive.text, self._title) | {"drive_as_given": self._drive.text}
+            attributes = provenance(drive.text, self._title) | {**self._about, "drive_as_given": self._drive.text}
             self._recorder.revise(layout, attributes)
         if unstable:
             self._findings["unstable_tensioners"] = ", ".join(unstable)

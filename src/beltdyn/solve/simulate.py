@@ -1,4 +1,4 @@
-"""From a drive to a run: start, integrate, observe, record."""
+"""An analysis: from a drive to a run over time. Start, integrate, observe, record."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -11,8 +11,7 @@ from beltdyn.solve.installation import bring_to_rest
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.standard import Name, StandardIntegrator
-from beltdyn.solve.static import standing
-from beltdyn.solve.trajectory import Chunk, Integrator, drive_task
+from beltdyn.solve.trajectory import Integrator, drive_task
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -62,9 +61,35 @@ def simulate(
     >>> run.status, run.outputs
     ('completed', 11)
     """
+    return record_run(drive, output, progress, overwrite, integrator)
+
+
+def record_run(
+    drive: Drive,
+    output: Path | str | None,
+    progress: Report | None,
+    overwrite: bool,
+    integrator: Integrator | None = None,
+    **attributes: str,
+) -> Run:
+    """Simulate a drive over time, for an analysis that says something of its own about the run.
+
+    Parameters
+    ----------
+    drive, output, progress, overwrite, integrator
+        As for `simulate`.
+    **attributes
+        Global attributes of the dataset.
+
+    Returns
+    -------
+    Run
+        As `simulate` gives it.
+    """
     require_room(drive, Path(output) if output is not None else None)
     system, settings = drive_system(drive), drive.simulation
-    with Recording(drive, system, output, f"Belt drive, {settings.duration:g} s", progress, overwrite) as recording:
+    title = f"Belt drive, {settings.duration:g} s"
+    with Recording(drive, system, output, title, progress, overwrite, **attributes) as recording:
         recording.prepare()
         rest = None
         if drive.belt.installed_tension is not None or settings.start == "equilibrium":
@@ -78,41 +103,6 @@ def simulate(
         for chunk in integrator(task):
             recording.take(chunk)
         recording.check()
-    return recording.run()
-
-
-def equilibrium(drive: Drive, progress: Report | None = None) -> Run:
-    """Find the static equilibrium of a drive at rest, with pulleys that do not turn.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    progress
-        Called now and then with a `Progress`.
-
-    Returns
-    -------
-    Run
-        With one output, at time zero. Its drive has the length, or the take-up, that gives the installed tension.
-
-    Raises
-    ------
-    ConvergenceError
-        If no equilibrium is found in which the belt touches every pulley.
-
-    Examples
-    --------
-    >>> run = bd.equilibrium(drive)
-    >>> run.dataset.span_tension.values.round().tolist()  # N
-    [[27.0, 27.0]]
-    """
-    system = drive_system(drive)
-    with Recording(drive, system, None, "Belt drive in static equilibrium", progress) as recording:
-        recording.prepare()
-        rest = bring_to_rest(drive, progress)
-        recording.start(rest.drive, standing(rest.system), rest.unstable)
-        recording.take(Chunk.start(standing(rest.system), rest.state), "equilibrium")
     return recording.run()
 
 

@@ -57,7 +57,7 @@ def _known(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_its_options_are_explained(run_main: RunMain) -> None:
     code, output, _ = run_main(["load_steps", "--help"])
     assert code == 0
-    for words in ("Load a drive.", "The drive file, TOML.", "The largest torque, N m.", "[default: 3]"):
+    for words in ("Load a drive step by step.", "The drive file, TOML.", "The largest torque, N m.", "[default: 3]"):
         assert words in output
     assert "  drive" not in output
 

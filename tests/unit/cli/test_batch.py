@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from beltdyn.analyses import Analysis
 from beltdyn.model import Drive
 from beltdyn.results import Run, Summary, summarize
 from beltdyn.solve import Ending
@@ -37,14 +38,21 @@ def simulated(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[tuple[list[
     def end(*endings: Ending) -> list[tuple[list[Path], Any]]:
         asked: list[tuple[list[Path], Any]] = []
 
-        def simulate_all(drives: Mapping[Path, Drive], _: object, jobs: int | None, force: bool) -> dict[Path, Ending]:
+        def analyse_all(
+            analysis: Analysis, drives: Mapping[Path, Drive], _: object, jobs: int | None, force: bool
+        ) -> dict[Path, Ending]:
+            assert analysis.name == "run"
             asked.append((list(drives), jobs))
             return dict(zip(drives, endings, strict=True))
 
-        monkeypatch.setattr("beltdyn.solve.simulate_all", simulate_all)
+        monkeypatch.setattr("beltdyn.solve.batch.analyse_all", analyse_all)
         return asked
 
     return end
+
+
+def done(summary: Summary) -> Ending:
+    return Ending("completed", summary=summary, warnings=summary.warnings, kept=True)
 
 
 def words(files: list[Path], *more: str) -> list[str]:
@@ -59,7 +67,7 @@ def test_every_drive_gets_a_line_and_a_file_beside_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(files[0].parent)
-    asked = simulated(*[Ending("completed", summary=summary)] * 3)
+    asked = simulated(*[done(summary)] * 3)
     code, output, message = run_main(words([Path(file.name) for file in files], "--jobs", "2"))
     assert (code, message.count("error")) == (0, 0)
     assert asked == [([Path(file.stem + ".nc") for file in files], 2)]
@@ -84,7 +92,7 @@ def test_files_of_killed_runs_are_named(
     left = files[1].with_name(".two.0123abcd.nc")
     left.touch()
     os.utime(left, (0.0, 0.0))
-    simulated(*[Ending("completed", summary=summary)] * 3)
+    simulated(*[done(summary)] * 3)
     output = run_main(words(files))[1]
     assert output.count("A killed run has left") == 1
     assert f"A killed run has left {left}, which nobody needs: remove it." in output
@@ -160,11 +168,11 @@ def test_warnings_are_errors_where_strict(
     run_main: RunMain, files: list[Path], simulated: Callable[..., Any], summary: Summary
 ) -> None:
     sure, doubtful = (replace(summary, warnings=warnings) for warnings in ((), ("the belt is slack.",)))
-    simulated(*(Ending("completed", summary=one) for one in (sure, doubtful, sure)))
+    simulated(*(done(one) for one in (sure, doubtful, sure)))
     code, _, message = run_main(words(files, "--strict"))
     assert code == 4
     assert "a warning makes these results doubtful" in message
-    simulated(*[Ending("completed", summary=sure)] * 3)
+    simulated(*[done(sure)] * 3)
     assert run_main(words(files, "--strict"))[0] == 0
 
 

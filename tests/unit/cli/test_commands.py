@@ -5,7 +5,6 @@ import sys
 from collections.abc import Callable
 from math import hypot
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ import pytest
 
 from beltdyn import __version__
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import advise, install, load
-from beltdyn.results import FileRecorder, Layout
+from beltdyn.model import Drive, advise, install, load
+from beltdyn.results import FileRecorder, Layout, Run
 from beltdyn.solve import bring_to_rest, equilibrium
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
@@ -156,25 +155,27 @@ def test_a_simulation_that_cannot_go_on(
 ) -> None:
     """It says where its outputs are; of an equilibrium that was not found there are none, nor in a lost file."""
 
-    def simulate(_: object, path: Path, *others: object) -> None:
+    def simulate(drive: Drive, output: Path) -> Run:
         if outputs is not None:
-            recorder = FileRecorder(path, layout, attributes)
+            recorder = FileRecorder(output, layout, attributes)
             if outputs:
                 recorder.append(make_chunk(np.linspace(0.0, 0.1, outputs)))
             recorder.close("failed", {})
         raise ConvergenceError("no convergence at t = 0.1 s. Lower simulation.max_step.")
 
-    monkeypatch.setattr("beltdyn.solve.simulate", simulate)
+    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", simulate)
     code, output, message = run_main(["run", str(drive_file)])
     assert code == 3
     assert (f"What was computed is in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
-    assert ("No outputs are kept." in output) != bool(outputs)
+    assert ("No results are kept." in output) != bool(outputs)
     assert "error: no convergence at t = 0.1 s. Lower simulation.max_step." in message
 
 
-def test_an_interrupted_simulation(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    run = SimpleNamespace(status="interrupted", outputs=0)
-    monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
+def test_an_interrupted_simulation(
+    run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch, make_run: Callable[..., Run]
+) -> None:
+    run = make_run(status="interrupted")
+    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", lambda drive, output: run)
     code, output, _ = run_main(["run", str(drive_file), "-o", "out.nc"])
     assert code == 130
     assert "Interrupted: what was computed is kept." in output

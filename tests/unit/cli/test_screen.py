@@ -1,5 +1,6 @@
 """What a run shows on the screen."""
 
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -7,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from beltdyn.cli.app import app
 from beltdyn.cli.console import show_table
 from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.cli.summary import show_summary
+from beltdyn.model import Drive
 from beltdyn.results import Run, TensionerSummary, summarize
 from beltdyn.solve.progress import BatchProgress, Progress
 
@@ -154,8 +157,18 @@ def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     assert "writing the page" in capsys.readouterr().err
 
 
+def end_as(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
+    """Let simulations give a run."""
+
+    def simulate(drive: Drive, output: Path) -> Run:
+        return run
+
+    app["run"].default_command = None  # it is made of the function
+    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", simulate)
+
+
 def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
+    end_as(monkeypatch, run)
     code, output, _ = run_main(["run", str(drive_file), "--csv"])
     assert code == 0
     assert f"Results: {drive_file.with_suffix('.nc')}" in output
@@ -188,7 +201,7 @@ def test_strict_run(
     error: str,
 ) -> None:
     run.__dict__["warnings"] = warnings  # where a cached property keeps its value
-    monkeypatch.setattr("beltdyn.solve.simulate", lambda *_: run)
+    end_as(monkeypatch, run)
     found, output, message = run_main(["run", str(drive_file), *words])
     assert found == code
     assert message.count("error: ") == (1 if error else 0)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.errors import BeltdynError, ModelError, OutputError
 from beltdyn.results import COORDINATES, VARIABLES, FileRecorder, Layout, MemoryRecorder, open_run, staged_file
 
 TIME = np.linspace(0.0, 1.0, 121)
@@ -115,10 +115,24 @@ def test_file_is_readable_while_it_grows(
 
 def test_result_without_outputs_opens(tmp_path: Path, layout: Layout, attributes: Any) -> None:
     recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    recorder.close("failed", {})
+    recorder.close("interrupted", {})
     with recorder.dataset() as dataset:
         assert dataset.sizes["time"] == 0
         xr.testing.assert_identical(dataset.drop_attrs(), _empty(layout).drop_attrs())
+
+
+def test_a_failure_without_outputs_leaves_nothing(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    FileRecorder(tmp_path / "result.nc", layout, attributes).close("failed", {})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_failure_without_outputs_leaves_the_file_of_another(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    recorder.path.unlink()
+    recorder.path.write_text("mine", encoding="utf-8")
+    with pytest.raises(OutputError, match="another file has taken its place"):
+        recorder.close("failed", {})
+    assert recorder.path.read_text(encoding="utf-8") == "mine"
 
 
 def _empty(layout: Layout) -> xr.Dataset:

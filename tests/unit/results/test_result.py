@@ -76,7 +76,7 @@ def test_its_figures_are_those_of_its_kind(traction: Result, run: Run, tmp_path:
         plot.save_all(traction, tmp_path)
     before = dict(FIGURES)
 
-    @figure(always, of="traction")
+    @figure(always, of=("traction",))
     def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
         ax = axes_or_new(ax)
         ax.plot(result.dataset["torque"], result.dataset["slip"])

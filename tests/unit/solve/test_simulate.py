@@ -97,9 +97,7 @@ def test_nothing_is_computed_for_a_file_that_cannot_be_written(change: Change, t
 
 def test_equilibrium_is_the_start_of_a_simulation(change: Change) -> None:
     static, moving = equilibrium(change()).dataset, simulate(change()).dataset
-    assert static.sizes["time"] == 1
-    assert not np.any(static.nodal_velocities)
-    np.testing.assert_array_equal(static.nodal_coordinates[0], moving.nodal_coordinates[0])
+    np.testing.assert_array_equal(static.nodal_coordinates, moving.nodal_coordinates[0])
     np.testing.assert_allclose(static.hub_force.sum("pulley"), 0.0, atol=1e-6)  # of 50 N; Newton's tolerance
 
 

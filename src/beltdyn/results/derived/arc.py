@@ -7,15 +7,16 @@ from beltdyn.results.arc import angle_from_inlet, arc_ends
 from beltdyn.results.derived.labels import pulley_number
 from beltdyn.results.mechanics import rim_speeds, sliding_velocity
 from beltdyn.results.run import Run
+from beltdyn.results.static import StaticResult
 
 
-def contact_arc(run: Run, pulley: str | int, time: float | None = None) -> xr.Dataset:
+def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None = None) -> xr.Dataset:
     """Give pressure, shear and sliding along the arc of a pulley at one instant.
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Run or StaticResult
+        The run, or the drive at rest.
     pulley : str or int
         Name or number of the pulley.
     time : float, optional

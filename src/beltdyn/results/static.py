@@ -1,0 +1,84 @@
+"""A drive in static equilibrium: tensions, contact and loads of hubs, without a time."""
+
+from dataclasses import replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beltdyn.analyses import STATIC
+from beltdyn.results.resolution import Resolution, mesh_resolution
+from beltdyn.results.result import Result, build_result
+from beltdyn.results.schema import COORDINATES, VARIABLES, Variable
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from beltdyn.results.run import Run
+
+_MOTION = ("pulley_speed", "pulley_angle", "friction_force", "slip_velocity")
+"""What is zero at rest, and figures of a drive at one instant look at."""
+
+_OWN = {
+    "belt_length": Variable((), "m", "Unstretched length of the belt"),
+    "tension": Variable((), "N", "Mean tension of the spans"),
+    "hub_load": Variable(("pulley",), "N", "Hub load"),
+}
+
+
+class StaticResult(Result):
+    """A drive in static equilibrium, with pulleys that do not turn.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Variables of a `Run` without a time, and ``belt_length``, ``tension`` and ``hub_load``.
+    drive : Drive
+        The drive, with the length of the belt or the take-up that gives the installed tension.
+    path : Path or None
+        The file that it was read from, or None for a result in memory.
+    """
+
+    def fields_at(self, time: float | None = None) -> "xr.Dataset":
+        """The drive as the instant of a run, at time zero; see `Run.fields_at`."""
+        dims = {name: VARIABLES[name].dims[1:] for name in _MOTION}
+        still = {name: (of, np.zeros([self.dataset.sizes[dim] for dim in of])) for name, of in dims.items()}
+        attributes = {name: VARIABLES[name].attributes for name in _MOTION}
+        return self.dataset.assign({name: (*still[name], attributes[name]) for name in _MOTION}).assign_coords(time=0.0)
+
+    @cached_property
+    def resolution(self) -> Resolution:
+        """How well the mesh resolves tension and contact."""
+        return mesh_resolution(self.drive, float(self.dataset["belt_tension"].mean()), 0.0)
+
+
+def static_result(run: "Run") -> StaticResult:
+    """Give the drive at rest of a run that holds it as its only output.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    StaticResult
+        In memory, with the warnings of the run.
+    """
+    instant = run.fields_at()
+    seen = {
+        name: (replace(variable, dims=variable.dims[1:]), instant[name].values)
+        for name, variable in VARIABLES.items()
+        if variable.at_rest and name in instant
+    }
+    own = (run.drive.belt.length, float(instant["span_tension"].mean()), np.linalg.norm(instant["hub_force"], axis=1))
+    variables = {name: (_OWN[name], values) for name, values in zip(_OWN, own, strict=True)} | seen
+    used = {dim for variable, _ in variables.values() for dim in variable.dims}
+    coordinates = {
+        name: (variable, instant[name].values)
+        for name, variable in COORDINATES.items()
+        if name in instant.coords and used.issuperset(variable.dims)
+    }
+    result = build_result(STATIC, run.drive, variables, coordinates, run.warnings)
+    kept = {name: run.dataset.attrs[name] for name in ("title", "drive_as_given") if name in run.dataset.attrs}
+    return StaticResult(result.dataset.assign_attrs(kept), run.drive)
