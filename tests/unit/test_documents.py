@@ -35,7 +35,7 @@ def kinds_of(family: ModuleType) -> list[type[Part]]:
     return [kind for kind in vars(family).values() if isinstance(kind, type)]
 
 
-PARTS = {
+PARTS: dict[Path, list[type[Part]]] = {
     DRIVE_FILE: [Belt, Pulley, Contact, Simulation],
     MACHINES: [Harmonic, *(kind for family in (loads_, links, tensioners) for kind in kinds_of(family))],
 }

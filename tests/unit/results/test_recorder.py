@@ -128,8 +128,9 @@ def test_a_failure_without_outputs_leaves_nothing(tmp_path: Path, layout: Layout
 
 def test_a_failure_without_outputs_leaves_the_file_of_another(tmp_path: Path, layout: Layout, attributes: Any) -> None:
     recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    recorder.path.unlink()
-    recorder.path.write_text("mine", encoding="utf-8")
+    other = tmp_path / "other"
+    other.write_text("mine", encoding="utf-8")
+    other.replace(recorder.path)
     with pytest.raises(OutputError, match="another file has taken its place"):
         recorder.close("failed", {})
     assert recorder.path.read_text(encoding="utf-8") == "mine"

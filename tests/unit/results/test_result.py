@@ -84,9 +84,12 @@ def test_its_figures_are_those_of_its_kind(traction: Result, run: Run, tmp_path:
 
     try:
         assert [path.name for path in plot.save_all(traction, tmp_path)] == ["traction_curve.png"]
-        with pytest.raises(ModelError, match=r"figure 'speeds' is not known\. Choose out of traction_curve\."):
+        with pytest.raises(
+            ModelError,
+            match=r"of run, and these are of traction\. .* there are: traction_curve\.",
+        ):
             plot.save_all(traction, tmp_path, ["speeds"])
-        with pytest.raises(ModelError, match="figure 'traction_curve' is not known"):
+        with pytest.raises(ModelError, match="'traction_curve' shows results of traction, and these are of run"):
             plot.save_all(run, tmp_path, ["traction_curve"])
     finally:
         FIGURES.clear()
