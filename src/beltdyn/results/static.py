@@ -71,7 +71,7 @@ def static_result(run: "Run") -> StaticResult:
         for name, variable in VARIABLES.items()
         if variable.at_rest and name in instant
     }
-    own = (run.drive.belt.length, float(instant["span_tension"].mean()), np.linalg.norm(instant["hub_force"], axis=1))
+    own = (run.drive.belt_length, float(instant["span_tension"].mean()), np.linalg.norm(instant["hub_force"], axis=1))
     variables = {name: (_OWN[name], values) for name, values in zip(_OWN, own, strict=True)} | seen
     used = {dim for variable, _ in variables.values() for dim in variable.dims}
     coordinates = {

@@ -81,17 +81,17 @@ def test_a_weight_at_rest_gives_the_tension(brake: Drive, measured: Callable[...
     load = belt.mass_per_length * GRAVITY
     pulled = 10.0 * GRAVITY
     element = run.drive.belt_length / belt.elements
-    lowest = float(data["belt_tension"].values[0, -1])
+    lowest = float(data["belt_tension"].values[-1])
     free, held = (float(length) for length in run.drive.path.span_lengths)
-    hanging, anchored = data["span_tension"].values[0]
+    hanging, anchored = data["span_tension"].values
     measured(lowest=lowest, hanging=hanging, anchored=anchored, weight=pulled)
     assert lowest == pytest.approx(pulled + 0.5 * load * element, rel=1e-6)
     bending = belt.bending_stiffness / float(run.drive.radii[0]) ** 2
     assert hanging == pytest.approx(pulled + 0.5 * load * free, rel=1e-4)
     assert anchored == pytest.approx(pulled + load * (free - 0.5 * held), abs=bending)
-    anchor = float(data["belt_tension"].values[0, 0]) - 0.5 * load * element
+    anchor = float(data["belt_tension"].values[0]) - 0.5 * load * element
     total = pulled + load * run.drive.belt_length + anchor * abs(float(run.drive.path.span_directions[-1, 1]))
-    assert data["hub_force"].values[0, 0, 1] == pytest.approx(-total, rel=1e-6)
+    assert data["hub_force"].values[0, 1] == pytest.approx(-total, rel=1e-6)
 
 
 @pytest.mark.parametrize("mass", [0.0, 0.5, 20.0])
