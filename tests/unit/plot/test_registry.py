@@ -16,7 +16,7 @@ def test_a_figure_is_known_by_the_name_of_its_function_and_drawn_in_the_style(
     monkeypatch.setattr("beltdyn.plot.registry.FIGURES", known := dict(FIGURES))
     seen = []
 
-    @figure(always, of="modes")
+    @figure(always, of=("modes", "run"))
     def mine(run: Run, ax: Axes | None = None) -> Axes:
         """Draw nothing."""
         seen.append(mpl.rcParams["text.color"])
@@ -25,7 +25,7 @@ def test_a_figure_is_known_by_the_name_of_its_function_and_drawn_in_the_style(
     assert set(known) - set(FIGURES) == {"mine"}
     assert mine.__doc__ == "Draw nothing."
     made = known["mine"]
-    assert (made.of, made.by_default) == ("modes", always)
+    assert (made.of, made.by_default) == (("modes", "run"), always)
     assert isinstance(made.arrange(run, Choice()), Figure)
     assert seen == [INK]
     assert mpl.rcParams["text.color"] != INK

@@ -6,8 +6,9 @@ from importlib.metadata import version
 
 import numpy as np
 
+from beltdyn.analyses import RUN
 from beltdyn.results import provenance
-from beltdyn.results.schema import FORMAT, RUN
+from beltdyn.results.schema import FORMAT
 
 
 def test_a_result_names_its_drive_and_what_computed_it() -> None:
