@@ -70,6 +70,14 @@ def test_pivots_within_blocks(dense: Dense) -> None:
     np.testing.assert_allclose(solution(ring, True), np.linalg.solve(*dense(ring, True)), atol=1e-11)
 
 
+def test_blocks_without_a_diagonal_are_solved(dense: Dense) -> None:
+    """Both rows of each block have to change places."""
+    ring = random_ring(4, 1, 5, dof=2)
+    ring.diagonal[:] = ring.diagonal[:, ::-1]
+    ring.diagonal[:, [0, 1], [0, 1]] = 0.0
+    np.testing.assert_allclose(solution(ring, True), np.linalg.solve(*dense(ring, True)), atol=1e-11)
+
+
 @pytest.mark.parametrize("closed", [True, False], ids=["closed", "open"])
 @pytest.mark.parametrize("place", ["node", "last node", "border"])
 def test_singular_matrix_is_refused(closed: bool, place: str) -> None:
