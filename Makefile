@@ -45,8 +45,8 @@ compatibility: ## kernels with the oldest Numba, the last one known and the newe
 	rm -rf .venv-numba
 
 mutation: install ## small changes of the sources, taken at random, and how many of them the tests notice
-	$(BIN)/python -m tools.mutation contact elements system results/derived --sample 100 \
-		--tests tests/unit/contact tests/unit/elements tests/unit/system tests/unit/results/derived
+	$(BIN)/python -m tools.mutation contact elements machines system results/derived --sample 100 \
+		--tests tests/unit/contact tests/unit/elements tests/unit/machines tests/unit/system tests/unit/results/derived
 
 bench: install ## benchmarks
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done
