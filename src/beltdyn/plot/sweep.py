@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
 from beltdyn.plot.panels import panels, rows
-from beltdyn.plot.registry import Choice, figure
+from beltdyn.plot.registry import Choice, figure, on_request
 from beltdyn.plot.style import axes_or_new, color, dash, label, unit
 from beltdyn.results import Run, derived
 
@@ -32,12 +32,7 @@ def _one_by_one(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
     return panels(rows(calls), sharey=False)
 
 
-def _of_sweeps(run: Run) -> bool:
-    """Draw a figure of every run-up that has come to its end."""
-    return "swept_pulley" in run.dataset.attrs and run.status == "completed"
-
-
-@figure(_of_sweeps, _one_by_one)
+@figure(on_request, _one_by_one)
 def waterfall(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:
@@ -93,7 +88,7 @@ def waterfall(
     return ax
 
 
-@figure(_of_sweeps, _one_by_one)
+@figure(on_request, _one_by_one)
 def orders(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:

@@ -29,7 +29,7 @@ def sweep(
 
     The speed of one pulley rises linearly in place of what the drive says; its harmonics, loads and all else stay.
     Before, the drive runs up from rest to the first speed in a tenth of the duration. Spectra reach 0.375 over
-    simulation.output_interval.
+    simulation.output_interval; `beltdyn plot FILE --figures waterfall,orders` draws them.
 
     Parameters
     ----------

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 
 from beltdyn import plot
 from beltdyn.errors import ModelError
+from beltdyn.plot.registry import Choice
 from beltdyn.results import Run
 
 
@@ -66,3 +67,10 @@ def test_what_is_not_there_is_a_model_error(run_up: Run, ax: Axes, wrong: dict[s
     for draw in (plot.orders, plot.waterfall):
         with pytest.raises(ModelError, match=message):
             draw(run_up, ax=ax, **wrong)
+
+
+@pytest.mark.parametrize(("chosen", "shown"), [(None, "driven"), (0, "driver")])
+def test_the_swept_pulley_is_shown_unless_another_is_chosen(run_up: Run, chosen: int | None, shown: str) -> None:
+    swept = Run(run_up.dataset.assign_attrs(swept_pulley="driven"), run_up.drive)
+    page = plot.FIGURES["waterfall"].arrange(swept, Choice(pulley=chosen))
+    assert f"Speed of {shown} [rpm]" in [ax.get_ylabel() for ax in page.axes]
