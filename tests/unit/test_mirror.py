@@ -27,7 +27,7 @@ ELSEWHERE = {
     "system/moving_center.py": "unit/system/test_bodies.py",
     "system/observations.py": "unit/system/test_observe.py",
     "system/pulley_state.py": "unit/system/test_balance.py",
-    "system/state_loads.py": "unit/system/test_balance.py",
+    "system/state_forces.py": "unit/system/test_balance.py",
     "solve/alpha_impulse.py": "verification/dynamics/test_impulse.py",
     "solve/alpha_method.py": "unit/solve/test_alpha_step.py",
     "solve/engine.py": "unit/solve/test_alpha_advance.py",

@@ -17,10 +17,10 @@ from beltdyn.solve.alpha_step import Step, new_step, try_step
 from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, allowed_error, motion_of, trial_motion
 from beltdyn.solve.step_bound import resolved_length
 from beltdyn.system.arrays import NUMERICAL_LOSS, BodyForces, Equations, System
-from beltdyn.system.body_forces import keep_loads
+from beltdyn.system.body_forces import keep_body_forces
 from beltdyn.system.missed_action import missed_work
 from beltdyn.system.numerical_loss import numerical_loss
-from beltdyn.system.state_loads import find_loads
+from beltdyn.system.state_forces import find_body_forces
 
 REACHED: Final = 0
 """Status: the stop was reached, the room for steps is full, or the budget is spent."""
@@ -143,7 +143,7 @@ def _accept(system: System, method: Method, state: IntegratorState, equations: E
     """Move to the end of the step, and do the energy account."""
     work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
     end = trial_motion(state, step.end)
-    find_loads(system, end, work, corner, equations.loads)
+    find_body_forces(system, end, work, corner, equations.loads)
     state.work[NUMERICAL_LOSS] += numerical_loss(system, motion_of(state), end, state.impulse, work)
     missed_work(system, motion_of(state), end, state.impulse, state.missed)
     follow_profiles(system, method, state, step.length)
@@ -166,5 +166,5 @@ def _keep(state: IntegratorState, step: Step, loads: BodyForces, steps: Steps, f
         steps.position[filled, i], steps.velocity[filled, i] = state.position[i], state.velocity[i]
     for k in range(state.work.size):
         steps.work[filled, k] = state.work[k]
-    keep_loads(loads, steps.loads, filled)
+    keep_body_forces(loads, steps.loads, filled)
     return filled + 1

@@ -8,7 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import ENERGY_WORKS, POWERS, BodyForces, Motion, System
-from beltdyn.system.body_forces import load_history
+from beltdyn.system.body_forces import body_forces_history
 from beltdyn.system.motion import no_multipliers
 
 CLOCK = record(
@@ -132,7 +132,7 @@ def empty_steps(system: System, count: int) -> Steps:
         position=np.empty((count, size)),
         velocity=np.empty((count, size)),
         work=np.empty((count, len(ENERGY_WORKS))),
-        loads=load_history(system, count),
+        loads=body_forces_history(system, count),
     )
 
 

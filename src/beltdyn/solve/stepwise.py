@@ -239,6 +239,6 @@ def first_order_chunk(equations: FirstOrder, time: FloatArray, y: FloatArray, st
         With prescribed bodies where they have to be, and the loads of each state.
     """
     position, velocity, work = (np.ascontiguousarray(part) for part in equations.unpack(y))
-    loads = equations.loads_at(time, position, velocity)
+    loads = equations.body_forces_at(time, position, velocity)
     work = np.pad(work, ((0, 0), (0, len(ENERGY_WORKS) - len(POWERS))))  # their own damping is not known
     return Chunk(time, np.full(len(time), step), position, velocity, work, loads, reached)

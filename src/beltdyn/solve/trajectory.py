@@ -11,7 +11,7 @@ from beltdyn.model import Drive, Pulley, install
 from beltdyn.model.instants import SAME, Instants
 from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
 from beltdyn.system.state import State
-from beltdyn.system.state_loads import loads_at
+from beltdyn.system.state_forces import body_forces_at
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class Chunk:
     work : ndarray, shape (k, 8)
         In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
     loads : BodyForces
-        Of each state; `system.state_loads.loads_at` finds them where a method does not know them.
+        Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them.
     reached : float
         Time that the solver has reached, s.
     """
@@ -46,7 +46,7 @@ class Chunk:
     def start(cls, system: System, state: State) -> Self:
         """The state at time zero, before the first step."""
         zero, position, velocity = np.zeros(1), state.position[None].copy(), state.velocity[None].copy()
-        loads = loads_at(system, zero, position, velocity)
+        loads = body_forces_at(system, zero, position, velocity)
         return cls(zero, zero, position, velocity, np.zeros((1, len(ENERGY_WORKS))), loads, 0.0)
 
     @classmethod

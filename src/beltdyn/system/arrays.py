@@ -173,7 +173,7 @@ class RingMatrix(NamedTuple):
 class BodyForces(NamedTuple):
     """What the bodies feel and what the energy account needs, at one state.
 
-    A history of k states has one row for each in every array: see `body_forces.load_history`.
+    A history of k states has one row for each in every array: see `body_forces.body_forces_history`.
     """
 
     moment: FloatArray

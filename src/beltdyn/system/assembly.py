@@ -14,7 +14,7 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import BodyForces, Equations, Motion, RingMatrix, System, TangentFactors
-from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, differentiates_forces
+from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces, differentiates_forces
 from beltdyn.system.element_state import add_material_damping, centreline, gather
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center
 from beltdyn.system.pulley_state import pulley_state
@@ -50,7 +50,7 @@ def assemble(
     work, matrix, loads = equations.work, equations.matrix, equations.loads
     wanted = factors.by_acceleration != 0.0 or differentiates_forces(factors)
     clear(matrix, wanted)
-    clear_loads(loads)
+    clear_body_forces(loads)
     for element in range(system.length.size):
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])

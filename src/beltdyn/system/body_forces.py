@@ -26,8 +26,8 @@ from beltdyn.system.arrays import (
 from beltdyn.system.pulley_state import tensioner_coordinate
 
 
-def new_loads(system: System) -> BodyForces:
-    """Make zero loads for a system."""
+def new_body_forces(system: System) -> BodyForces:
+    """Make body forces of zero for a system."""
     pulleys, bodies = system.pulleys.size, system.bodies.size
     return BodyForces(
         np.zeros(pulleys),
@@ -41,14 +41,14 @@ def new_loads(system: System) -> BodyForces:
     )
 
 
-def load_history(system: System, count: int) -> BodyForces:
-    """Make room for the loads of a number of states, one row for each."""
-    return BodyForces(*(np.zeros((count, *array.shape)) for array in new_loads(system)))
+def body_forces_history(system: System, count: int) -> BodyForces:
+    """Make room for the body forces of a number of states, one row for each."""
+    return BodyForces(*(np.zeros((count, *array.shape)) for array in new_body_forces(system)))
 
 
 @kernel
-def keep_loads(loads: BodyForces, history: BodyForces, k: int) -> None:
-    """Write the loads of a state into row k of a history."""
+def keep_body_forces(loads: BodyForces, history: BodyForces, k: int) -> None:
+    """Write the body forces of a state into row k of a history."""
     for p in range(loads.moment.size):
         history.moment[k, p], history.shaft[k, p] = loads.moment[p], loads.shaft[p]
         history.hub[k, p, 0], history.hub[k, p, 1] = loads.hub[p, 0], loads.hub[p, 1]
@@ -62,7 +62,7 @@ def keep_loads(loads: BodyForces, history: BodyForces, k: int) -> None:
 
 
 @kernel
-def clear_loads(loads: BodyForces) -> None:
+def clear_body_forces(loads: BodyForces) -> None:
     """Set everything to zero but the torques on the shafts, which are overwritten later."""
     loads.moment[:] = 0.0
     loads.hub[:] = 0.0

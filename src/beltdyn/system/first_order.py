@@ -22,7 +22,7 @@ from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import entries, places
 from beltdyn.system.state import State
-from beltdyn.system.state_loads import loads_at
+from beltdyn.system.state_forces import body_forces_at
 
 
 class FirstOrder:
@@ -57,12 +57,12 @@ class FirstOrder:
         """Positions, velocities and works from unknowns of shape (..., size)."""
         return y[..., : self._half], y[..., self._half : 2 * self._half], y[..., 2 * self._half :]
 
-    def loads_at(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
-        """Loads at states; see `state_loads.loads_at`.
+    def body_forces_at(self, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
+        """Body forces at states; see `state_forces.body_forces_at`.
 
         The prescribed motion is written into the states: a solver's integral of it has its errors.
         """
-        return loads_at(self._system, time, position, velocity)
+        return body_forces_at(self._system, time, position, velocity)
 
     def jump(self, time: float, y: FloatArray) -> None:
         """Bring prescribed bodies to their motion at a time (s) in unknowns, and count the work that it takes."""

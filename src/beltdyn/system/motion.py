@@ -6,7 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import Equations, System
 from beltdyn.system.assembly import border_size
-from beltdyn.system.body_forces import new_loads
+from beltdyn.system.body_forces import new_body_forces
 from beltdyn.system.element_state import element_workspace
 from beltdyn.system.ring_matrix import ring_matrix
 
@@ -18,7 +18,7 @@ def new_equations(system: System) -> Equations:
         ring_matrix(dof, system.nodes, border),
         np.zeros((system.nodes, dof)),
         np.zeros(border),
-        new_loads(system),
+        new_body_forces(system),
         element_workspace(system),
     )
 

@@ -17,7 +17,7 @@ from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.element_state import centreline, gather
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
-from beltdyn.system.state_loads import loads_at
+from beltdyn.system.state_forces import body_forces_at
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
@@ -38,7 +38,7 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
         Derived quantities at every instant, all of them shown.
     """
     time, position, velocity = (np.ascontiguousarray(array) for array in (time, position, velocity))
-    loads = loads_at(system, time, position, velocity)
+    loads = body_forces_at(system, time, position, velocity)
     return observe_motion(system, position, velocity, loads, np.ones(time.size, dtype=np.bool_))
 
 

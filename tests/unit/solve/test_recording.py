@@ -12,7 +12,7 @@ from beltdyn.results import open_run
 from beltdyn.solve.recording import Recording, result_layout
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, System
-from beltdyn.system.body_forces import load_history
+from beltdyn.system.body_forces import body_forces_history
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -60,7 +60,7 @@ def test_empty_chunks_only_tell(change: Change, system: System) -> None:
     told: list[float] = []
     with Recording(change(), system, None, "title", lambda progress: told.append(progress.time)) as recording:
         none, works = np.empty((0, 62)), np.empty((0, len(ENERGY_WORKS)))
-        recording.take(Chunk(np.empty(0), np.empty(0), none, none, works, load_history(system, 0), reached=0.5))
+        recording.take(Chunk(np.empty(0), np.empty(0), none, none, works, body_forces_history(system, 0), reached=0.5))
     assert told[-1] == 0.5
     assert recording.run().dataset.sizes["time"] == 0
 

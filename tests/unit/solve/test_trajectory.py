@@ -10,7 +10,7 @@ from beltdyn.model import Drive
 from beltdyn.model.instants import Instants
 from beltdyn.solve.trajectory import Chunk, Statistics, Task, drive_task, velocity_scale
 from beltdyn.system.arrays import ENERGY_WORKS
-from beltdyn.system.body_forces import load_history
+from beltdyn.system.body_forces import body_forces_history
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -74,7 +74,7 @@ def test_outputs_need_only_the_states_around_them(change: Change, interval: floa
     times = np.unique(np.append(random.uniform(0.0, 3.0, 120), instants[np.arange(0, instants.count, 2)]))
     count = len(times)
     position, velocity = random.uniform(size=(2, count, 3))
-    work, loads = np.zeros((count, len(ENERGY_WORKS))), load_history(system, count)
+    work, loads = np.zeros((count, len(ENERGY_WORKS))), body_forces_history(system, count)
     chunk = Chunk(times, np.diff(times, prepend=0.0), position, velocity, work, loads, reached=3.0)
     around = chunk.around(instants, -interval)
     wanted = instants[np.arange(instants.count)]

@@ -46,7 +46,7 @@ def sliding(drive: Drive) -> tuple[System, State]:
     path = installation.path
     pressed = Path(path.centers, path.radii - DEPTH * np.sign(path.radii))
     state = laid(system, pressed, installation.tensioner_positions)
-    FirstOrder(system).loads_at(np.array([TIME]), state.position[None], state.velocity[None])
+    FirstOrder(system).body_forces_at(np.array([TIME]), state.position[None], state.velocity[None])
     return system, state
 
 

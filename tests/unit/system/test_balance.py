@@ -14,7 +14,7 @@ from beltdyn.system.joint_constraint import mass_matrix
 from beltdyn.system.observations import OBSERVED, Observations
 from beltdyn.system.observe import observe, observe_motion
 from beltdyn.system.state import State, laid
-from beltdyn.system.state_loads import loads_at
+from beltdyn.system.state_forces import body_forces_at
 
 TIME = 0.3
 GIVEN, LOST = POWERS[:2], POWERS[2:]
@@ -117,7 +117,7 @@ def test_bodies_follow_their_torques(machines: tuple[System, State]) -> None:
     """Inertia times acceleration is the torque of belt, chain and shaft; a driver gives what is missing."""
     system, state = machines
     velocity, acceleration, powers = rates(system, state)
-    loads = loads_at(system, np.array([TIME]), state.position[None].copy(), velocity[None].copy())
+    loads = body_forces_at(system, np.array([TIME]), state.position[None].copy(), velocity[None].copy())
     free, bodies = system.bodies.unknown >= 0, slice(system.first_body, None)
     inertia = system.bodies.inertia
     np.testing.assert_allclose(inertia[free] * acceleration[bodies][free], loads.force[0, free], rtol=1e-12)
@@ -134,9 +134,9 @@ def test_loads_of_several_states(machines: tuple[System, State]) -> None:
     times = np.array([0.1, TIME, 0.5])
     position = np.stack([state.position, state.position + 1e-3, state.position])
     velocity = np.stack([state.velocity, 2.0 * state.velocity, 0.0 * state.velocity])
-    together = loads_at(system, times, position.copy(), velocity.copy())
+    together = body_forces_at(system, times, position.copy(), velocity.copy())
     for k in range(3):
-        alone = loads_at(system, times[k : k + 1], position[k : k + 1].copy(), velocity[k : k + 1].copy())
+        alone = body_forces_at(system, times[k : k + 1], position[k : k + 1].copy(), velocity[k : k + 1].copy())
         for name, values in together._asdict().items():
             np.testing.assert_array_equal(values[k], getattr(alone, name)[0], err_msg=name)
             assert np.any(values)
@@ -156,7 +156,7 @@ def test_energies_of_the_states_that_are_shown(machines: tuple[System, State]) -
     position = np.stack([state.position + shift for shift in (0.0, 1e-4, -1e-4)])
     velocity = np.stack([factor * state.velocity for factor in (1.0, 2.0, -1.0)])
     whole = observe(system, times, position, velocity)
-    loads = loads_at(system, times, position, velocity)
+    loads = body_forces_at(system, times, position, velocity)
     some = observe_motion(system, position, velocity, loads, shown)
     for name, per in OBSERVED.items():
         expected = getattr(whole, name)[shown] if per.shown else getattr(whole, name)

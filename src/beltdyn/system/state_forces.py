@@ -9,14 +9,21 @@ from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
-from beltdyn.system.body_forces import add_contact, add_machines, clear_loads, keep_loads, load_history, new_loads
+from beltdyn.system.body_forces import (
+    add_contact,
+    add_machines,
+    body_forces_history,
+    clear_body_forces,
+    keep_body_forces,
+    new_body_forces,
+)
 from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.pulley_state import pulley_state
 
 
-class LoadsScratch(NamedTuple):
-    """Scratch arrays for finding loads."""
+class BodyForcesScratch(NamedTuple):
+    """Scratch arrays for finding body forces."""
 
     acceleration: FloatArray
     """Shape (6 N + D,)."""
@@ -26,8 +33,8 @@ class LoadsScratch(NamedTuple):
     loads: BodyForces
 
 
-def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
-    """Find the loads at a number of states.
+def body_forces_at(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
+    """Find the body forces at a number of states.
 
     Parameters
     ----------
@@ -43,32 +50,32 @@ def loads_at(system: System, time: FloatArray, position: FloatArray, velocity: F
     BodyForces
         One row for each state.
     """
-    history = load_history(system, time.size)
+    history = body_forces_history(system, time.size)
     acceleration = np.zeros(system.first_body + system.bodies.size)
-    scratch = LoadsScratch(acceleration, element_workspace(system), np.zeros((0, 0)), new_loads(system))
-    fill_loads(system, time, position, velocity, scratch, history)
+    scratch = BodyForcesScratch(acceleration, element_workspace(system), np.zeros((0, 0)), new_body_forces(system))
+    fill_body_forces(system, time, position, velocity, scratch, history)
     return history
 
 
 @kernel
-def fill_loads(
+def fill_body_forces(
     system: System,
     time: FloatArray,
     position: FloatArray,
     velocity: FloatArray,
-    scratch: LoadsScratch,
+    scratch: BodyForcesScratch,
     history: BodyForces,
 ) -> None:
-    """Fill a history of loads; see `loads_at`."""
+    """Fill a history of body forces; see `body_forces_at`."""
     for k in range(time.size):
         motion = Motion(time[k], position[k], velocity[k], scratch.acceleration)
         prescribe(system, motion)
-        find_loads(system, motion, scratch.work, scratch.corner, scratch.loads)
-        keep_loads(scratch.loads, history, k)
+        find_body_forces(system, motion, scratch.work, scratch.corner, scratch.loads)
+        keep_body_forces(scratch.loads, history, k)
 
 
 @kernel
-def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: BodyForces) -> None:
+def find_body_forces(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: BodyForces) -> None:
     """Forces on bodies and powers at a state, without residual and tangent.
 
     Newton's method stops when the state is known well enough.  The loads that it leaves are those before its last
@@ -87,7 +94,7 @@ def find_loads(system: System, motion: Motion, work: np.record, corner: FloatArr
     loads
         Overwritten.
     """
-    clear_loads(loads)
+    clear_body_forces(loads)
     for element in range(system.length.size):
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])
