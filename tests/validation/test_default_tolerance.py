@@ -26,6 +26,7 @@ DRIVES: dict[str, tuple[Callable[[], Drive], float, float]] = {
     "case_1": (cases.two_pulley, 0.8, 1.0),
     "unequal_radii": (lambda: packaged("examples", "unequal_radii.toml"), 1.2, 1.5),
     "slip_through": (lambda: packaged("examples", "slip_through.toml"), 0.9, 1.2),
+    "washing_machine": (lambda: packaged("examples", "washing_machine.toml"), 0.8, 0.9),
     "accessory_drive": (lambda: packaged("examples", "accessory_drive.toml"), 0.975, 1.2),
 }
 """Name -> the drive, and the beginning and end of steady running, s."""

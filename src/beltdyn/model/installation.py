@@ -26,8 +26,8 @@ class Installation:
         Tension of the laid belt, N.
     tension : float
         Mean tension of the spans once the belt has sunk into the pulleys, N.
-    span_tensions : ndarray, shape (spans,), N
-        Tension of each span: the same in all, but for weight and the mesh.
+    span_tensions : ndarray, shape (s,), N
+        Tension of each of s spans: the same in all, but for weight and the mesh.
     penetrations : ndarray, shape (n,), m
         How deep it sinks into each pulley, in the middle of the arc.
     tensioner_positions : ndarray, shape (K,), m or rad
@@ -36,7 +36,7 @@ class Installation:
         The path with the tensioners there, before the belt sinks in.
     hub_loads : ndarray, shape (n, 2), N
         Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
-    span_frequencies : ndarray, shape (spans,), Hz
+    span_frequencies : ndarray, shape (s,), Hz
         Lowest frequency at which each span swings across, with the bending stiffness of the belt and its sag.
     """
 

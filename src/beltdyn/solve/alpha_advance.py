@@ -16,7 +16,7 @@ from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import Step, new_step, try_step
 from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, allowed_error, motion_of, trial_motion
 from beltdyn.solve.step_bound import resolved_length
-from beltdyn.system.arrays import NUMERICAL_LOSS, BodyForces, Equations, System
+from beltdyn.system.arrays import FRICTION_LOSS, NUMERICAL_LOSS, BodyForces, Equations, System
 from beltdyn.system.body_forces import keep_body_forces
 from beltdyn.system.missed_action import missed_work
 from beltdyn.system.numerical_loss import numerical_loss
@@ -39,6 +39,8 @@ pulleys, and a step tried again costs more than it gains."""
 _WORST: Final = 3.0
 """A node may err by this many times the root mean square allowed of all: errors are largest at the few nodes that meet
 pulleys, and would vanish in the mean of a fine mesh."""
+_TIGHTEST: Final = 27.0
+"""Steps may be three times shorter for the sake of the losses than the local error asks for."""
 _SMALLEST_STEP: Final = 1e-11
 
 
@@ -93,13 +95,14 @@ def advance(
         else:
             error = _local_error(system, settings, method, state, length)
             growth = _GROWTH if iterations <= _EASY else 1.0
-            factor = min(growth, max(_SHRINK, (_AIM / max(error, 1e-12)) ** (1.0 / 3.0)))
+            wanted = max(error, min(_TIGHTEST * error, _loss_error(settings, state, length)))
+            factor = min(growth, max(_SHRINK, (_AIM / max(wanted, 1e-12)) ** (1.0 / 3.0)))
             if error > _LIMIT:
                 state.counts.rejected += 1
                 factor /= STRETCH
             else:
                 state.counts.steps += 1
-                _accept(system, method, state, equations, step)
+                _accept(system, settings, method, state, equations, step)
                 filled = _keep(state, step, equations.loads, steps, filled)
             following = min(settings.max_step, factor * length)
         clock.next_step = following
@@ -139,17 +142,39 @@ def _local_error(system: System, settings: Settings, method: Method, state: Inte
 
 
 @kernel(inline=True)
-def _accept(system: System, method: Method, state: IntegratorState, equations: Equations, step: Step) -> None:
+def _loss_error(settings: Settings, state: IntegratorState, length: float) -> float:
+    """What numerical damping takes of the losses with steps of a length, over what is allowed."""
+    if state.losses.physical <= 0.0:
+        return 0.0
+    return float(state.losses.numerical * length**3 / (settings.numerical_share * state.losses.physical))
+
+
+@kernel(inline=True)
+def _average_losses(settings: Settings, state: IntegratorState, length: float, taken: float) -> None:
+    """Take the powers at the end of a step, and what numerical damping took in it (J), into their means."""
+    part, lost = length / (length + settings.averaging_time), 0.0
+    for k in range(FRICTION_LOSS, NUMERICAL_LOSS):
+        lost += state.power[k]
+    state.losses.physical += part * (lost - state.losses.physical)
+    state.losses.numerical += part * (taken / length**4 - state.losses.numerical)
+
+
+@kernel(inline=True)
+def _accept(
+    system: System, settings: Settings, method: Method, state: IntegratorState, equations: Equations, step: Step
+) -> None:
     """Move to the end of the step, and do the energy account."""
     work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
     end = trial_motion(state, step.end)
     find_body_forces(system, end, work, corner, equations.loads)
-    state.work[NUMERICAL_LOSS] += numerical_loss(system, motion_of(state), end, state.impulse, work)
+    taken = numerical_loss(system, motion_of(state), end, state.impulse, work)
+    state.work[NUMERICAL_LOSS] += taken
     missed_work(system, motion_of(state), end, state.impulse, state.missed)
     follow_profiles(system, method, state, step.length)
     for k in range(power.size):
         state.work[k] += 0.5 * step.length * (state.power[k] + power[k]) + state.missed[k]
         state.power[k] = power[k]
+    _average_losses(settings, state, step.length, taken)
     for i in range(state.position.size):
         state.position[i], state.velocity[i] = state.trial.position[i], state.trial.velocity[i]
         state.acceleration[i], state.auxiliary[i] = state.trial.acceleration[i], state.trial.auxiliary[i]

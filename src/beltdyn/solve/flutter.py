@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import System
 
@@ -47,6 +47,18 @@ class Flutter(NamedTuple):
         return {f"flutter_{name}": value for name, value in self._asdict().items()}
 
 
+def growth_rates(eigenvalues: ComplexArray) -> FloatArray:
+    """Rates at which vibrations grow, 1/s: zero for what grows without swinging, and for what was not found.
+
+    Parameters
+    ----------
+    eigenvalues : ndarray, shape (k,)
+        Growth rate and angular frequency, 1/s; nan where none was found.
+    """
+    swinging = np.abs(eigenvalues.imag) > np.abs(eigenvalues.real)
+    return np.asarray(np.where(swinging, eigenvalues.real, 0.0))
+
+
 class FlutterWatch:
     """Notes when a belt slides, and a few states in which it does; at the end it finds how vibrations grow there.
 
@@ -76,7 +88,7 @@ class FlutterWatch:
         ----------
         time : ndarray, shape (k,)
             s.
-        position, velocity : ndarray, shape (k, 6 N + D)
+        position, velocity : ndarray, shape (k, n N + D)
             The states.
         seen
             Fields of `Observations` in these states.
@@ -95,7 +107,7 @@ class FlutterWatch:
             return None
         vibrations = Vibrations(self._system)
         found = np.array([vibrations.fastest_growing(*state, self._shift) for state in self._states])
-        instants, rates = np.array([state[0] for state in self._states]), np.nan_to_num(found.real)
+        instants, rates = np.array([state[0] for state in self._states]), growth_rates(found)
         time, transit = np.concatenate(self._time), np.concatenate(self._transit)
         active = time - last_slid(time, transit) <= self._memory
         transit = transit[np.maximum.accumulate(np.where(transit > 0.0, np.arange(transit.size), 0))]
@@ -105,7 +117,7 @@ class FlutterWatch:
         ]
         growth, start, end = max(grown)
         fastest = int(np.argmax(rates))
-        frequency = float(found[fastest].imag) / (2.0 * np.pi)
+        frequency = abs(float(found[fastest].imag)) / (2.0 * np.pi)
         return Flutter(growth, float(rates[fastest]), frequency, start, end) if growth > 0.0 else None
 
     def _transit_time(self, velocity: FloatArray, seen: Mapping[str, NDArray[Any]]) -> FloatArray:

@@ -27,8 +27,13 @@ _STEPS_AT_ONCE = 8000
 _FIRST_STEP = 1e-6
 _NEWTON_FRACTION = 0.01
 _CROSSINGS = 2.0
-"""A step is long from sqrt(rtol) times the time of so many crossings of the belt by an axial wave.  The drive vibrates
-on its belt about that slowly, and until that turns, errors that pull the same way add up."""
+"""The drive vibrates on its belt about as slowly as an axial wave crosses it so often.  Until that turns, errors that
+pull the same way add up: a step is long from sqrt(rtol) times this time."""
+_FINE = 1e-4
+"""Looser tolerances leave vibrations to numerical damping."""
+_NUMERICAL_SHARE = 10.0
+"""Part of the losses that numerical damping may take, over rtol.  The losses err by about five times this part: waves
+that errors of time excite have an energy of fourth order in the step, and are lost in contact."""
 
 
 @dataclass(frozen=True)
@@ -53,13 +58,16 @@ class GeneralizedAlpha:
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
         system, start = task.system, task.start
+        period = _CROSSINGS * crossing_time(system)
         settings = Settings(
             spectral_radius=self.spectral_radius,
             velocity_tolerance=self.rtol * task.velocity_scale,
             newton_fraction=_NEWTON_FRACTION,
             max_step=self.max_step or task.instants.end,
-            long_step=_CROSSINGS * self.rtol**0.5 * crossing_time(system),
+            long_step=self.rtol**0.5 * period,
             output_interval=task.instants.interval,
+            numerical_share=_NUMERICAL_SHARE * self.rtol if self.rtol <= _FINE else np.inf,
+            averaging_time=period,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
         state = new_state(system, 0.0, first_step, start.position, start.velocity)

@@ -18,6 +18,12 @@ CLOCK = record(
 )
 """How far an integration is."""
 
+LOSSES = record(
+    physical="f8",  # mean power of all losses, W
+    numerical="f8",  # that of numerical damping over the cube of the step, in whose proportion it grows, W/s^3
+)
+"""What is lost, in the mean over `Settings.averaging_time`."""
+
 COUNTS = record(
     steps="i8",  # accepted
     rejected="i8",  # for their error
@@ -42,10 +48,14 @@ class Settings(NamedTuple):
     """Length from which on a step is allowed no more local error than one of this length, s."""
     output_interval: float = np.inf
     """Steps end on multiples of this where they can, s."""
+    numerical_share: float = np.inf
+    """Part of the losses that numerical damping may take in the mean."""
+    averaging_time: float = np.inf
+    """Time over which this mean is taken, s."""
 
 
 class Trial(NamedTuple):
-    """State at the end of a step that is tried; each vector has shape (6 N + D,)."""
+    """State at the end of a step that is tried; each vector has shape (n N + D,)."""
 
     position: FloatArray
     velocity: FloatArray
@@ -70,11 +80,13 @@ class IntegratorState(NamedTuple):
     power: FloatArray
     """These powers at the present time, W, shape (7,)."""
     impulse: FloatArray
-    """Impulses on the bodies that the ends of the step in hand miss, from `missed_impulses`, shape (2, 6 N + D)."""
+    """Impulses on the bodies that the ends of the step in hand miss, from `missed_impulses`, shape (2, n N + D)."""
     lagged: FloatArray
     """What the method makes of each profile, as A is of the acceleration; nan after a jump; shape (profiles,)."""
     missed: FloatArray
     """Works that the powers at its ends miss, from `missed_work`, J, shape (7,)."""
+    losses: np.record
+    """Row of `LOSSES`."""
     trial: Trial
     counts: np.record
     """Row of `COUNTS`."""
@@ -88,7 +100,7 @@ class Steps(NamedTuple):
     step: FloatArray
     """Length of the step, s, shape (k,)."""
     position: FloatArray
-    """Shape (k, 6 N + D)."""
+    """Shape (k, n N + D)."""
     velocity: FloatArray
     """Alike."""
     work: FloatArray
@@ -145,7 +157,7 @@ def new_state(system: System, time: float, step: float, position: FloatArray, ve
         What is integrated.
     time, step
         Where to begin, and the first step to try, s.
-    position, velocity : ndarray, shape (6 N + D,)
+    position, velocity : ndarray, shape (n N + D,)
         State to begin from; copied.
 
     Returns
@@ -167,6 +179,7 @@ def new_state(system: System, time: float, step: float, position: FloatArray, ve
         impulse=np.zeros((2, size)),
         lagged=np.full(system.profiles.table.size - 1, np.nan),
         missed=np.zeros(len(POWERS)),
+        losses=blank(LOSSES),
         trial=Trial(np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)),
         counts=blank(COUNTS),
     )

@@ -249,7 +249,7 @@ class Recording:
         return {"filtered_time": instants, **{f"filtered_{name}": part for name, part in parts}}
 
     def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
-        """Coordinates and speeds of bodies, from states of shape (k, 6 N + D)."""
+        """Coordinates and speeds of bodies, from states of shape (k, n N + D)."""
         system = self._system
         nodes, pulleys = system.first_body, len(system.pulleys)
         shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)

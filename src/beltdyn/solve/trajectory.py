@@ -24,7 +24,7 @@ class Chunk:
         s, ascending.
     step : ndarray, shape (k,)
         Length of the step that ends there, s; zero at the start.
-    position, velocity : ndarray, shape (k, 6 N + D)
+    position, velocity : ndarray, shape (k, n N + D)
         Nodal coordinates and coordinates of bodies, and their rates.
     work : ndarray, shape (k, 8)
         In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
@@ -112,7 +112,7 @@ class Chunk:
 
         Returns
         -------
-        position, velocity : ndarray, shape (m, 6 N + D)
+        position, velocity : ndarray, shape (m, n N + D)
         """
         end, part = self.locate(instants)
         first, x = np.maximum(end - 1, 0), part[:, None]

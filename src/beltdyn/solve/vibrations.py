@@ -51,7 +51,7 @@ class Vibrations:
         ----------
         time
             s.
-        position, velocity : ndarray, shape (6 N + D,)
+        position, velocity : ndarray, shape (n N + D,)
             The state.
 
         Returns

@@ -95,7 +95,7 @@ class System(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """A state of a system at an instant, and its rates; each vector has shape (6 N + D,)."""
+    """A state of a system at an instant, and its rates; each vector has shape (n N + D,)."""
 
     time: float
     """s."""

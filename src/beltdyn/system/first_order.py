@@ -36,7 +36,7 @@ class FirstOrder:
     Attributes
     ----------
     size : int
-        Number of unknowns, 2 (6 N + D) + 7.
+        Number of unknowns, 2 (n N + D) + 7.
     evaluations : int
         Calls of `rates` so far.
     """
@@ -140,7 +140,7 @@ class FirstOrder:
         return np.flatnonzero(self._system.bodies.unknown >= 0)
 
     def _by_tangent(self, matrix: RingMatrix) -> FloatArray:
-        """Minus the inverse mass times a tangent, dense, shape (6 N + D, 6 N + D)."""
+        """Minus the inverse mass times a tangent, dense, shape (n N + D, n N + D)."""
         free = self._free
         nodes = self._system.first_body
         size = nodes + len(matrix.corner)

@@ -11,15 +11,15 @@ from beltdyn.system.arrays import System
 
 @dataclass(frozen=True, eq=False)
 class JointConstraint:
-    """The constant matrices of Eqs. 25 and 26 for a belt of N nodes, the last tied to the first.
+    """The constant matrices of Eqs. 25 and 26, for a belt of N nodes, n coordinates each, the last tied to the first.
 
     Attributes
     ----------
-    jacobian : ndarray, shape (6, 6 N)
+    jacobian : ndarray, shape (n, n N)
         C_e: coordinates of the first node minus those of the last.
-    by_force : ndarray, shape (6 N, 6 N)
+    by_force : ndarray, shape (n N, n N)
         First bracket of Eq. 26, M^-1 - M^-1 C^T (C M^-1 C^T)^-1 C M^-1.
-    by_constraint : ndarray, shape (6 N, 6)
+    by_constraint : ndarray, shape (n N, n)
         Second bracket of Eq. 26, M^-1 C^T (C M^-1 C^T)^-1.
     """
 
@@ -32,14 +32,14 @@ class JointConstraint:
 
         Parameters
         ----------
-        force : ndarray, shape (6 N,)
+        force : ndarray, shape (n N,)
             Generalised contact and elastic forces Q.
-        constraint : ndarray, shape (6,), optional
+        constraint : ndarray, shape (n,), optional
             Q_d; zero for a rigid joint, whose constraint is linear.
 
         Returns
         -------
-        ndarray, shape (6 N,)
+        ndarray, shape (n N,)
         """
         result = self.by_force @ force
         return result if constraint is None else result + self.by_constraint @ constraint
@@ -75,7 +75,7 @@ def joint_constraint(system: System) -> JointConstraint:
 
 
 def mass_matrix(system: System) -> FloatArray:
-    """Mass matrix of the belt, dense, shape (6 N, 6 N)."""
+    """Mass matrix of the belt, dense, shape (n N, n N)."""
     dof, size = len(system.scale), system.first_body
     matrix = np.zeros((size, size))
     for element, mass in enumerate(system.mass):

@@ -81,7 +81,7 @@ def missed_impulses(system: System, motion: Motion, length: float, impulse: Floa
         Beginning of the step.
     length
         Length of the step, s.
-    impulse : ndarray, shape (2, 6 N + D)
+    impulse : ndarray, shape (2, n N + D)
         Overwritten by those of torques on the shafts, and those of links, in the places of the bodies, N m s.
     """
     impulse[:] = 0.0
@@ -115,7 +115,7 @@ def missed_work(
         The system.
     motion, end
         Beginning and end of the step.
-    impulse : ndarray, shape (2, 6 N + D)
+    impulse : ndarray, shape (2, n N + D)
         From `missed_impulses`.
     work : ndarray, shape (7,)
         Overwritten, in the order of `POWERS`, J.
@@ -148,7 +148,7 @@ def jump_work(system: System, before: FloatArray, after: FloatArray) -> float:
     ----------
     system
         The system.
-    before, after : ndarray, shape (6 N + D,)
+    before, after : ndarray, shape (n N + D,)
         Velocities before and after the jump.
 
     Returns

@@ -40,7 +40,7 @@ def subtract_solution(system: System, equations: Equations, factor: float, vecto
         With a solution.
     factor
         Dimensionless, or the factor between unknown and vector.
-    vector : ndarray, shape (6 N + D,)
+    vector : ndarray, shape (n N + D,)
         Positions, velocities or accelerations, changed in place; prescribed bodies keep theirs.
     """
     dof = len(system.scale)

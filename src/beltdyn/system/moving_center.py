@@ -44,7 +44,7 @@ def drift_record(vectors: int) -> np.dtype[np.void]:
 
 @kernel
 def moving_center(system: System, pulley: int, position: FloatArray, velocity: FloatArray) -> MovingCenter:
-    """The motion of a pulley's centre at a state of shape (6 N + D,)."""
+    """The motion of a pulley's centre at a state of shape (n N + D,)."""
     carrier, rim = system.pulleys[pulley].carrier, system.bodies[pulley].unknown
     if carrier < 0:
         return MovingCenter(-1, rim, 0.0, 0.0, 0.0, 0.0, False)

@@ -25,7 +25,7 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
         Belt and bodies.
     before, after
         Both ends of the step.
-    impulse : ndarray, shape (2, 6 N + D)
+    impulse : ndarray, shape (2, n N + D)
         What acts on the bodies beside the forces at the ends, from `missed_impulses`, N m s.
     work
         From `element_workspace`.

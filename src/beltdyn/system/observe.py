@@ -29,7 +29,7 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
         Belt, pulleys, supports.
     time : ndarray, shape (k,)
         s.
-    position, velocity : ndarray, shape (k, 6 N + D)
+    position, velocity : ndarray, shape (k, n N + D)
         The states; the motion of prescribed bodies is written into them if they are contiguous.
 
     Returns
@@ -51,7 +51,7 @@ def observe_motion(
     ----------
     system
         Belt, pulleys, supports.
-    position, velocity : ndarray, shape (k, 6 N + D)
+    position, velocity : ndarray, shape (k, n N + D)
         The states, with the motion of prescribed bodies in them; contiguous.
     loads
         One row for each state.

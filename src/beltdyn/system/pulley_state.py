@@ -24,7 +24,7 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
         The system.
     pulley
         Which one.
-    position, velocity : ndarray, shape (6 N + D,)
+    position, velocity : ndarray, shape (n N + D,)
         The state.
     """
     item, body = system.pulleys[pulley], system.first_body + pulley

@@ -16,7 +16,7 @@ class State:
 
     Parameters
     ----------
-    position, velocity, acceleration : ndarray, shape (6 N + D,)
+    position, velocity, acceleration : ndarray, shape (n N + D,)
         Nodal coordinates (m and 1), then coordinates of bodies (rad and m), and their rates.
     """
 

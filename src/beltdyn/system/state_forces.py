@@ -26,7 +26,7 @@ class BodyForcesScratch(NamedTuple):
     """Scratch arrays for finding body forces."""
 
     acceleration: FloatArray
-    """Shape (6 N + D,)."""
+    """Shape (n N + D,)."""
     work: np.record
     corner: FloatArray
     """No tangent, shape (0, 0)."""
@@ -42,7 +42,7 @@ def body_forces_at(system: System, time: FloatArray, position: FloatArray, veloc
         Belt, bodies, supports.
     time : ndarray, shape (k,)
         s.
-    position, velocity : ndarray, shape (k, 6 N + D)
+    position, velocity : ndarray, shape (k, n N + D)
         The states; the motion of prescribed bodies is written into them.
 
     Returns

@@ -90,6 +90,25 @@ def test_steps_grow_to_the_longest_allowed(spinning: System) -> None:
     assert integration.counts.steps == pytest.approx(1000, abs=15)
 
 
+def test_steps_shorten_where_numerical_damping_takes_too_much_of_the_losses(spinning: System) -> None:
+    """Its part goes with the cube of the step: eight times too much asks for half the step that is aimed at."""
+    step, aim, share, losses = 1e-3, 0.8, 0.01, 5.0
+    settings = SETTINGS._replace(numerical_share=share, averaging_time=1e9)
+    equations = new_equations(spinning)
+    following = []
+    for times_allowed in (0.0, 8.0):
+        integration = start(spinning, step)
+        integration.losses.physical = losses
+        integration.losses.numerical = times_allowed * share * losses / step**3
+        restart(spinning, integration, equations)
+        integration.auxiliary[-1] += 60.0  # a local error
+        status = advance(spinning, settings, integration, equations, 1.0, 1, empty_steps(spinning, 1))
+        assert status == (REACHED, 1)
+        following.append(integration.clock.next_step / step)
+    assert 0.5 < following[0] < 2.0
+    assert following[1] == pytest.approx(0.5 * aim ** (1 / 3), rel=1e-3)
+
+
 def test_nan_forces_end_with_too_small_a_step(spinning: System) -> None:
     integration = start(spinning)
     broken = spinning._replace(mass=np.full_like(spinning.mass, np.nan))

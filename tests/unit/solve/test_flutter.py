@@ -12,7 +12,7 @@ from beltdyn.contact.friction import ForceSlope
 from beltdyn.model import Drive
 from beltdyn.published import better, two_pulley
 from beltdyn.solve import flutter, simulate
-from beltdyn.solve.flutter import FlutterWatch, growth_within, longest_pieces
+from beltdyn.solve.flutter import FlutterWatch, growth_rates, growth_within, longest_pieces
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 
@@ -166,3 +166,9 @@ def test_no_flutter_on_coarse_meshes_with_damping_or_without_sliding(elements: i
     run = simulate(case_1(elements, **contact))
     assert run.dataset.attrs.get("flutter_growth", 0.0) < 1.0
     assert not any("flutter" in warning for warning in run.warnings)
+
+
+def test_only_what_swings_counts_as_a_vibration() -> None:
+    """A motor or a load may let a drive run away without swinging, and a search may find nothing."""
+    eigenvalues = np.array([3.0 + 900.0j, 3.0 - 900.0j, -2.0 + 900.0j, 40.0 + 0.0j, 40.0 - 1e-9j, np.nan + 1j * np.nan])
+    np.testing.assert_array_equal(growth_rates(eigenvalues), [3.0, 3.0, -2.0, 0.0, 0.0, 0.0])
