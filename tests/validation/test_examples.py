@@ -23,7 +23,6 @@ WARNINGS = {
     ],
     "crossed_belt": ["the mesh does not resolve peak pressure"],
     "flat_belt_idler": ["the mesh does not resolve peak pressure"],
-    "band_brake": ["drum slides through", "drum reached gross slip"],
     "slip_through": [
         *("driver slides through", "conveyor slides through"),
         *("driver reached gross slip between t = 1.", "conveyor reached gross slip between t = 1."),

@@ -4,7 +4,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnusedCliTokensError
 
 from beltdyn import __version__
 from beltdyn.analyses import ANALYSES, Analysis
@@ -72,8 +72,10 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
             app[name].default(analysis_command(ANALYSES[name]))
             app[name].help = None  # that of the function says more
     try:
-        return app(arguments, exit_on_error=False, result_action="return_int_as_exit_code_else_zero") or 0
-    except CycloptsError:
+        result = "return_int_as_exit_code_else_zero"
+        return app(arguments, print_error=False, exit_on_error=False, result_action=result) or 0
+    except CycloptsError as error:
+        show_error(_usage(error))
         return _BAD_INPUT
     except BeltdynError as error:
         show_error(str(error))
@@ -84,3 +86,12 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
     except KeyboardInterrupt:
         show_error("interrupted")
         return exit_code()
+
+
+def _usage(error: CycloptsError) -> str:
+    """What is wrong with the words of a command."""
+    command = " ".join(("beltdyn", *(error.command_chain or ())))
+    if isinstance(error, UnusedCliTokensError):
+        words = ", ".join(f'"{word}"' for word in error.unused_tokens or ())
+        return f"{command} takes no argument {words}. See {command} --help."
+    return f"{error}"

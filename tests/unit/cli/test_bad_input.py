@@ -387,3 +387,18 @@ def test_message(case: Case, drive_text: str, folder: Path, refuse: Refuse) -> N
         assert part in message
     assert message.startswith("error: ")
     assert not re.search(r"Traceback|pydantic|Input should|ValidationError|tuple|dict", message)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["plot", "a.nc", "layout"], 'beltdyn plot takes no argument "layout". See beltdyn plot --help.'),
+        (["run", "--nosuch", "a.toml"], "--nosuch"),
+        (["check"], "FILE requires an argument"),
+        (["simulate"], 'Unknown command "simulate"'),
+    ],
+)
+def test_words_that_do_not_fit_the_command(words: list[str], said: str, refuse: Refuse) -> None:
+    message = refuse(words)
+    assert message.startswith("error: ")
+    assert said in message

@@ -15,7 +15,9 @@ SLIDING_LIMIT = 1e-3
 
 
 def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that slide through at the end of the run, or are near to it."""
+    """Pulleys that slide through at the end of the run, or are near to it; a belt held at an end slides for its use."""
+    if evidence.drive.ends:
+        return
     remedy = "Raise the tension or the wrap angle, or reduce the load."
     speeds = np.array([pulley.speed for pulley in evidence.pulleys])
     first = float(abs(rim_speeds(speeds, evidence.drive)[0]))
@@ -33,7 +35,9 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
 
 
 def near_gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
+    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output; as above."""
+    if evidence.drive.ends:
+        return
     tension, speed, wrap, torque = (
         np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed", "wrap_angle", "pulley_torque")
     )
