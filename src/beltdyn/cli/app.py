@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable, Sequence
+from typing import Final
 
 from cyclopts import App, CycloptsError, UnusedCliTokensError
 
@@ -72,8 +73,8 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
             app[name].default(analysis_command(ANALYSES[name]))
             app[name].help = None  # that of the function says more
     try:
-        result = "return_int_as_exit_code_else_zero"
-        return app(arguments, print_error=False, exit_on_error=False, result_action=result) or 0
+        action: Final = "return_int_as_exit_code_else_zero"
+        return app(arguments, print_error=False, exit_on_error=False, result_action=action) or 0
     except CycloptsError as error:
         show_error(_usage(error))
         return _BAD_INPUT
