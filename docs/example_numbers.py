@@ -186,7 +186,7 @@ def worth_of_the_idler(run: Run, _: Path) -> Iterator[str]:
 
 
 def band_brake(run: Run) -> Iterator[Number]:
-    """Euler and Eytelwein's formula, and a weight on a belt that friction stretches the more the farther from it."""
+    """Euler and Eytelwein's formula, and the frequency at which the weight bounces on the sliding belt."""
     drive = run.drive
     radius, friction, mass = float(drive.radii[0]), float(drive.frictions[0]), drive.ends[1].attached_mass
     slack, factor = mass * 9.81, capstan_ratio(friction, float(drive.path.wrap_angles[0]))

@@ -15,7 +15,7 @@ from beltdyn.quadrature import gauss_points
 
 _SEED = 2026
 _SUNK = 1.0
-"""Largest length of belt that goes by sinking in, over the belt's elongation."""
+"""Largest length of belt that penetration takes, over the belt's elongation."""
 _RAMP, _TURNS, _MEANS = 0.5, 1.25, 0.75
 """Turns of the belt at full speed: of the rise of speed and load, of the run, and of the means at its end."""
 _OUTPUTS = 100

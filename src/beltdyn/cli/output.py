@@ -79,7 +79,7 @@ def show_leftovers(path: Path) -> None:
     from beltdyn.results.atomic import leftovers
 
     for file in leftovers(path):
-        show(f"A killed run has left {file}, which nobody needs: remove it.")
+        show(f"A killed run has left {file}, which is of no use: remove it.")
 
 
 def _kept(path: Path) -> str:

@@ -76,13 +76,13 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
     tension, laid = installation.tension, installation.laid_tension
     if drive.belt.installed_tension is None:
         return [
-            f"sinking into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
+            f"penetration into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
             f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}."
         ]
     shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt_length
     return [
-        f"the belt is {shorter:.1e} m shorter than hard pulleys would need for {tension:.4g} N, since sinking in takes "
-        f"{lost:.1%} of what it is laid with, more than {_MOST_TENSION_LOST:.0%}: where its length matters, "
+        f"the belt is {shorter:.1e} m shorter than hard pulleys would need for {tension:.4g} N, since penetration "
+        f"takes {lost:.1%} of what it is laid with, more than {_MOST_TENSION_LOST:.0%}: where its length matters, "
         f"{_remedy(drive, installation, tension, tension / (1 - _MOST_TENSION_LOST))}."
     ]
 
@@ -90,7 +90,7 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
 def _remedy(drive: Drive, installation: Installation, tension: float, laid: float) -> str:
     """Say which contact leaves a tension, N, of what the belt is laid with; rounded to two digits, to the safe side.
 
-    The stiffness is that with which the sinking in, T g / (R k_p) along each arc, shortens the path by as much as the
+    The stiffness is that with which the penetration, T g / (R k_p) along each arc, shortens the path by as much as the
     belt is stretched less.
     """
     path, axial = installation.path, drive.belt.axial_stiffness

@@ -252,8 +252,8 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
         _check_place(given, pulleys, estimate.path)
     if not estimate.tension > 0:
         raise ValueError(
-            "the belt loses all tension by sinking into the pulleys: it is only "
-            f"{path - length:.3g} m shorter than its path. Shorten it, or let it sink in less"
+            "the belt loses all tension by penetration into the pulleys: it is only "
+            f"{path - length:.3g} m shorter than its path. Shorten it, or make contact stiffer"
         )
 
 

@@ -139,11 +139,11 @@ def ends_on_path(ends: tuple[End, ...], gravity: tuple[float, float]) -> tuple[P
     Raises
     ------
     ValueError
-        If there are neither no ends nor two, none of them is fixed, or nothing pulls one that is not.
+        If the number of ends is not zero or two, none of two is fixed, or nothing pulls one that is not.
     """
     if len(ends) not in (0, 2):
         raise ValueError(
-            f"the drive has {len(ends)} of [[end]]: a closed belt has none, and an open belt has two, in the order in "
+            f"the number of [[end]] is {len(ends)}: a closed belt has none, and an open belt has two, in the order in "
             "which it runs. Give both, or none"
         )
     if ends and not any(end.held for end in ends):

@@ -25,15 +25,15 @@ class Installation:
     laid_tension : float
         Tension of the laid belt, N.
     tension : float
-        Mean tension of the spans once the belt has sunk into the pulleys, N.
+        Mean tension of the spans with the penetration into the pulleys, N.
     span_tensions : ndarray, shape (s,), N
         Tension of each of s spans: the same in all, but for weight and the mesh.
     penetrations : ndarray, shape (n,), m
-        How deep it sinks into each pulley, in the middle of the arc.
+        Penetration into each pulley, in the middle of the arc.
     tensioner_positions : ndarray, shape (K,), m or rad
         Where springs hold the sliding and the rotary tensioners.
     path : Path
-        The path with the tensioners there, before the belt sinks in.
+        The path with the tensioners there, without penetration.
     hub_loads : ndarray, shape (n, 2), N
         Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
     span_frequencies : ndarray, shape (s,), Hz
@@ -143,7 +143,7 @@ def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatAr
     The mass of a metre is that of the stretched belt. A slack belt does not swing: zero.
     """
     if not tensions.min() > 0.0:
-        return np.zeros(path.count)
+        return np.zeros(path.spans)
     belt, mass = drive.belt, drive.belt.mass_per_length * drive.belt_length / path.length
     across = np.abs(path.span_directions @ np.array([-drive.gravity[1], drive.gravity[0]]))
     found = [

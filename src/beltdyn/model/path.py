@@ -1,4 +1,4 @@
-"""The path that the belt's centerline takes around its pulleys, before it sinks into them."""
+"""The path that the belt's centerline takes around its pulleys, without penetration."""
 
 from dataclasses import dataclass
 from functools import cached_property

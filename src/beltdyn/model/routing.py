@@ -86,7 +86,9 @@ def _check_names(parts: Sequence[Pulley | PathEnd]) -> None:
     names = [part.name for part in parts]
     for name in names:
         if names.count(name) > 1:
-            raise ValueError(f'pulley.name = "{name}" is used {names.count(name)} times: names must differ. Rename one')
+            raise ValueError(
+                f'name = "{name}" is used {names.count(name)} times: names of pulleys and ends must differ. Rename one'
+            )
 
 
 def _check_distances(pulleys: Sequence[Pulley]) -> None:

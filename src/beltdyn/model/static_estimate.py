@@ -1,4 +1,4 @@
-"""Estimate of the belt at rest on pulleys that stand still, without friction: its stretch, and how deep it sinks in."""
+"""Estimate of the belt at rest on pulleys that stand still, without friction: its stretch and its penetration."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class StaticEstimate:
     Attributes
     ----------
     path : Path
-        Its path before it sinks in.
+        Its path, without penetration.
     length : float
         Unstretched length, m.
     stiffness : float
@@ -28,7 +28,7 @@ class StaticEstimate:
     tension : float
         N; zero for a slack belt.
     penetrations : ndarray, shape (n,), m
-        How deep it sinks into each pulley.
+        Penetration into each pulley.
     """
 
     path: Path

@@ -103,7 +103,7 @@ def balance_tensioners(
 
     Of several balances each takes the stable one that is nearest to its nominal place, and an unstable one only where
     none is stable. Weight and dry friction of a tensioner are left out, and so is what a change of the wrap angles does
-    to the sinking in, which is of the order of penetration over radius.
+    to the penetration, which is of the order of penetration over radius.
 
     Parameters
     ----------

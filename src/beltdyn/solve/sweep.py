@@ -103,7 +103,9 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     if not duration > 0.0:
         raise ModelError(f"duration = {duration:g} s must be above zero. Raise it.")
     if start * end < 0.0 or start == end:
-        raise ModelError(f"from {start:g} to {end:g} rad/s is no run-up: the speeds must differ and have one sign.")
+        raise ModelError(
+            f"from {start:g} to {end:g} rad/s is no run-up: the speeds must differ and have one sign. Change one."
+        )
     lead = _LEAD * duration
     speed = {"kind": "table", "times": [0.0, lead, lead + duration], "values": [0.0, start, end]}
     pulleys = list(drive.pulleys)

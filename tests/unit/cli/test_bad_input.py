@@ -343,7 +343,7 @@ CASES = (
         "center = [-0.1, 0.0]\nradius = 0.08125",
         ('pulleys "driver" and "driven" overlap', "0.091441 m apart", "Move them apart"),
     ),
-    Case("same name", 'name = "driven"', 'name = "driver"', ('pulley.name = "driver" is used 2 times', "Rename one")),
+    Case("same name", 'name = "driven"', 'name = "driver"', ('name = "driver" is used 2 times', "Rename one")),
     Case("empty name", 'name = "driven"', 'name = ""', ("pulley[2].name", "letters")),
     Case("name is a number", 'name = "driven"', "name = 2", ("pulley[2].name = 2", "text in quotation marks")),
     Case(

@@ -95,7 +95,7 @@ def test_files_of_killed_runs_are_named(
     simulated(*[done(summary)] * 3)
     output = run_main(words(files))[1]
     assert output.count("A killed run has left") == 1
-    assert f"A killed run has left {left}, which nobody needs: remove it." in output
+    assert f"A killed run has left {left}, which is of no use: remove it." in output
 
 
 def test_output_names_a_folder(

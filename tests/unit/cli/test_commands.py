@@ -70,12 +70,12 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     for part in ("1.2763 m", "0.2807%", "28.19 N", f"{tension:.4g} N: ", "5.8%", "180.0°", "0.38288 m"):
         assert part in output
     assert "warning: the mesh does not resolve peak pressure (error above 100%)" in output
-    assert "warning: sinking into the pulleys takes 5.8%" in output
+    assert "warning: penetration into the pulleys takes 5.8%" in output
     assert f"beltdyn check {drive_file} --figure layout.png" in output
 
 
 def test_check_of_a_belt_of_given_tension(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
-    """The tension that was asked for is there; what sinking in costs is length."""
+    """The tension that was asked for is there; what penetration costs is length."""
     drive_file.write_text(drive_text.replace("length = 1.2727 ", 'installed_tension = "250 N" '), encoding="utf-8")
     code, output, _ = run_main(["check", str(drive_file)])
     assert code == 0
@@ -132,7 +132,7 @@ def test_warnings_of_the_drive_that_new_writes(run_main: RunMain, tmp_path: Path
     assert str(file) in output
     drive = load(file)
     sinking, mesh = advise(drive, install(drive))
-    assert "sinking into the pulleys takes 5.8%" in sinking
+    assert "penetration into the pulleys takes 5.8%" in sinking
     assert "the mesh does not resolve peak pressure" in mesh
     assert "tension (" not in mesh
 

@@ -103,7 +103,7 @@ def test_what_cannot_come_to_rest(
 
 
 def test_penetration_that_takes_all_tension(make_drive: MakeDrive) -> None:
-    with pytest.raises(ModelError, match="loses all tension by sinking"):
+    with pytest.raises(ModelError, match="loses all tension by penetration"):
         make_drive("open", length=1.81, contact={"allowed_penetration": 5e-3})
 
 

@@ -91,7 +91,7 @@ def test_advice_on_the_tension_lost(drive: Drive) -> None:
     """With the stiffness that is advised, less than 2 % is lost, by the rounding up."""
     warning = advise(drive, install(drive))[0]
     assert warning == (
-        "sinking into the pulleys takes 5.8% of the belt's tension, more than 2%: raise contact.stiffness to "
+        "penetration into the pulleys takes 5.8% of the belt's tension, more than 2%: raise contact.stiffness to "
         "3.1e+07 N/m^2 or more (contact.allowed_penetration = 1.1e-05 m)."
     )
     stiff = drive.replace(contact=drive.contact.replace(stiffness=3.1e7))
@@ -101,14 +101,14 @@ def test_advice_on_the_tension_lost(drive: Drive) -> None:
 
 
 def test_advice_on_a_belt_of_given_tension_is_about_its_length(drive: Drive) -> None:
-    """It has the tension that was asked for; what sinking in costs is length, which other contact gives back."""
+    """It has the tension that was asked for; what penetration costs is length, which other contact gives back."""
     soft = drive.belt.replace(installed_tension=26.56)
     given = drive.replace(belt=soft)
     hard = drive.replace(belt=soft, contact=drive.contact.replace(stiffness=1e14))
     (warning,) = (text for text in advise(given, install(given)) if "hard pulleys" in text)
     assert warning == (
         f"the belt is {hard.belt_length - given.belt_length:.1e} m shorter than hard pulleys would need for 26.56 N, "
-        "since sinking in takes 5.8% of what it is laid with, more than 2%: where its length matters, raise "
+        "since penetration takes 5.8% of what it is laid with, more than 2%: where its length matters, raise "
         "contact.stiffness to 3.1e+07 N/m^2 or more (contact.allowed_penetration = 1.0e-05 m)."
     )
     for remedy in ({"stiffness": 3.1e7}, {"allowed_penetration": 1.0e-5}):

@@ -95,13 +95,13 @@ FREE = {"length": None, "installed_tension": 40.0}
 @pytest.mark.parametrize(
     ("ends", "groups", "message"),
     [
-        ([ANCHOR], {}, "the drive has 1 of .*has two.*Give both"),
+        ([ANCHOR], {}, "the number of .* is 1: .*has two.*Give both"),
         ([PULL, WEIGHT], {"gravity": (0.0, -10.0)}, '"pull" and "weight" are both pulled.*kind = "fixed"'),
         ([ANCHOR, WEIGHT], {}, 'nothing pulls end "weight".*Give gravity'),
         ([ANCHOR, PULL], {"belt": FREE}, "installed_tension = 40 N does not go with .* pulled.*belt.length"),
         ([ANCHOR, PULL], {"belt": {"length": 0.6}}, 'length = 0.6 m is too short: end "pull".*more than 0.71'),
         ([ANCHOR | {"point": [0.05, 0.0]}, PULL], {}, 'end "anchor" lies within pulley "drum": it is 0.05 m'),
-        ([ANCHOR | {"name": "drum"}, PULL], {}, 'name = "drum" is used 2 times'),
+        ([ANCHOR | {"name": "drum"}, PULL], {}, '^name = "drum" is used 2 times'),
         ([ANCHOR, PULL], {"pulley": []}, "no pulley: a belt with ends needs one"),
         ([ANCHOR, PULL | {"direction": [1.0, 0.0]}], {}, 'cross itself: the span from "drum" to "pull" meets'),
         ([ANCHOR, PULL | {"direction": [0.0, 1.0]}], {}, 'pulley "drum" is not touched'),
