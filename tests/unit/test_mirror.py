@@ -23,6 +23,7 @@ ELSEWHERE = {
     "elements/planar_curve.py": "unit/elements/test_kind.py",
     "elements/section.py": "unit/elements/test_kind.py",
     "system/body_forces.py": "unit/system/test_bodies.py",
+    "system/dense_block.py": "unit/system/test_ring_matrix.py",
     "system/element_state.py": "unit/system/test_discretization.py",
     "system/moving_center.py": "unit/system/test_bodies.py",
     "system/observations.py": "unit/system/test_observe.py",

@@ -46,11 +46,11 @@ def turning(speed: float, center: tuple[float, float] = (0.0, 0.0), name: str = 
 
 
 def load(system: System, state: State) -> tuple[FloatArray, BodyForces]:
-    """Residual of the nodes, shape (N, 6), and the loads on the pulleys."""
+    """Residual of the nodes, shape (N, 6), and the forces on the pulleys."""
     equations = new_equations(system)
     motion = Motion(0.0, state.position, state.velocity, np.zeros_like(state.position))
     assemble(system, motion, no_multipliers(system), NO_TANGENT, equations)
-    return equations.matrix.node_side, equations.loads
+    return equations.matrix.node_side, equations.forces
 
 
 def moving(state: State, nodes: FloatArray, *speeds: float) -> State:
@@ -70,7 +70,7 @@ class TestStraightBelt:
     """Integral of mu k_p (R - rho) rho."""
 
     @pytest.fixture
-    def loads(self, request: pytest.FixtureRequest, contact: Contact) -> BodyForces:
+    def forces(self, request: pytest.FixtureRequest, contact: Contact) -> BodyForces:
         belt = belt_of(0.3, 6)
         system = belt_system(belt, [turning(request.param)], contact)
         along = np.linspace(-0.16, 0.14, belt.elements + 1)
@@ -78,16 +78,16 @@ class TestStraightBelt:
         state = at_rest(system, np.stack([along, self.HEIGHT * ones, ones, zeros, zeros, ones], axis=1))
         return load(system, moving(state, np.zeros((along.size, len(system.scale))), request.param))[1]
 
-    @pytest.mark.parametrize("loads", [0.0], indirect=True)
-    def test_normal_force(self, loads: BodyForces) -> None:
+    @pytest.mark.parametrize("forces", [0.0], indirect=True)
+    def test_normal_force(self, forces: BodyForces) -> None:
         np.testing.assert_allclose(
-            loads.hub, [[0.0, -self.NORMAL]], atol=1e-9 * self.NORMAL
+            forces.hub, [[0.0, -self.NORMAL]], atol=1e-9 * self.NORMAL
         )  # 8 Gauss points an element
 
-    @pytest.mark.parametrize("loads", [-500.0, 500.0], ids=["clockwise", "counter-clockwise"], indirect=True)
-    def test_torque_of_sliding(self, loads: BodyForces) -> None:
-        np.testing.assert_allclose(abs(loads.moment), self.SLIDING, rtol=1e-9)
-        assert loads.power[0] > 0.0  # the belt brakes, the driver drives
+    @pytest.mark.parametrize("forces", [-500.0, 500.0], ids=["clockwise", "counter-clockwise"], indirect=True)
+    def test_torque_of_sliding(self, forces: BodyForces) -> None:
+        np.testing.assert_allclose(abs(forces.moment), self.SLIDING, rtol=1e-9)
+        assert forces.power[0] > 0.0  # the belt brakes, the driver drives
 
 
 class TestRoundBelt:
@@ -101,7 +101,7 @@ class TestRoundBelt:
     def system(self, contact: Contact) -> System:
         return belt_system(belt_of(self.LENGTH, self.ELEMENTS), [turning(0.0)], contact, "shared_node")
 
-    def loads(self, system: System, speed: float, sinking: float = 0.0, around: float = 0.0) -> BodyForces:
+    def forces(self, system: System, speed: float, sinking: float = 0.0, around: float = 0.0) -> BodyForces:
         """Loads for a pulley's speed and velocities of the belt towards and around the centre."""
         angle = 2 * pi * np.arange(self.ELEMENTS) / self.ELEMENTS
         out = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -116,35 +116,35 @@ class TestRoundBelt:
         return load(system, moving(state, velocity, speed))[1]
 
     def test_rest(self, system: System) -> None:
-        loads = self.loads(system, 0.0)
-        np.testing.assert_allclose(loads.hub, 0.0, atol=1e-9)  # rounding
-        assert loads.moment[0] == pytest.approx(0.0, abs=1e-12)
-        assert loads.stored[0] == pytest.approx(STIFFNESS * self.DEPTH**2 / 2 * self.LENGTH, rel=self.MESH)
+        forces = self.forces(system, 0.0)
+        np.testing.assert_allclose(forces.hub, 0.0, atol=1e-9)  # rounding
+        assert forces.moment[0] == pytest.approx(0.0, abs=1e-12)
+        assert forces.stored[0] == pytest.approx(STIFFNESS * self.DEPTH**2 / 2 * self.LENGTH, rel=self.MESH)
 
     @pytest.mark.parametrize("speed", [-1.0, 1.0])
     def test_creep(self, system: System, contact: Contact, speed: float) -> None:
         normal = STIFFNESS * self.DEPTH
         slope = contact.creep_rate_factor or FRICTION * normal / (contact.creep_velocity or 1.0)
         torque = -slope * speed * RADIUS * (RADIUS - self.DEPTH) * self.LENGTH
-        loads = self.loads(system, speed)
-        assert loads.moment[0] == pytest.approx(torque, rel=self.MESH)
-        assert loads.shaft[0] == pytest.approx(-torque, rel=self.MESH)
-        assert loads.power[0] == pytest.approx(loads.power[2], rel=1e-12)  # what the driver gives is lost in friction
+        forces = self.forces(system, speed)
+        assert forces.moment[0] == pytest.approx(torque, rel=self.MESH)
+        assert forces.shaft[0] == pytest.approx(-torque, rel=self.MESH)
+        assert forces.power[0] == pytest.approx(forces.power[2], rel=1e-12)  # what the driver gives is lost in friction
 
     @pytest.mark.parametrize("speed", [-500.0, 500.0])
     def test_sliding(self, system: System, speed: float) -> None:
         torque = FRICTION * STIFFNESS * self.DEPTH * (RADIUS - self.DEPTH) * self.LENGTH
-        assert self.loads(system, speed).moment[0] == pytest.approx(-np.sign(speed) * torque, rel=self.MESH)
+        assert self.forces(system, speed).moment[0] == pytest.approx(-np.sign(speed) * torque, rel=self.MESH)
 
     def test_a_belt_that_turns_with_the_rim_feels_no_friction(self, system: System) -> None:
-        loads = self.loads(system, 3.0, around=3.0 * RADIUS)
+        forces = self.forces(system, 3.0, around=3.0 * RADIUS)
         sliding = FRICTION * STIFFNESS * self.DEPTH * RADIUS * self.LENGTH
-        assert loads.moment[0] == pytest.approx(0.0, abs=1e-6 * sliding)
+        assert forces.moment[0] == pytest.approx(0.0, abs=1e-6 * sliding)
 
     def test_damping(self, system: System) -> None:
         sinking = 2.0
-        loads = self.loads(system, 0.0, sinking=sinking)
-        assert loads.power[3] == pytest.approx(
+        forces = self.forces(system, 0.0, sinking=sinking)
+        assert forces.power[3] == pytest.approx(
             DAMPING * sinking**2 * self.LENGTH, rel=1e-5
         )  # the velocity is interpolated
 
@@ -166,16 +166,17 @@ def test_belt_and_pulleys_act_on_each_other(
     nodes = state.nodes(system) + shake * random.normal(size=(12, len(system.scale)))
     motion = speed * random.normal(size=(12, len(system.scale)))
     state = moving(at_rest(system, nodes), motion, *(10.0 * speed * random.normal(size=2)))
-    with_contact, loads = load(system, state)
+    with_contact, on_pulleys = load(system, state)
     without, _ = load(alone, moving(at_rest(alone, nodes), motion))
     force = without - with_contact
     size = np.abs(force).sum() + 1.0
     rounding = 1e-10 * size
-    np.testing.assert_allclose(force[:, :2].sum(axis=0), -loads.hub.sum(axis=0), atol=rounding)
+    np.testing.assert_allclose(force[:, :2].sum(axis=0), -on_pulleys.hub.sum(axis=0), atol=rounding)
     pairs, forces = nodes.reshape(12, 3, 2), force.reshape(12, 3, 2)
     moment = np.sum(pairs[..., 0] * forces[..., 1] - pairs[..., 1] * forces[..., 0])
     arms = np.array(centers)
-    reaction = loads.moment.sum() + np.sum(arms[:, 0] * loads.hub[:, 1] - arms[:, 1] * loads.hub[:, 0])
+    reaction = on_pulleys.moment.sum()
+    reaction += np.sum(arms[:, 0] * on_pulleys.hub[:, 1] - arms[:, 1] * on_pulleys.hub[:, 0])
     assert moment == pytest.approx(-reaction, abs=rounding)
 
 

@@ -103,7 +103,7 @@ def advance(
             else:
                 state.counts.steps += 1
                 _accept(system, settings, method, state, equations, step)
-                filled = _keep(state, step, equations.loads, steps, filled)
+                filled = _keep(state, step, equations.forces, steps, filled)
             following = min(settings.max_step, factor * length)
         clock.next_step = following
         if following < _SMALLEST_STEP:
@@ -164,9 +164,9 @@ def _accept(
     system: System, settings: Settings, method: Method, state: IntegratorState, equations: Equations, step: Step
 ) -> None:
     """Move to the end of the step, and do the energy account."""
-    work, corner, power = equations.work, equations.matrix.corner, equations.loads.power
+    work, corner, power = equations.work, equations.matrix.corner, equations.forces.power
     end = trial_motion(state, step.end)
-    find_body_forces(system, end, work, corner, equations.loads)
+    find_body_forces(system, end, work, corner, equations.forces)
     taken = numerical_loss(system, motion_of(state), end, state.impulse, work)
     state.work[NUMERICAL_LOSS] += taken
     missed_work(system, motion_of(state), end, state.impulse, state.missed)
@@ -182,8 +182,8 @@ def _accept(
 
 
 @kernel(inline=True)
-def _keep(state: IntegratorState, step: Step, loads: BodyForces, steps: Steps, filled: int) -> int:
-    """Keep the state that was reached and its loads, where there is room; returns the number of steps filled."""
+def _keep(state: IntegratorState, step: Step, forces: BodyForces, steps: Steps, filled: int) -> int:
+    """Keep the state that was reached and its body forces, where there is room; returns the number of steps filled."""
     if filled == steps.time.size:
         return filled
     steps.time[filled], steps.step[filled] = step.end, step.length
@@ -191,5 +191,5 @@ def _keep(state: IntegratorState, step: Step, loads: BodyForces, steps: Steps, f
         steps.position[filled, i], steps.velocity[filled, i] = state.position[i], state.velocity[i]
     for k in range(state.work.size):
         steps.work[filled, k] = state.work[k]
-    keep_body_forces(loads, steps.loads, filled)
+    keep_body_forces(forces, steps.forces, filled)
     return filled + 1

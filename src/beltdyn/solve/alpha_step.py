@@ -37,7 +37,8 @@ _QUICK: Final = 0.3
 _SAME: Final = 1e-11
 """Instants nearer to each other than this are one, s."""
 _NEAR: Final = 3.0
-"""The loads are those before the last change, which must be below this many times what Newton's method may leave."""
+"""The body forces are those before the last change, which must be below this many times what Newton's method may
+leave."""
 
 
 class Step(NamedTuple):
@@ -101,7 +102,7 @@ def try_step(
     step
         From `new_step`.
     equations
-        Arrays to work in; afterwards its loads are those of the last iterate but one.
+        Arrays to work in; afterwards its body forces are those of the last iterate but one.
 
     Returns
     -------

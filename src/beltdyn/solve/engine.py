@@ -148,7 +148,7 @@ def accelerate(system: System, motion: Motion, multipliers: FloatArray, equation
     multipliers : ndarray, shape (n,)
         Overwritten.
     equations
-        Arrays to work in; afterwards its loads are those of the state.
+        Arrays to work in; afterwards its body forces are those of the state.
 
     Returns
     -------
@@ -197,4 +197,4 @@ def restart(system: System, state: IntegratorState, equations: Equations) -> Non
     state.auxiliary[:] = state.acceleration
     state.lagged[:] = np.nan
     state.work[DRIVER_WORK] += jump_work(system, speeds, state.velocity)
-    state.power[:] = equations.loads.power
+    state.power[:] = equations.forces.power

@@ -87,9 +87,9 @@ class GeneralizedAlpha:
 
 def _chunk(steps: Steps, filled: int, state: IntegratorState) -> Chunk:
     """The filled part of the room for steps."""
-    loads = BodyForces(*(array[:filled] for array in steps.loads))
-    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
-    return Chunk(**rows, loads=loads, reached=float(state.clock.time))
+    forces = BodyForces(*(array[:filled] for array in steps.forces))
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "forces"}
+    return Chunk(**rows, forces=forces, reached=float(state.clock.time))
 
 
 def _count(task: Task, state: IntegratorState) -> None:

@@ -105,7 +105,7 @@ class Steps(NamedTuple):
     """Alike."""
     work: FloatArray
     """In the order of `ENERGY_WORKS`, J, shape (k, 8)."""
-    loads: BodyForces
+    forces: BodyForces
     """A history of k states."""
 
 
@@ -144,7 +144,7 @@ def empty_steps(system: System, count: int) -> Steps:
         position=np.empty((count, size)),
         velocity=np.empty((count, size)),
         work=np.empty((count, len(ENERGY_WORKS))),
-        loads=body_forces_history(system, count),
+        forces=body_forces_history(system, count),
     )
 
 

@@ -74,7 +74,7 @@ class Observer:
         Seen
             Name -> array with one row for each state that is shown; and what spectra show, of every state.
         """
-        seen = observe_motion(self._system, states.position, states.velocity, states.loads, shown)
+        seen = observe_motion(self._system, states.position, states.velocity, states.forces, shown)
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
         aside = mid_span_displacements(self._drive, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)

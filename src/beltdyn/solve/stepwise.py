@@ -236,9 +236,9 @@ def first_order_chunk(equations: FirstOrder, time: FloatArray, y: FloatArray, st
     Returns
     -------
     Chunk
-        With prescribed bodies where they have to be, and the loads of each state.
+        With prescribed bodies where they have to be, and the body forces of each state.
     """
     position, velocity, work = (np.ascontiguousarray(part) for part in equations.unpack(y))
-    loads = equations.body_forces_at(time, position, velocity)
+    forces = equations.body_forces_at(time, position, velocity)
     work = np.pad(work, ((0, 0), (0, len(ENERGY_WORKS) - len(POWERS))))  # their own damping is not known
-    return Chunk(time, np.full(len(time), step), position, velocity, work, loads, reached)
+    return Chunk(time, np.full(len(time), step), position, velocity, work, forces, reached)

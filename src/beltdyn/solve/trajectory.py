@@ -28,7 +28,7 @@ class Chunk:
         Nodal coordinates and coordinates of bodies, and their rates.
     work : ndarray, shape (k, 8)
         In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
-    loads : BodyForces
+    forces : BodyForces
         Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them.
     reached : float
         Time that the solver has reached, s.
@@ -39,27 +39,27 @@ class Chunk:
     position: FloatArray
     velocity: FloatArray
     work: FloatArray
-    loads: BodyForces
+    forces: BodyForces
     reached: float
 
     @classmethod
     def start(cls, system: System, state: State) -> Self:
         """The state at time zero, before the first step."""
         zero, position, velocity = np.zeros(1), state.position[None].copy(), state.velocity[None].copy()
-        loads = body_forces_at(system, zero, position, velocity)
-        return cls(zero, zero, position, velocity, np.zeros((1, len(ENERGY_WORKS))), loads, 0.0)
+        forces = body_forces_at(system, zero, position, velocity)
+        return cls(zero, zero, position, velocity, np.zeros((1, len(ENERGY_WORKS))), forces, 0.0)
 
     @classmethod
     def join(cls, chunks: Sequence[Self]) -> Self:
         """One chunk of several successive ones."""
         arrays = {name: np.concatenate([getattr(chunk, name) for chunk in chunks]) for name in _ROWS}
-        loads = BodyForces(*(np.concatenate(rows) for rows in zip(*(chunk.loads for chunk in chunks), strict=True)))
-        return cls(**arrays, loads=loads, reached=chunks[-1].reached)
+        forces = BodyForces(*(np.concatenate(rows) for rows in zip(*(chunk.forces for chunk in chunks), strict=True)))
+        return cls(**arrays, forces=forces, reached=chunks[-1].reached)
 
     def only(self, states: BoolArray | slice) -> Self:
         """Some of the states."""
         arrays = {name: getattr(self, name)[states] for name in _ROWS}
-        return replace(self, **arrays, loads=BodyForces(*(rows[states] for rows in self.loads)))
+        return replace(self, **arrays, forces=BodyForces(*(rows[states] for rows in self.forces)))
 
     def around(self, instants: Instants, before: float) -> BoolArray:
         """Which states are the ends of steps that hold output instants.

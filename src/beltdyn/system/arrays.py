@@ -195,7 +195,7 @@ class BodyForces(NamedTuple):
 
 
 class Equations(NamedTuple):
-    """Linearised equations of motion with their solution, and the loads of the state that they belong to."""
+    """Linearised equations of motion with their solution, and the body forces of the state that they belong to."""
 
     matrix: RingMatrix
     """Tangent, and the residual as right-hand side."""
@@ -203,7 +203,7 @@ class Equations(NamedTuple):
     """Solution for the nodes, shape (N, n)."""
     border_part: FloatArray
     """Solution for the free bodies and the multipliers, shape (m,)."""
-    loads: BodyForces
+    forces: BodyForces
     work: np.record
     """Scratch arrays, from `element_workspace`."""
 

@@ -45,24 +45,24 @@ def assemble(
     factors
         What the tangent is the sum of; where all of them are zero it is kept as it is.
     equations
-        Its residual and loads are overwritten, and the tangent if it is wanted; the solution is left as it is.
+        Its residual and body forces are overwritten, and the tangent if it is wanted; the solution is left as it is.
     """
-    work, matrix, loads = equations.work, equations.matrix, equations.loads
+    work, matrix, forces = equations.work, equations.matrix, equations.forces
     wanted = factors.by_acceleration != 0.0 or differentiates_forces(factors)
     clear(matrix, wanted)
-    clear_body_forces(loads)
+    clear_body_forces(forces)
     for element in range(system.length.size):
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])
         gather(system, element, motion.acceleration, work.coordinates[2])
         _elastic_and_inertia(system, element, factors, wanted, work)
-        add_material_damping(system, element, factors, work, loads)
+        add_material_damping(system, element, factors, work, forces)
         for curve in range(system.control.shape[1]):
             piece = centreline(system, element, curve, work)
             _contact(system, motion, factors, element, piece, equations)
         _scatter(system, element, wanted, work, matrix)
-    add_machines(system, motion, factors, matrix.corner, loads)
-    _bodies(system, motion.acceleration, factors.by_acceleration, matrix, loads)
+    add_machines(system, motion, factors, matrix.corner, forces)
+    _bodies(system, motion.acceleration, factors.by_acceleration, matrix, forces)
     if system.joint:
         _joint(system, motion.acceleration, multipliers, factors.by_acceleration, wanted, matrix)
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
@@ -115,7 +115,7 @@ def _contact(
             if last == 0:
                 keep_drift(system, center, work.contact, work.drift)
         _take_contact(system, wanted, work)
-        add_contact(equations.loads, p, totals)
+        add_contact(equations.forces, p, totals)
         if center.rim >= 0 and wanted:
             matrix.corner[center.rim, center.rim] -= work.contact.moment_by_turn
             _couple(system, element, center.rim, work.contact, matrix)
@@ -173,7 +173,7 @@ def _scatter(system: System, element: int, wanted: bool, work: np.record, matrix
 
 @kernel(inline=True)
 def _bodies(
-    system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, loads: BodyForces
+    system: System, acceleration: FloatArray, by_acceleration: float, matrix: RingMatrix, forces: BodyForces
 ) -> None:
     """Motion of the free bodies (Eq. 23)."""
     bodies, first = system.bodies, system.first_body
@@ -181,7 +181,7 @@ def _bodies(
         unknown = bodies[body].unknown
         if unknown >= 0:
             matrix.corner[unknown, unknown] += by_acceleration * bodies[body].inertia
-            matrix.border_side[unknown] = bodies[body].inertia * acceleration[first + body] - loads.force[body]
+            matrix.border_side[unknown] = bodies[body].inertia * acceleration[first + body] - forces.force[body]
 
 
 @kernel(inline=True)

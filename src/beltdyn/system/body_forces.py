@@ -47,41 +47,41 @@ def body_forces_history(system: System, count: int) -> BodyForces:
 
 
 @kernel
-def keep_body_forces(loads: BodyForces, history: BodyForces, k: int) -> None:
+def keep_body_forces(forces: BodyForces, history: BodyForces, k: int) -> None:
     """Write the body forces of a state into row k of a history."""
-    for p in range(loads.moment.size):
-        history.moment[k, p], history.shaft[k, p] = loads.moment[p], loads.shaft[p]
-        history.hub[k, p, 0], history.hub[k, p, 1] = loads.hub[p, 0], loads.hub[p, 1]
-        history.friction[k, p], history.damping[k, p] = loads.friction[p], loads.damping[p]
-    for body in range(loads.force.size):
-        history.force[k, body] = loads.force[body]
-    for number in range(loads.power.size):
-        history.power[k, number] = loads.power[number]
-    for number in range(loads.stored.size):
-        history.stored[k, number] = loads.stored[number]
+    for p in range(forces.moment.size):
+        history.moment[k, p], history.shaft[k, p] = forces.moment[p], forces.shaft[p]
+        history.hub[k, p, 0], history.hub[k, p, 1] = forces.hub[p, 0], forces.hub[p, 1]
+        history.friction[k, p], history.damping[k, p] = forces.friction[p], forces.damping[p]
+    for body in range(forces.force.size):
+        history.force[k, body] = forces.force[body]
+    for number in range(forces.power.size):
+        history.power[k, number] = forces.power[number]
+    for number in range(forces.stored.size):
+        history.stored[k, number] = forces.stored[number]
 
 
 @kernel
-def clear_body_forces(loads: BodyForces) -> None:
+def clear_body_forces(forces: BodyForces) -> None:
     """Set everything to zero but the torques on the shafts, which are overwritten later."""
-    loads.moment[:] = 0.0
-    loads.hub[:] = 0.0
-    loads.friction[:] = 0.0
-    loads.damping[:] = 0.0
-    loads.force[:] = 0.0
-    loads.power[:] = 0.0
-    loads.stored[:] = 0.0
+    forces.moment[:] = 0.0
+    forces.hub[:] = 0.0
+    forces.friction[:] = 0.0
+    forces.damping[:] = 0.0
+    forces.force[:] = 0.0
+    forces.power[:] = 0.0
+    forces.stored[:] = 0.0
 
 
 @kernel
-def add_contact(loads: BodyForces, pulley: int, totals: ContactTotals) -> None:
+def add_contact(forces: BodyForces, pulley: int, totals: ContactTotals) -> None:
     """Add the contact of a curve of the belt with a pulley."""
-    loads.moment[pulley] += totals.moment
-    loads.hub[pulley, 0] += totals.hub_x
-    loads.hub[pulley, 1] += totals.hub_y
-    loads.friction[pulley] += totals.friction_power
-    loads.damping[pulley] += totals.damping_power
-    loads.stored[PENALTY_ENERGY] += totals.penalty_energy
+    forces.moment[pulley] += totals.moment
+    forces.hub[pulley, 0] += totals.hub_x
+    forces.hub[pulley, 1] += totals.hub_y
+    forces.friction[pulley] += totals.friction_power
+    forces.damping[pulley] += totals.damping_power
+    forces.stored[PENALTY_ENERGY] += totals.penalty_energy
 
 
 @kernel(inline=True)
@@ -92,7 +92,7 @@ def differentiates_forces(factors: TangentFactors) -> bool:
 
 @kernel
 def add_machines(
-    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces
+    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, forces: BodyForces
 ) -> None:
     """Forces on the bodies and their powers, when all contact is summed, and what they add to the tangent.
 
@@ -106,22 +106,22 @@ def add_machines(
         Of the derivatives in the tangent.
     corner : ndarray, shape (m, m)
         Tangent of the bodies' equations, changed in place.
-    loads
+    forces
         Contact is there already.  The torque on a free shaft is that applied to it; that on a prescribed one is the
         reaction of its driver (Eq. 23).
     """
     for p in range(system.pulleys.size):
-        loads.force[p] += loads.moment[p]
-        loads.power[FRICTION_LOSS] += loads.friction[p]
-        loads.power[DAMPING_LOSS] += loads.damping[p]
-    _add_tensioners(system, motion, factors, corner, loads)
-    _add_links(system, motion, factors, corner, loads)
-    _take_shafts(system, motion, factors, corner, loads)
+        forces.force[p] += forces.moment[p]
+        forces.power[FRICTION_LOSS] += forces.friction[p]
+        forces.power[DAMPING_LOSS] += forces.damping[p]
+    _add_tensioners(system, motion, factors, corner, forces)
+    _add_links(system, motion, factors, corner, forces)
+    _take_shafts(system, motion, factors, corner, forces)
 
 
 @kernel(inline=True)
 def _add_tensioners(
-    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces
+    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, forces: BodyForces
 ) -> None:
     """Springs, dampers, stops and weight of the tensioners, and the force of the belt through the pulley they carry."""
     tensioners, first = system.tensioners, system.first_body
@@ -129,11 +129,11 @@ def _add_tensioners(
         at = tensioner_coordinate(system, k)
         center = tensioner_center(tensioners[k], motion.position[at])
         own = tensioner_force(tensioners[k], motion.position[at], motion.velocity[at])
-        hub, weight = loads.hub[tensioners[k].pulley], tensioners[k].weight
+        hub, weight = forces.hub[tensioners[k].pulley], tensioners[k].weight
         x, y = hub[0] + weight[0], hub[1] + weight[1]
-        loads.force[at - first] += own.force + tensioners[k].push + x * center.dx + y * center.dy
-        loads.power[TENSIONER_LOSS] += own.loss
-        loads.stored[SPRING_ENERGY] += own.energy
+        forces.force[at - first] += own.force + tensioners[k].push + x * center.dx + y * center.dy
+        forces.power[TENSIONER_LOSS] += own.loss
+        forces.stored[SPRING_ENERGY] += own.energy
         unknown = system.bodies[at - first].unknown
         if unknown >= 0 and differentiates_forces(factors):
             by_place = own.by_position + x * center.ddx + y * center.ddy
@@ -141,7 +141,7 @@ def _add_tensioners(
 
 
 @kernel(inline=True)
-def _add_links(system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces) -> None:
+def _add_links(system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, forces: BodyForces) -> None:
     """Torques between the bodies of hub chains."""
     links, first = system.links, system.first_body
     for number in range(links.size):
@@ -149,10 +149,10 @@ def _add_links(system: System, motion: Motion, factors: TangentFactors, corner: 
         twist = motion.position[first + front] - motion.position[first + back]
         rate = motion.velocity[first + front] - motion.velocity[first + back]
         link = link_torque(system.profiles, links[number], motion.time, twist, rate)
-        loads.force[front] -= link.torque
-        loads.force[back] += link.torque
-        loads.power[COUPLING_LOSS] += link.loss
-        loads.stored[SPRING_ENERGY] += link.energy
+        forces.force[front] -= link.torque
+        forces.force[back] += link.torque
+        forces.power[COUPLING_LOSS] += link.loss
+        forces.stored[SPRING_ENERGY] += link.energy
         if differentiates_forces(factors):
             slope = factors.by_position * link.by_twist + factors.by_velocity * link.by_rate
             i, j = system.bodies[front].unknown, system.bodies[back].unknown
@@ -167,7 +167,7 @@ def _add_links(system: System, motion: Motion, factors: TangentFactors, corner: 
 
 @kernel(inline=True)
 def _take_shafts(
-    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, loads: BodyForces
+    system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, forces: BodyForces
 ) -> None:
     """Torques on the shafts from outside, and their powers."""
     for p in range(system.pulleys.size):
@@ -175,12 +175,12 @@ def _take_shafts(
         at, unknown = system.first_body + body, system.bodies[body].unknown
         angle, speed = motion.position[at], motion.velocity[at]
         if unknown < 0:
-            loads.shaft[p] = system.bodies[body].inertia * motion.acceleration[at] - loads.force[body]
-            loads.power[DRIVER_WORK] += loads.shaft[p] * speed
+            forces.shaft[p] = system.bodies[body].inertia * motion.acceleration[at] - forces.force[body]
+            forces.power[DRIVER_WORK] += forces.shaft[p] * speed
             continue
         load = shaft_torque(system.profiles, system.shaft_loads, p, motion.time, angle, speed)
-        loads.shaft[p] = load.torque
-        loads.force[body] += load.torque
-        loads.power[TORQUE_WORK] += load.torque * speed
+        forces.shaft[p] = load.torque
+        forces.force[body] += load.torque
+        forces.power[TORQUE_WORK] += load.torque * speed
         if differentiates_forces(factors):
             corner[unknown, unknown] -= factors.by_position * load.by_angle + factors.by_velocity * load.by_speed

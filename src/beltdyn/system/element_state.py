@@ -52,9 +52,9 @@ def gather(system: System, element: int, vector: FloatArray, coordinates: FloatA
 
 @kernel(inline=True)
 def add_material_damping(
-    system: System, element: int, factors: TangentFactors, work: np.record, loads: BodyForces
+    system: System, element: int, factors: TangentFactors, work: np.record, forces: BodyForces
 ) -> None:
-    """Add the damping of the belt's material to the residual and tangent of an element, and its loss to the loads.
+    """Add the damping of the belt's material to the residual and tangent of an element, and its loss to the powers.
 
     Parameters
     ----------
@@ -66,11 +66,11 @@ def add_material_damping(
         Of the derivatives in the tangent.
     work
         From `element_workspace`, with the coordinates of the element and their rates.
-    loads
+    forces
         Changed in place.
     """
     if is_damped(system.element.section):
-        loads.power[MATERIAL_LOSS] += damping_force(
+        forces.power[MATERIAL_LOSS] += damping_force(
             system.element,
             work.coordinates[0],
             work.coordinates[1],

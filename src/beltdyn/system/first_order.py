@@ -98,7 +98,7 @@ class FirstOrder:
         acceleration = motion.acceleration
         acceleration[:nodes] = self._flexibility @ -matrix.node_side.ravel()
         acceleration[nodes + free] = -matrix.border_side[: free.size] / self._system.bodies.inertia[free]
-        return np.concatenate([motion.velocity, acceleration, self._equations.loads.power])
+        return np.concatenate([motion.velocity, acceleration, self._equations.forces.power])
 
     def jacobian(self, time: float, y: FloatArray) -> FloatArray:
         """Derivative of `rates` with respect to y; nothing depends on the works, and their rows are left at zero."""

@@ -107,14 +107,14 @@ def span_count(system: System) -> int:
     return system.pulleys.size + (not system.closed and not system.joint)
 
 
-def new_observations(system: System, loads: BodyForces, shown: int) -> Observations:
-    """Make observations of states whose loads are known.
+def new_observations(system: System, forces: BodyForces, shown: int) -> Observations:
+    """Make observations of states whose body forces are known.
 
     Parameters
     ----------
     system
         The system.
-    loads
+    forces
         One row for each state.
     shown
         Number of states that are shown.
@@ -127,19 +127,19 @@ def new_observations(system: System, loads: BodyForces, shown: int) -> Observati
         "point": curves * system.contact.points.size,
         "axis": 2,
     }
-    states = len(loads.moment)
+    states = len(forces.moment)
     empty = {
         name: np.zeros((shown if per.shown else states, *(sizes[dim] for dim in per.dims)), per.dtype)
         for name, per in OBSERVED.items()
     }
     return Observations(**empty)._replace(
-        pulley_torque=loads.moment,
-        shaft_torque=loads.shaft,
-        hub_force=loads.hub,
-        friction_power=loads.friction,
-        contact_damping_power=loads.damping,
-        penalty_energy=loads.stored[:, PENALTY_ENERGY].copy(),
-        spring_energy=loads.stored[:, SPRING_ENERGY].copy(),
+        pulley_torque=forces.moment,
+        shaft_torque=forces.shaft,
+        hub_force=forces.hub,
+        friction_power=forces.friction,
+        contact_damping_power=forces.damping,
+        penalty_energy=forces.stored[:, PENALTY_ENERGY].copy(),
+        spring_energy=forces.stored[:, SPRING_ENERGY].copy(),
     )
 
 

@@ -1,4 +1,4 @@
-"""What a state means: energies, loads, tensions, contact forces, wrap angles (Eqs. 8, 13, 17-23)."""
+"""What a state means: energies, body forces, tensions, contact forces, wrap angles (Eqs. 8, 13, 17-23)."""
 
 from math import atan2, sqrt
 
@@ -38,14 +38,14 @@ def observe(system: System, time: FloatArray, position: FloatArray, velocity: Fl
         Derived quantities at every instant, all of them shown.
     """
     time, position, velocity = (np.ascontiguousarray(array) for array in (time, position, velocity))
-    loads = body_forces_at(system, time, position, velocity)
-    return observe_motion(system, position, velocity, loads, np.ones(time.size, dtype=np.bool_))
+    forces = body_forces_at(system, time, position, velocity)
+    return observe_motion(system, position, velocity, forces, np.ones(time.size, dtype=np.bool_))
 
 
 def observe_motion(
-    system: System, position: FloatArray, velocity: FloatArray, loads: BodyForces, shown: BoolArray
+    system: System, position: FloatArray, velocity: FloatArray, forces: BodyForces, shown: BoolArray
 ) -> Observations:
-    """Observe a number of states whose loads are known.
+    """Observe a number of states whose body forces are known.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def observe_motion(
         Belt, pulleys, supports.
     position, velocity : ndarray, shape (k, n N + D)
         The states, with the motion of prescribed bodies in them; contiguous.
-    loads
+    forces
         One row for each state.
     shown : ndarray of bool, shape (k,)
         For which of them energies and tensions of the belt are wanted too.
@@ -63,7 +63,7 @@ def observe_motion(
     Observations
         Derived quantities.
     """
-    result = new_observations(system, loads, int(np.count_nonzero(shown)))
+    result = new_observations(system, forces, int(np.count_nonzero(shown)))
     fill_observations(system, position, velocity, shown, new_samples(system), result)
     return result
 
@@ -72,7 +72,7 @@ def observe_motion(
 def fill_observations(
     system: System, position: FloatArray, velocity: FloatArray, shown: BoolArray, samples: Samples, result: Observations
 ) -> None:
-    """Fill the observations but for the loads; see `observe_motion`."""
+    """Fill the observations but for the body forces; see `observe_motion`."""
     show, work, curves = -1, samples.work, system.control.shape[1]
     for k in range(position.shape[0]):
         show += shown[k]

@@ -11,6 +11,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import RingFactors, RingMatrix
+from beltdyn.system.dense_block import eliminate, solve_factorised, subtract_image, subtract_product
 
 _LANES = 16
 """Rows are padded to a multiple of this many numbers, so that the inner loops run in whole vector registers."""
@@ -128,15 +129,15 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
     for k in range(inner):
         _load_node(matrix, k, closed, inner, rows)
         if k > 0:
-            _subtract_product(dof, matrix.lower[k - 1], panels[k - 1], rows)
+            subtract_product(dof, matrix.lower[k - 1], panels[k - 1], rows)
         _split(dof, rows, matrix.upper[k], k < inner - 1, squares[k], panels[k])
-        if not _eliminate(squares[k], pivots[k], panels[k], dof):
+        if not eliminate(squares[k], pivots[k], panels[k], dof):
             return False
     for k in range(inner - 2, -1, -1):
         for i in range(dof):
             for j in range(dof):
                 links[k, i, j] = panels[k, i, j]
-        _subtract_product(dof, links[k], panels[k + 1], panels[k])
+        subtract_product(dof, links[k], panels[k + 1], panels[k])
         panels[k, :, :dof] = 0.0  # so that the next product, over whole rows, leaves these columns alone
     _load_border(matrix, closed, dense)
     if closed:
@@ -146,7 +147,7 @@ def factorise_ring(matrix: RingMatrix, closed: bool) -> bool:
     for k in range(inner):
         for i in range(extra):
             _reduce(dof, matrix.row[k, i], panels[k], cut + extra, dense[cut + i])
-    return _eliminate(dense, dense_pivots, no_columns, cut + extra)
+    return eliminate(dense, dense_pivots, no_columns, cut + extra)
 
 
 @kernel
@@ -171,21 +172,21 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
         for i in range(dof):
             node_part[k, i] = matrix.node_side[k, i]
         if k > 0:
-            _subtract_image(dof, matrix.lower[k - 1], node_part[k - 1], node_part[k])
-        _solve_factorised(squares[k], pivots[k], dof, node_part[k])
+            subtract_image(dof, matrix.lower[k - 1], node_part[k - 1], node_part[k])
+        solve_factorised(squares[k], pivots[k], dof, node_part[k])
     for k in range(inner - 2, -1, -1):
-        _subtract_image(dof, links[k], node_part[k + 1], node_part[k])
+        subtract_image(dof, links[k], node_part[k + 1], node_part[k])
     if closed:
         for i in range(dof):
             answer[i] = matrix.node_side[inner, i]
-        _subtract_image(dof, matrix.upper[inner], node_part[0], answer)
-        _subtract_image(dof, matrix.lower[inner - 1], node_part[inner - 1], answer)
+        subtract_image(dof, matrix.upper[inner], node_part[0], answer)
+        subtract_image(dof, matrix.lower[inner - 1], node_part[inner - 1], answer)
     for i in range(extra):
         answer[cut + i] = matrix.border_side[i]
         for k in range(inner):
             for j in range(dof):
                 answer[cut + i] -= matrix.row[k, i, j] * node_part[k, j]
-    _solve_factorised(dense, dense_pivots, cut + extra, answer)
+    solve_factorised(dense, dense_pivots, cut + extra, answer)
     for i in range(extra):
         border_part[i] = answer[cut + i]
     for i in range(cut):
@@ -244,90 +245,6 @@ def _split(dof: int, rows: FloatArray, upper: FloatArray, coupled: bool, square:
         for j in range(dof):
             square[i, j] = rows[i, j]
             panel[i, j] = upper[i, j] if coupled else 0.0
-
-
-@kernel(inline=True)
-def _eliminate(square: FloatArray, pivots: IntArray, panel: FloatArray, size: int) -> bool:
-    """Overwrite panel by square^-1 panel, with partial pivoting, and square by its factors; False if a pivot vanishes.
-
-    The factors are P^-1 L U with ones on the diagonal of U, and the inverse of L's diagonal in its place.
-    """
-    width = panel.shape[1]
-    for k in range(size):
-        pivot = k
-        for i in range(k + 1, size):
-            if abs(square[i, k]) > abs(square[pivot, k]):
-                pivot = i
-        pivots[k] = pivot
-        if not abs(square[pivot, k]) > 0.0:
-            return False
-        if pivot != k:
-            for j in range(size):
-                square[k, j], square[pivot, j] = square[pivot, j], square[k, j]
-            for j in range(width):
-                panel[k, j], panel[pivot, j] = panel[pivot, j], panel[k, j]
-        inverse = 1.0 / square[k, k]
-        square[k, k] = inverse
-        for j in range(width):
-            panel[k, j] *= inverse
-        for j in range(k + 1, size):
-            square[k, j] *= inverse
-        for i in range(k + 1, size):
-            factor = square[i, k]
-            for j in range(k + 1, size):
-                square[i, j] -= factor * square[k, j]
-            for j in range(width):
-                panel[i, j] -= factor * panel[k, j]
-    for k in range(size - 1, 0, -1):
-        for i in range(k):
-            factor = square[i, k]
-            for j in range(width):
-                panel[i, j] -= factor * panel[k, j]
-    return True
-
-
-@kernel(inline=True)
-def _solve_factorised(square: FloatArray, pivots: IntArray, size: int, vector: FloatArray) -> None:
-    """Overwrite a vector by square^-1 vector, from the factors that `_eliminate` leaves."""
-    for k in range(size):
-        pivot = pivots[k]
-        vector[k], vector[pivot] = vector[pivot], vector[k]
-    for k in range(size):
-        value = vector[k] * square[k, k]
-        vector[k] = value
-        for i in range(k + 1, size):
-            vector[i] -= square[i, k] * value
-    for k in range(size - 1, 0, -1):
-        value = vector[k]
-        for i in range(k):
-            vector[i] -= square[i, k] * value
-
-
-@kernel(inline=True)
-def _subtract_product(dof: int, left: FloatArray, right: FloatArray, target: FloatArray) -> None:
-    """Target -= left right, for left of shape (dof, dof); six columns of left at a time, the rest by pairs."""
-    sixes = dof - dof % 6
-    for i in range(dof):
-        for k in range(0, sixes, 6):
-            a, b, c = left[i, k], left[i, k + 1], left[i, k + 2]
-            d, e, f = left[i, k + 3], left[i, k + 4], left[i, k + 5]
-            for j in range(target.shape[1]):
-                first = a * right[k, j] + b * right[k + 1, j] + c * right[k + 2, j]
-                target[i, j] -= first + (d * right[k + 3, j] + e * right[k + 4, j] + f * right[k + 5, j])
-        for k in range(sixes, dof, 2):
-            a, b = left[i, k], left[i, k + 1]
-            for j in range(target.shape[1]):
-                target[i, j] -= a * right[k, j] + b * right[k + 1, j]
-
-
-@kernel(inline=True)
-def _subtract_image(dof: int, block: FloatArray, vector: FloatArray, target: FloatArray) -> None:
-    """Take block times vector, dof numbers, off the first dof of target."""
-    for i in range(dof):
-        total = 0.0
-        for k in range(dof):
-            total += block[i, k] * vector[k]
-        target[i] -= total
 
 
 @kernel(inline=True)

@@ -30,7 +30,7 @@ class BodyForcesScratch(NamedTuple):
     work: np.record
     corner: FloatArray
     """No tangent, shape (0, 0)."""
-    loads: BodyForces
+    forces: BodyForces
 
 
 def body_forces_at(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> BodyForces:
@@ -70,15 +70,15 @@ def fill_body_forces(
     for k in range(time.size):
         motion = Motion(time[k], position[k], velocity[k], scratch.acceleration)
         prescribe(system, motion)
-        find_body_forces(system, motion, scratch.work, scratch.corner, scratch.loads)
-        keep_body_forces(scratch.loads, history, k)
+        find_body_forces(system, motion, scratch.work, scratch.corner, scratch.forces)
+        keep_body_forces(scratch.forces, history, k)
 
 
 @kernel
-def find_body_forces(system: System, motion: Motion, work: np.record, corner: FloatArray, loads: BodyForces) -> None:
+def find_body_forces(system: System, motion: Motion, work: np.record, corner: FloatArray, forces: BodyForces) -> None:
     """Forces on bodies and powers at a state, without residual and tangent.
 
-    Newton's method stops when the state is known well enough.  The loads that it leaves are those before its last
+    Newton's method stops when the state is known well enough.  The body forces that it leaves are those before its last
     change, which in stiff contact are off by much more: they have to be found anew.
 
     Parameters
@@ -91,19 +91,19 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
         From `element_workspace`.
     corner : ndarray, shape (m, m)
         Left as it is.
-    loads
+    forces
         Overwritten.
     """
-    clear_body_forces(loads)
+    clear_body_forces(forces)
     for element in range(system.length.size):
         gather(system, element, motion.position, work.coordinates[0])
         gather(system, element, motion.velocity, work.coordinates[1])
-        add_material_damping(system, element, NO_TANGENT, work, loads)
+        add_material_damping(system, element, NO_TANGENT, work, forces)
         for curve in range(system.control.shape[1]):
             piece = centreline(system, element, curve, work)
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
                 if not out_of_reach(piece.control, pulley):
                     totals = contact_force(piece, pulley, system.law, system.contact, 0.0, 0.0, work.contact)
-                    add_contact(loads, p, totals)
-    add_machines(system, motion, NO_TANGENT, corner, loads)
+                    add_contact(forces, p, totals)
+    add_machines(system, motion, NO_TANGENT, corner, forces)

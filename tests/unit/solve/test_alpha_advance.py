@@ -34,8 +34,8 @@ def run(
     restart(system, integration, equations)
     status, filled = advance(system, settings, integration, equations, stop, budget, steps)
     assert status == REACHED
-    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "loads"}
-    return Chunk(**rows, loads=BodyForces(*(array[:filled] for array in steps.loads)), reached=stop)
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "forces"}
+    return Chunk(**rows, forces=BodyForces(*(array[:filled] for array in steps.forces)), reached=stop)
 
 
 def test_states_within_steps_are_exact_for_constant_acceleration(spinning: System) -> None:

@@ -74,8 +74,8 @@ def test_outputs_need_only_the_states_around_them(change: Change, interval: floa
     times = np.unique(np.append(random.uniform(0.0, 3.0, 120), instants[np.arange(0, instants.count, 2)]))
     count = len(times)
     position, velocity = random.uniform(size=(2, count, 3))
-    work, loads = np.zeros((count, len(ENERGY_WORKS))), body_forces_history(system, count)
-    chunk = Chunk(times, np.diff(times, prepend=0.0), position, velocity, work, loads, reached=3.0)
+    work, forces = np.zeros((count, len(ENERGY_WORKS))), body_forces_history(system, count)
+    chunk = Chunk(times, np.diff(times, prepend=0.0), position, velocity, work, forces, reached=3.0)
     around = chunk.around(instants, -interval)
     wanted = instants[np.arange(instants.count)]
     for found, expected in zip(chunk.only(around).at(wanted), chunk.at(wanted), strict=True):

@@ -95,7 +95,7 @@ def test_belt_and_hubs_push_each_other(system: System, moving: State, equations:
     """Elastic forces balance within the belt: what its residual lacks at rest is the force on the hubs."""
     steady = State(moving.position, moving.velocity, 0.0 * moving.acceleration)
     assemble(system, steady.at(0.3), 0.0 * MULTIPLIERS, NO_TANGENT, equations)
-    hubs = equations.loads.hub.sum(axis=0)
+    hubs = equations.forces.hub.sum(axis=0)
     assert np.linalg.norm(hubs) > 1.0
     forces = equations.matrix.node_side.reshape(system.points * system.nodes, -1)[:, :2]
     np.testing.assert_allclose(forces.sum(axis=0), hubs, rtol=1e-9, atol=1e-8)

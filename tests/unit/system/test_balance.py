@@ -117,15 +117,15 @@ def test_bodies_follow_their_torques(machines: tuple[System, State]) -> None:
     """Inertia times acceleration is the torque of belt, chain and shaft; a driver gives what is missing."""
     system, state = machines
     velocity, acceleration, powers = rates(system, state)
-    loads = body_forces_at(system, np.array([TIME]), state.position[None].copy(), velocity[None].copy())
+    forces = body_forces_at(system, np.array([TIME]), state.position[None].copy(), velocity[None].copy())
     free, bodies = system.bodies.unknown >= 0, slice(system.first_body, None)
     inertia = system.bodies.inertia
-    np.testing.assert_allclose(inertia[free] * acceleration[bodies][free], loads.force[0, free], rtol=1e-12)
-    np.testing.assert_allclose(loads.power[0], powers, rtol=1e-12)
+    np.testing.assert_allclose(inertia[free] * acceleration[bodies][free], forces.force[0, free], rtol=1e-12)
+    np.testing.assert_allclose(forces.power[0], powers, rtol=1e-12)
     driver = np.flatnonzero(~free)
-    torque = inertia[driver] * acceleration[bodies][driver] - loads.force[0, driver]
-    np.testing.assert_allclose(loads.shaft[0, :1], torque, rtol=1e-12)
-    np.testing.assert_allclose(loads.power[0, POWERS.index("driver_work")], torque @ velocity[bodies][driver])
+    torque = inertia[driver] * acceleration[bodies][driver] - forces.force[0, driver]
+    np.testing.assert_allclose(forces.shaft[0, :1], torque, rtol=1e-12)
+    np.testing.assert_allclose(forces.power[0, POWERS.index("driver_work")], torque @ velocity[bodies][driver])
 
 
 def test_loads_of_several_states(machines: tuple[System, State]) -> None:
@@ -156,8 +156,8 @@ def test_energies_of_the_states_that_are_shown(machines: tuple[System, State]) -
     position = np.stack([state.position + shift for shift in (0.0, 1e-4, -1e-4)])
     velocity = np.stack([factor * state.velocity for factor in (1.0, 2.0, -1.0)])
     whole = observe(system, times, position, velocity)
-    loads = body_forces_at(system, times, position, velocity)
-    some = observe_motion(system, position, velocity, loads, shown)
+    forces = body_forces_at(system, times, position, velocity)
+    some = observe_motion(system, position, velocity, forces, shown)
     for name, per in OBSERVED.items():
         expected = getattr(whole, name)[shown] if per.shown else getattr(whole, name)
         np.testing.assert_array_equal(getattr(some, name), expected, err_msg=name)

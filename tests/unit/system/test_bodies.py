@@ -89,10 +89,10 @@ def test_couplings_act_on_both_bodies(system: System, moving: State) -> None:
     lifted.position[: system.first_body] += 10.0
     equations = new_equations(system)
     residual(system, lifted, equations, (0.0, 0.0, 0.0))
-    loads = equations.loads
-    assert np.all(loads.moment == 0.0)
-    chain = loads.force[:TENSIONER].sum() - loads.shaft[np.flatnonzero(system.pulleys.shaft == SECOND_HUB)[0]]
-    assert abs(loads.force[FIRST_HUB]) > 0.1
+    forces = equations.forces
+    assert np.all(forces.moment == 0.0)
+    chain = forces.force[:TENSIONER].sum() - forces.shaft[np.flatnonzero(system.pulleys.shaft == SECOND_HUB)[0]]
+    assert abs(forces.force[FIRST_HUB]) > 0.1
     assert chain == pytest.approx(0.0, abs=1e-12)
 
 
@@ -110,12 +110,12 @@ def test_power_of_the_bodies_is_what_is_lost_and_stored(system: System, moving: 
 
     residual(system, lifted, equations, (0.0, 0.0, 0.0))
     rate = (energy(1e-6) - energy(-1e-6)) / 2e-6
-    loads, velocity = equations.loads, lifted.velocity[bodies]
-    torque_work, losses = loads.power[1], loads.power[5] + loads.power[6]
+    forces, velocity = equations.forces, lifted.velocity[bodies]
+    torque_work, losses = forces.power[1], forces.power[5] + forces.power[6]
     free = system.bodies.unknown >= 0
-    assert loads.power[5] > 0.0
-    assert loads.power[6] > 0.0
-    assert loads.force[free] @ velocity[free] == pytest.approx(torque_work - losses - rate, rel=1e-7)
+    assert forces.power[5] > 0.0
+    assert forces.power[6] > 0.0
+    assert forces.force[free] @ velocity[free] == pytest.approx(torque_work - losses - rate, rel=1e-7)
 
 
 def test_the_carried_pulley_moves(system: System, moving: State) -> None:

@@ -167,5 +167,5 @@ def forces(system: System, position: FloatArray) -> FloatArray:
     """Residual of the belt at rest, shape (6 N,)."""
     equations, still = new_equations(system), np.zeros_like(position)
     assemble(system, Motion(0.0, position, still, still), no_multipliers(system), NO_TANGENT, equations)
-    assert np.max(equations.loads.stored) > 0.0
+    assert np.max(equations.forces.stored) > 0.0
     return np.asarray(equations.matrix.node_side).ravel()

@@ -37,7 +37,7 @@ def test_rates_are_the_accelerations_of_the_system(system: System, equations: Fi
     rates = equations.unpack(equations.rates(TIME, equations.pack(moving)))
     np.testing.assert_array_equal(rates[0], velocity)
     np.testing.assert_allclose(rates[1], acceleration, atol=1e-9 * np.max(np.abs(acceleration)))  # rounding
-    np.testing.assert_allclose(rates[2], work.loads.power, rtol=1e-9)
+    np.testing.assert_allclose(rates[2], work.forces.power, rtol=1e-9)
 
 
 def test_jacobian(system: System, equations: FirstOrder, moving: State, scale: FloatArray) -> None:
