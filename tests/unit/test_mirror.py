@@ -34,6 +34,7 @@ ELSEWHERE = {
     "solve/engine.py": "unit/solve/test_alpha_advance.py",
     "solve/integrator_state.py": "unit/solve/test_alpha_advance.py",
     "solve/observer.py": "unit/solve/test_recording.py",
+    "solve/result_layout.py": "unit/solve/test_recording.py",
     # Seen by a user through something else, and tested there.
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",

@@ -15,7 +15,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Path
 from beltdyn.results import Run
 from beltdyn.results.derived.wear import wear_by_belt
-from beltdyn.solve.recording import Recording, result_layout
+from beltdyn.solve.recording import Recording
+from beltdyn.solve.result_layout import result_layout
 from beltdyn.solve.simulate import choose_integrator
 from beltdyn.solve.static import find_equilibrium, standing
 from beltdyn.solve.trajectory import drive_task

@@ -6,14 +6,12 @@ from types import TracebackType
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.results import (
     RECORDED,
     FileRecorder,
-    Layout,
     MemoryRecorder,
     Recorder,
     Run,
@@ -27,9 +25,9 @@ from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.observer import WORKS, Arrays, Observer
 from beltdyn.solve.outlook import step_bound
 from beltdyn.solve.progress import Pace, Phase, Progress, Report
-from beltdyn.solve.trajectory import Chunk, Statistics
+from beltdyn.solve.result_layout import result_layout
+from beltdyn.solve.trajectory import Chunk, Statistics, interpolated
 from beltdyn.system.arrays import System
-from beltdyn.system.discretization import curve_lengths, point_coordinates
 from beltdyn.system.state import laid
 
 _SECONDS_BETWEEN_WRITES = 0.25
@@ -288,54 +286,3 @@ class Recording:
             "start_time": self._started - self._compiled,
             **({"real_time_factor": wall / self._reached} if self._reached > 0.0 else {}),
         }
-
-
-def interpolated(values: NDArray[Any], end: IntArray, part: FloatArray) -> NDArray[Any]:
-    """Interpolate linearly within steps what is seen at their ends: only there do the equations of motion hold.
-
-    Parameters
-    ----------
-    values : ndarray, shape (k, ...)
-        At successive states; of whole numbers, that of the nearer end is taken.
-    end, part : ndarray, shape (m,)
-        Result of `Chunk.locate`.
-
-    Returns
-    -------
-    ndarray, shape (m, ...)
-    """
-    if values.dtype.kind == "i":
-        return np.asarray(values[np.where(part < 0.5, np.maximum(end - 1, 0), end)])
-    result = values[end]
-    inside = np.flatnonzero(part < 1.0)
-    weight = part[inside].reshape(-1, *[1] * (values.ndim - 1))
-    result[inside] = weight * result[inside] + (1.0 - weight) * values[end[inside] - 1]
-    return result
-
-
-def result_layout(drive: Drive, system: System) -> Layout:
-    """Names and reference coordinates of the results.
-
-    Parameters
-    ----------
-    drive, system
-        What is simulated.
-
-    Returns
-    -------
-    Layout
-        Belt coordinates run from node 0 in the direction of motion.
-    """
-    names = tuple(pulley.name for pulley in drive.pulleys)
-    spans = tuple(f"{a}-{b}" for a, b in drive.spans)
-    lengths = curve_lengths(system)
-    starts = np.cumsum(lengths) - lengths
-    return Layout(
-        pulleys=names,
-        spans=spans,
-        node_coordinate=point_coordinates(system),
-        element_coordinate=starts + 0.5 * lengths,
-        belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
-        coordinate_names=drive.belt.element_kind.coordinates,
-        tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
-    )

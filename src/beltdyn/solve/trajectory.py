@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive, Pulley, install
@@ -129,6 +130,29 @@ class Chunk:
 
 _ROWS = ("time", "step", "position", "velocity", "work")
 """Attributes of a `Chunk` with one row for each state."""
+
+
+def interpolated(values: NDArray[Any], end: IntArray, part: FloatArray) -> NDArray[Any]:
+    """Interpolate linearly within steps what is seen at their ends: only there do the equations of motion hold.
+
+    Parameters
+    ----------
+    values : ndarray, shape (k, ...)
+        At successive states; of whole numbers, that of the nearer end is taken.
+    end, part : ndarray, shape (m,)
+        Result of `Chunk.locate`.
+
+    Returns
+    -------
+    ndarray, shape (m, ...)
+    """
+    if values.dtype.kind == "i":
+        return np.asarray(values[np.where(part < 0.5, np.maximum(end - 1, 0), end)])
+    result = values[end]
+    inside = np.flatnonzero(part < 1.0)
+    weight = part[inside].reshape(-1, *[1] * (values.ndim - 1))
+    result[inside] = weight * result[inside] + (1.0 - weight) * values[end[inside] - 1]
+    return result
 
 
 @dataclass

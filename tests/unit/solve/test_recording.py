@@ -9,7 +9,8 @@ import pytest
 
 from beltdyn.model import Drive
 from beltdyn.results import open_run
-from beltdyn.solve.recording import Recording, result_layout
+from beltdyn.solve.recording import Recording
+from beltdyn.solve.result_layout import result_layout
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.body_forces import body_forces_history
