@@ -35,6 +35,7 @@ ELSEWHERE = {
     "solve/integrator_state.py": "unit/solve/test_alpha_advance.py",
     "solve/observer.py": "unit/solve/test_recording.py",
     "solve/result_layout.py": "unit/solve/test_recording.py",
+    "solve/worker.py": "unit/solve/test_batch.py",
     # Seen by a user through something else, and tested there.
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",

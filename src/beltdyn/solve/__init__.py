@@ -1,6 +1,6 @@
 """Analyses: a simulation over time, of one drive or many, a run-up, and static equilibrium; and their solvers."""
 
-from beltdyn.solve.batch import Ending, simulate_all
+from beltdyn.solve.batch import simulate_all
 from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
@@ -10,6 +10,7 @@ from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.static import Equilibrium, find_equilibrium
 from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 from beltdyn.solve.sweep import sweep
+from beltdyn.solve.worker import Ending
 
 __all__ = [
     "BatchProgress",

@@ -1,0 +1,170 @@
+"""The processes of a batch: each analyses one drive after another, until its parent says so or is gone."""
+
+import multiprocessing
+import os
+import signal
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from multiprocessing.synchronize import Event as SharedEvent
+from pathlib import Path
+from threading import Event, Lock, Thread
+from time import sleep
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+from beltdyn.analyses import Analysis
+from beltdyn.errors import BeltdynError, SimulationError
+from beltdyn.model import Drive
+from beltdyn.results import Result, Run, Summary, summarize
+from beltdyn.signals import ENDING
+from beltdyn.solve.progress import Progress
+
+if TYPE_CHECKING:
+    from ctypes import Array, c_double
+
+_GRACE = 2.0  # s
+
+
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What is asked of every drive: arguments of `analyse_all`."""
+
+    analysis: Analysis
+    options: Mapping[str, Any]
+    overwrite: bool
+    finish: Callable[[Run], None] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How the analysis of a drive ended.
+
+    Attributes
+    ----------
+    status : str
+        "completed", "interrupted" by Ctrl-C, "failed", or "not started" before Ctrl-C.
+    error : str
+        Why it failed; empty otherwise.
+    summary : Summary or None
+        The numbers that sum up a run; None where there is no output, and of other results than runs.
+    warnings : tuple of str
+        What makes the results doubtful.
+    kept : bool
+        Whether there are results in the file.
+    """
+
+    status: str
+    error: str = ""
+    summary: Summary | None = None
+    warnings: tuple[str, ...] = ()
+    kept: bool = False
+
+
+_stop: SharedEvent
+_parts: "Array[c_double]"
+_working = Lock()
+_leaving = Event()
+
+
+def start_worker(stop: SharedEvent, parts: "Array[c_double]") -> None:
+    """Keep what is shared with the parent.
+
+    Parameters
+    ----------
+    stop
+        Set when the parent is interrupted.
+    parts
+        The part of each simulation that is done, 0 to 1; NaN before it begins.
+    """
+    global _stop, _parts
+    _stop, _parts = stop, parts
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+    warnings.simplefilter("ignore")
+    Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    """End when the parent was killed, after the simulation on its way has closed its file."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        _stop.set()
+        with _working:
+            os._exit(1)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    """End the simulation on its way, and then the process."""
+    _leaving.set()
+    Thread(target=_exit_when_told, daemon=True).start()
+
+
+def _exit_when_told() -> None:
+    """End the process when the simulation has closed its file and the parent has had time to hear of it."""
+    with _working:
+        sleep(_GRACE)
+        os._exit(1)
+
+
+def analyse(place: int, file: Path, drive: Drive, work: Work) -> Ending:
+    """Analyse a drive into a file, and finish what is complete.
+
+    Parameters
+    ----------
+    place
+        Of the drive in the batch, from zero.
+    file
+        The result file.
+    drive
+        The drive.
+    work
+        What is asked of it.
+
+    Returns
+    -------
+    Ending
+        How it ended; no error is raised.
+    """
+    if _stop.is_set():
+        return Ending("not started")
+    if _leaving.is_set():
+        Event().wait()  # another process takes it
+    _parts[place] = 0.0
+
+    def heed(progress: Progress) -> None:
+        """Tell the parent, and end the simulation when it says so."""
+        _parts[place] = progress.time / progress.duration
+        if _stop.is_set() or _leaving.is_set():
+            raise KeyboardInterrupt
+
+    try:
+        with _working:
+            result = work.analysis.write(drive, file, heed, work.overwrite, **work.options)
+            ending = _ended(result)
+            if work.finish is not None and result.status == "completed":
+                work.finish(result)
+            return ending
+    except SimulationError as error:
+        return _kept(drive, file, str(error)) if work.analysis.grows else Ending("failed", str(error))
+    except BeltdynError as error:
+        return Ending("failed", str(error))
+    except Exception as error:
+        return Ending("failed", f"{type(error).__name__}: {error}")
+
+
+def _kept(drive: Drive, file: Path, error: str) -> Ending:
+    """How a simulation ended that could not go on, with what it left."""
+    try:
+        return replace(_ended(Run(None, drive, file)), error=error)
+    except (BeltdynError, OSError):  # its file was taken away
+        return Ending("failed", error)
+
+
+def _ended(result: Result) -> Ending:
+    if isinstance(result, Run) and not result.outputs:
+        return Ending(result.status)
+    summary = summarize(result) if isinstance(result, Run) else None
+    return Ending(result.status, summary=summary, warnings=tuple(result.warnings), kept=True)
