@@ -171,7 +171,7 @@ class _Search:
 
     @property
     def nodes(self) -> FloatArray:
-        """Nodal coordinates, shape (N, 6)."""
+        """Nodal coordinates, shape (N, n)."""
         return self.position[: self._system.first_body].reshape(self._system.nodes, -1)
 
     @property

@@ -29,7 +29,7 @@ class State:
         return Motion(time, self.position, self.velocity, self.acceleration)
 
     def nodes(self, system: System) -> FloatArray:
-        """Nodal coordinates as an array of shape (N, 6)."""
+        """Nodal coordinates as an array of shape (N, n)."""
         return self.position[: system.first_body].reshape(system.nodes, -1)
 
 
@@ -40,7 +40,7 @@ def at_rest(system: System, coordinates: FloatArray) -> State:
     ----------
     system
         The system.
-    coordinates : ndarray, shape (N, 6)
+    coordinates : ndarray, shape (N, n)
         Nodal coordinates.
 
     Returns

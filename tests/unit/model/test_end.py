@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, FixedEnd, PulledEnd, WeightEnd, dumps, install, loads
+from beltdyn.model import Drive, FixedEnd, PulledEnd, WeightEnd, describe, dumps, install, loads
 from beltdyn.model.end import ends_on_path, pulling
 from beltdyn.theory.stretch import stretch
 
@@ -80,6 +80,12 @@ def test_fixed_ends_take_a_length_or_a_tension() -> None:
     assert install(asked).tension == pytest.approx(40.0)
     assert asked.belt_length < path
     assert asked.spans == (("drum", "left"), ("anchor", "drum"))
+
+
+def test_a_slack_belt_swings_at_no_frequency_on_any_span() -> None:
+    drive = strap(ANCHOR, PULL)
+    slack = describe(drive, np.array([50.0, 0.0]), np.zeros(1), np.zeros((1, 2)), np.zeros(0))
+    np.testing.assert_array_equal(slack.span_frequencies, [0.0, 0.0])
 
 
 @pytest.mark.parametrize("ends", [(ANCHOR, PULL), (ANCHOR | {"clamped": True}, WEIGHT)])
