@@ -49,7 +49,7 @@ CLAIMED = {
     "peaks-emphasised": (HOLDS, HOLDS),
     "driven-peaks": (HOLDS, HOLDS),
     "like-leamy-and-wasfy": (OPEN, OPEN),
-    "identical-forces": (FAILS, HOLDS),
+    "identical-forces": (FAILS, OPEN),
     "identical-speeds": (HOLDS, HOLDS),
     "quotient-of-speeds": (HOLDS, HOLDS),
     "more-than-two-pulleys": (HOLDS, HOLDS),

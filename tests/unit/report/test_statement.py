@@ -1,6 +1,6 @@
 import pytest
 
-from beltdyn.report.statement import Finding, Number, Statement, Verdict, all_hold, verdict
+from beltdyn.report.statement import Finding, Number, Statement, Verdict, all_hold, clearly_below, verdict
 
 
 def statement(*findings: Finding, published: int = 1) -> Statement:
@@ -38,3 +38,13 @@ def test_one_part_that_fails_fails_all() -> None:
     assert all_hold([holds, is_open, fails]) is fails
     assert all_hold([holds, is_open]) is is_open
     assert all_hold([holds, holds]) is holds
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [(0.0, Verdict.HOLDS), (0.79, Verdict.HOLDS), (0.81, Verdict.OPEN), (1.24, Verdict.OPEN), (1.26, Verdict.FAILS)],
+)
+def test_forces_near_a_limit_leave_it_open(value: float, expected: Verdict) -> None:
+    assert clearly_below(value, 1.0) is expected
+    opposite = {Verdict.HOLDS: Verdict.FAILS, Verdict.FAILS: Verdict.HOLDS, Verdict.OPEN: Verdict.OPEN}
+    assert value == 0.0 or clearly_below(1.0, value) is opposite[expected]
