@@ -80,11 +80,13 @@ def test_the_overloaded_conveyor_comes_to_a_stop() -> None:
 def test_the_idler_carries_what_slips_without_it() -> None:
     """The load of 160 N m is above what fixed centres transmit, and with the idler half as much again is below."""
     run = simulated("flat_belt_idler")
-    slipping = simulate(without_idler(run.drive))
+    without = without_idler(run.drive)
+    damped = without.contact.replace(damping=1000.0)  # with the 100 N s/m^2 of the example the sliding arc flutters
+    slipping = simulate(without.replace(contact=damped))
     bare = summarize(slipping)
     assert any(text.startswith("motor slides through") for text in bare.warnings)
     assert bare.pulleys[1].slip > 0.1
-    sliding = slipping.dataset.sel(time=slice(1.1, 1.2))  # later the sliding arc flutters
+    sliding = slipping.dataset.sel(time=slice(1.1, 1.6))
     tension, speed, wrap = (sliding[name].values for name in ("span_tension", "belt_speed", "wrap_angle"))
     assert capstan_margin(tension, speed, wrap, slipping.drive)[:, 0] == pytest.approx(1.0, abs=0.02)
     more = summarize(simulate(with_load(run.drive, 240.0)))
