@@ -269,7 +269,7 @@ def test_tension_over_the_driven_arc(run: Run, measured: Callable[..., None], cu
     curve("published_drive/arc", np.rad2deg(places[every]), tensions[every], "beltdyn", "-")
     curve("published_drive/arc", np.rad2deg(angle), ARC[:, 1], "published", "o")
     assert inside.sum() > 10
-    assert np.abs(error).max() < run.drive.contact.friction * TURN
+    assert np.abs(error).max() < run.drive.frictions[0] * TURN
 
 
 def _driven_arc(run: Run) -> tuple[FloatArray, FloatArray]:

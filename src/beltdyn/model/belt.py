@@ -13,7 +13,7 @@ from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.model.belt_form import FORMS, describe_forms, to_material
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, Ratio, Stress, Time
+from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
 
@@ -63,6 +63,17 @@ class Belt(Part):
         le=pi,
         description="the angle between the flanks of a V-belt, or of the ribs, in their grooves, in rad; "
         "none for a flat belt",
+    )
+    friction: Ratio | None = Field(
+        None,
+        ge=0,
+        description="the coefficient of friction of the belt, without the wedge, where contact gives none",
+    )
+    contact_stiffness: LineStiffness | None = Field(
+        None,
+        gt=0,
+        description="the normal force per metre of belt and metre by which it is pressed into a pulley, where it is "
+        "known, in N/m^2",
     )
     stretch_damping_time: Time = Field(
         0.0, ge=0, description="the time that multiplies the rate of strain in the tension, in s"

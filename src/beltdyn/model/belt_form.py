@@ -17,8 +17,8 @@ from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Leng
 
 _POISSONS_RATIO = 0.3
 _MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
-_EXTENSIVE = ("width", "axial_stiffness", "bending_stiffness", "mass_per_length")
-_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "stretch_damping_time", "bending_damping_time")
+_EXTENSIVE = ("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness")
+_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", "stretch_damping_time", "bending_damping_time")
 
 
 class Stiffnesses(Part):
@@ -110,7 +110,7 @@ def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
             'your own extends them: catalogue = "file.toml"'
         )
     size = _size(sold, entry, width)
-    section = {key: size * getattr(entry, key) for key in _EXTENSIVE}
+    section = {key: size * value for key in _EXTENSIVE if (value := getattr(entry, key)) is not None}
     return section | {key: getattr(entry, key) for key in ("thickness", *_TAKEN_OVER)}
 
 

@@ -12,7 +12,16 @@ from pydantic import Field, ValidationError
 from beltdyn.parts.error_location import shorten
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Angle, AxialStiffness, BendingStiffness, Length, MassPerLength, Time
+from beltdyn.parts.quantity import (
+    Angle,
+    AxialStiffness,
+    BendingStiffness,
+    Length,
+    LineStiffness,
+    MassPerLength,
+    Ratio,
+    Time,
+)
 from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
 
 
@@ -20,7 +29,8 @@ class Entry(Part):
     """A profile of the catalogue: a belt of one rib, or of a certain width.
 
     A profile sold by ribs gives the values of one rib, one V-belt or one cord; one that is sold by width gives those
-    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses and the mass.
+    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses, also that of contact,
+    and the mass.
     """
 
     title: str = Field(description="the name of the profile in words, as text")
@@ -35,6 +45,15 @@ class Entry(Part):
     )
     back_offset: Length = Field(0.0, ge=0, description="the distance from the back surface to the tension line, in m")
     wedge_angle: Angle | None = Field(None, gt=0, le=pi, description="the angle between the flanks, in rad")
+    friction: Ratio | None = Field(
+        None, ge=0, description="the coefficient of friction on the usual pulley, without the wedge"
+    )
+    contact_stiffness: LineStiffness | None = Field(
+        None,
+        gt=0,
+        description="the normal force per metre of belt and metre by which it is pressed into the groove or against the "
+        "rim, in N/m^2",
+    )
     stretch_damping_time: Time = Field(0.0, ge=0, description="the damping time of stretch, in s")
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")
     generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")

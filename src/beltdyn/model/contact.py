@@ -56,7 +56,10 @@ _Laws: Any = create_model(
     __base__=Penalty,
     normal_law=_choice(NORMAL_LAWS, "no_pull", _NORMAL),
     **_keys(NORMAL_LAWS),
-    friction=(Ratio, Field(ge=0, description="the coefficient of friction")),
+    friction=(
+        Ratio | None,
+        Field(None, ge=0, description="the coefficient of friction, without the wedge; by default that of the belt"),
+    ),
     friction_law=_choice(FRICTION_LAWS, "force_slope", "the friction law"),
     **_keys(FRICTION_LAWS),
 )
@@ -72,7 +75,7 @@ class Contact(_Laws, Penalty):
 
     if TYPE_CHECKING:  # the fields that the laws make
         normal_law: str
-        friction: float
+        friction: float | None
         friction_law: str
 
         def __init__(self, **keys: Any) -> None: ...

@@ -59,6 +59,11 @@ class Drive(Part):
         return self
 
     @model_validator(mode="after")
+    def _has_friction(self) -> Self:
+        _ = self.frictions
+        return self
+
+    @model_validator(mode="after")
     def _joint_fits_the_belt(self) -> Self:
         if self.simulation.joint == "multipliers" and not self.belt.element_kind.has_ends:
             raise ValueError(
@@ -160,7 +165,7 @@ class Drive(Part):
         profiles = [profile for pulley in self.pulleys for profile in pulley.profiles]
         return tuple(sorted({float(t) for profile in profiles for t in profile.breakpoints()}))
 
-    @property
+    @cached_property
     def frictions(self) -> FloatArray:
         """Coefficients of friction of the pulleys, with the wedge factor on those that touch the inside; shape (n,)."""
         return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])

@@ -114,6 +114,19 @@ class Pulley(Part):
 
 
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
-    """Coefficient of friction of a belt on a pulley, with the wedge factor where its inside touches."""
-    given = contact.friction if pulley.friction is None else pulley.friction
-    return given * (belt.wedge_factor if pulley.side == "inside" else 1.0)
+    """Coefficient of friction of a belt on a pulley, with the wedge factor where its inside touches.
+
+    It is that of the pulley, or of the contact, or of the belt: the first that is given.
+
+    Raises
+    ------
+    ValueError
+        If none is.
+    """
+    for given in (pulley.friction, contact.friction, belt.friction):
+        if given is not None:
+            return given * (belt.wedge_factor if pulley.side == "inside" else 1.0)
+    raise ValueError(
+        "contact.friction is missing, and the belt has none of its own. Give the coefficient of friction, without the "
+        "wedge: 0.3 to 0.4 for rubber on metal"
+    )

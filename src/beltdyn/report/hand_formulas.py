@@ -109,5 +109,5 @@ def gross_slip_torque(drive: Drive) -> float:
     drive : Drive
         Two pulleys.
     """
-    grip = capstan_ratio(drive.contact.friction, float(drive.path.wrap_angles[1]))
+    grip = capstan_ratio(float(drive.frictions[1]), float(drive.path.wrap_angles[1]))
     return 2.0 * install(drive).tension * float(drive.radii[1]) * (grip - 1.0) / (grip + 1.0)

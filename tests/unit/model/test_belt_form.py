@@ -33,6 +33,17 @@ def test_the_belt_of_ribs() -> None:
         assert getattr(belt, key) == getattr(one, key)
 
 
+def test_friction_and_contact_stiffness_of_a_profile(tmp_path: Path) -> None:
+    """Contact is as stiff as all ribs together; the coefficient of friction is that of one."""
+    own = tmp_path / "own.toml"
+    keys = "width = 4e-3\nthickness = 5e-3\naxial_stiffness = 2e4\nbending_stiffness = 1e-3\nmass_per_length = 0.02"
+    own.write_text(f'[our]\ntitle = "ours"\n{keys}\nsource = "rig"\nfriction = 0.32\ncontact_stiffness = "15 MN/m^2"\n')
+    belt = make(length=1.0, profile="our", ribs=6, catalogue=str(own))
+    assert belt.friction == 0.32
+    assert belt.contact_stiffness == pytest.approx(6 * 15e6, rel=1e-14)
+    assert make(length=1.0, profile="our", ribs=6, catalogue=str(own), friction=0.5).friction == 0.5
+
+
 def test_the_flat_belt_is_sold_by_width() -> None:
     one, belt = read_catalogue()["flat-aramid"], make(length=1.0, profile="flat-aramid", width="25 mm")
     assert belt.width == 0.025
@@ -102,4 +113,4 @@ def test_wedge(drive: Drive, angle: Any, factor: float) -> None:
         pulley=[driver.replace(friction=0.3), driven],
     )
     assert wedged.belt.wedge_factor == pytest.approx(factor)
-    assert wedged.frictions == pytest.approx([0.3 * factor, drive.contact.friction * factor])
+    assert wedged.frictions == pytest.approx([0.3 * factor, drive.frictions[1] * factor])

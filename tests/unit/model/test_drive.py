@@ -231,3 +231,14 @@ def test_drives_of_any_layout_travel_between_processes(make_drive: MakeDrive, la
     drive = make_drive(layout, contact={"allowed_penetration": 1e-5}, pitch_offset=0.001)
     assert pickle.loads(pickle.dumps(drive)) == drive
     assert drive.replace(simulation=drive.simulation.replace(rtol=1e-4)).belt == drive.belt
+
+
+def test_friction_is_the_pulleys_or_the_contacts_or_the_belts(drive: Drive) -> None:
+    driver, driven = drive.pulleys
+    belt = drive.belt.replace(friction=0.5)
+    given = drive.replace(belt=belt, pulley=[driver.replace(friction=0.3), driven])
+    assert given.frictions == pytest.approx([0.3, 1.2])
+    left = given.replace(contact=drive.contact.replace(friction=None))
+    assert left.frictions == pytest.approx([0.3, 0.5])
+    with pytest.raises(ModelError, match="contact.friction is missing"):
+        drive.replace(contact=drive.contact.replace(friction=None))

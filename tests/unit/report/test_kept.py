@@ -38,7 +38,7 @@ def test_an_element_is_mixed_if_some_of_its_points_slide(run: Run, at_limit: sli
     data = run.dataset.copy(deep=True)
     data["contact_pulley"][:] = 0
     data["normal_force"][:] = 100.0
-    limit = 100.0 * run.drive.contact.friction / run.drive.contact.creep_rate_factor
+    limit = 100.0 * run.drive.frictions[0] / run.drive.contact.creep_rate_factor
     data["slip_velocity"][:] = 0.5 * limit
     data["slip_velocity"][:, at_limit] = -2.0 * limit
     np.testing.assert_array_equal(reduce(Run(data, run.drive))["mixed_elements"], mixed)

@@ -83,7 +83,7 @@ def running() -> Callable[[Drive, float, float], RunningDrive]:
             distance=driven.center[0] - driver.center[0],
             radii=(driver.radius, driven.radius),
             stiffness=contact.given_stiffness,
-            friction=contact.friction,
+            friction=float(drive.frictions[0]),
             creep_rate_factor=contact.creep_rate_factor,
             speed=speed,
             load=load,

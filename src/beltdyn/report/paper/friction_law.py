@@ -64,7 +64,7 @@ def _finding() -> Finding:
 
 
 def _friction_coefficient() -> float:
-    return two_pulley().contact.friction
+    return float(two_pulley().frictions[0])
 
 
 def _friction(slip: FloatArray, factor: float) -> FloatArray:
