@@ -29,7 +29,7 @@ class Entry(Part):
     """A profile of the catalogue: a belt of one rib, or of a certain width.
 
     A profile sold by ribs gives the values of one rib, one V-belt or one cord; one that is sold by width gives those
-    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses, also that of contact,
+    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses, that of contact too,
     and the mass.
     """
 
@@ -51,8 +51,7 @@ class Entry(Part):
     contact_stiffness: LineStiffness | None = Field(
         None,
         gt=0,
-        description="the normal force per metre of belt and metre by which it is pressed into the groove or against the "
-        "rim, in N/m^2",
+        description="the normal force per metre of belt and metre by which it is pressed into a pulley, in N/m^2",
     )
     stretch_damping_time: Time = Field(0.0, ge=0, description="the damping time of stretch, in s")
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")

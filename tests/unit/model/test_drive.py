@@ -240,5 +240,5 @@ def test_friction_is_the_pulleys_or_the_contacts_or_the_belts(drive: Drive) -> N
     assert given.frictions == pytest.approx([0.3, 1.2])
     left = given.replace(contact=drive.contact.replace(friction=None))
     assert left.frictions == pytest.approx([0.3, 0.5])
-    with pytest.raises(ModelError, match="contact.friction is missing"):
+    with pytest.raises(ModelError, match="friction is missing"):
         drive.replace(contact=drive.contact.replace(friction=None))
