@@ -29,8 +29,8 @@ class Entry(Part):
     """A profile of the catalogue: a belt of one rib, or of a certain width.
 
     A profile sold by ribs gives the values of one rib, one V-belt or one cord; one that is sold by width gives those
-    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses, that of contact too,
-    and the mass.
+    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses (that of contact
+    too) and the mass.
     """
 
     title: str = Field(description="the name of the profile in words, as text")
