@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.model.belt_form import FORMS, describe_forms, to_material
+from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, describe_forms, to_material
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
 
@@ -81,6 +81,20 @@ class Belt(Part):
     bending_damping_time: Time = Field(
         0.0, ge=0, description="the time that multiplies the rate of curvature in the bending moment, in s"
     )
+    stretch_loss_factor: Ratio = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="the loss factor (tan delta) of stretch: hysteresis whatever the speed, "
+        "in place of stretch_damping_time",
+    )
+    bending_loss_factor: Ratio = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="the loss factor (tan delta) of bending: hysteresis whatever the speed, "
+        "in place of bending_damping_time",
+    )
     axial_factor: Ratio = Field(1.0, gt=0, description="the factor α₁ on the axial stiffness")
     bending_factor: Ratio = Field(1.0, gt=0, description="the factor α₂ on the bending and shear stiffness")
     shear_correction: Ratio | None = Field(
@@ -111,12 +125,23 @@ class Belt(Part):
 
     @model_validator(mode="after")
     def _only_some_elements_are_damped(self) -> Self:
-        for key in ("stretch_damping_time", "bending_damping_time"):
-            time = getattr(self, key)
-            if time > 0 and not self.element_kind.is_damped:
+        for key in (*DAMPING_TIMES, *LOSS_FACTORS):
+            value = getattr(self, key)
+            if value > 0 and not self.element_kind.is_damped:
+                unit = " s" if key in DAMPING_TIMES else ""
                 raise ValueError(
-                    f'{key} = {time:g} s does not fit discretization = "{self.discretization}", which has no '
-                    'damping. Remove it, or set discretization = "ancf"'
+                    f'{key} = {value:g}{unit} does not fit discretization = "{self.discretization}", which has no '
+                    f'damping. Set {key} = 0, or set discretization = "ancf"'
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _one_loss_for_each_strain(self) -> Self:
+        for time, factor in zip(DAMPING_TIMES, LOSS_FACTORS, strict=True):
+            if getattr(self, time) > 0 and getattr(self, factor) > 0:
+                raise ValueError(
+                    f"{time} = {getattr(self, time):g} s and {factor} = {getattr(self, factor):g} exclude each other: "
+                    "a loss grows with the speed, or it does not. Keep one of them"
                 )
         return self
 

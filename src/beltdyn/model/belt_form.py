@@ -18,7 +18,11 @@ from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Leng
 _POISSONS_RATIO = 0.3
 _MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
 _EXTENSIVE = ("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness")
-_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", "stretch_damping_time", "bending_damping_time")
+DAMPING_TIMES = ("stretch_damping_time", "bending_damping_time")
+LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
+"""In the order of `DAMPING_TIMES`: of each strain a belt has the one or the other."""
+
+_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *DAMPING_TIMES, *LOSS_FACTORS)
 
 
 class Stiffnesses(Part):
@@ -82,7 +86,11 @@ def to_material(data: Any, base: Path | None) -> Any:
     values = dict(data)
     if any(key in data for key in Sold.model_fields):
         sold = Sold.model_validate({key: values.pop(key) for key in Sold.model_fields if key in values})
-        values = _section(sold, data.get("width"), base) | values
+        section = _section(sold, data.get("width"), base)
+        for pair in zip(DAMPING_TIMES, LOSS_FACTORS, strict=True):
+            if any(key in values for key in pair):
+                section = {key: value for key, value in section.items() if key not in pair}
+        values = section | values
     given_section = {key: values.pop(key) for key in Stiffnesses.model_fields if key in values}
     return {"poissons_ratio": _POISSONS_RATIO} | values | _material(Stiffnesses.model_validate(given_section))
 

@@ -55,6 +55,8 @@ class Entry(Part):
     )
     stretch_damping_time: Time = Field(0.0, ge=0, description="the damping time of stretch, in s")
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")
+    stretch_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of stretch")
+    bending_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of bending")
     generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
 

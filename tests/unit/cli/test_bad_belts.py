@@ -93,6 +93,15 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
         f'{SIZE}{STIFF}bending_damping_time = 1e-3\nelements = 21\ndiscretization = "truss"',
         ('bending_damping_time = 0.001 s does not fit discretization = "truss"', 'set discretization = "ancf"'),
     ),
+    "beam with hysteresis": (
+        f'{SIZE}{STIFF}stretch_loss_factor = 0.1\nelements = 21\ndiscretization = "three-node-beam"',
+        ('stretch_loss_factor = 0.1 does not fit discretization = "three-node-beam"', "Set stretch_loss_factor = 0"),
+    ),
+    "large loss factor": (f"{SIZE}{STIFF}bending_loss_factor = 2", ("belt.bending_loss_factor = 2 must be at most 1",)),
+    "two losses of bending": (
+        f"{SIZE}{STIFF}bending_damping_time = 1e-3\nbending_loss_factor = 0.1",
+        ("bending_damping_time = 0.001 s and bending_loss_factor = 0.1 exclude each other", "Keep one of them"),
+    ),
 }
 
 

@@ -59,6 +59,18 @@ def test_what_the_user_gives_goes_before_the_catalogue() -> None:
     assert belt.wedge_angle == pytest.approx(pi / 5)
 
 
+def test_a_loss_of_the_user_takes_the_place_of_the_catalogues(tmp_path: Path) -> None:
+    """Of the same strain, whether that is a damping time or a loss factor; the other strain keeps the catalogue's."""
+    entry = read_catalogue()["PK"].replace(stretch_loss_factor=0.05, bending_loss_factor=0.15)
+    keys = "\n".join(f"{key} = {value!r}" for key, value in entry.arguments.items() if not isinstance(value, bool))
+    (tmp_path / "mine.toml").write_text(f"[mine]\n{keys}")
+    sold = {"length": 1.0, "profile": "mine", "ribs": 6, "catalogue": str(tmp_path / "mine.toml")}
+    assert make(**sold).stretch_loss_factor == 0.05
+    belt = make(**sold, bending_damping_time=1e-4)
+    assert (belt.stretch_loss_factor, belt.bending_loss_factor, belt.bending_damping_time) == (0.05, 0.0, 1e-4)
+    assert make(**sold, bending_loss_factor=0.1).bending_loss_factor == 0.1
+
+
 def test_a_belt_has_one_form_once_made() -> None:
     """It can be replaced, compared and written like any other."""
     belt = make(length=1.0, profile="PK", ribs=6)
