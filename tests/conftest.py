@@ -35,7 +35,6 @@ STATISTICS = {
     "newton_iterations": 4900,
     "wall_time": 0.5,
     "compile_time": 2.5,
-    "real_time_factor": 2.0,
 }
 
 

@@ -65,7 +65,7 @@ def check(
             _tensioners(drive, installation),
         )
     show()
-    show_warnings([*map(unstable_balance, unstable), *advise(given, estimate)])
+    show_warnings([*([str(unstable_balance(unstable))] if unstable else []), *advise(given, estimate)])
     if figure is None:
         show(f"To see the layout: beltdyn check {file} --figure layout.png")
     else:
@@ -77,6 +77,7 @@ def check(
 
 
 def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> list[tuple[str, str]]:
+    from beltdyn.model import describe_time
     from beltdyn.results import describe_size
 
     return [
@@ -88,6 +89,7 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         *_taken_up(drive),
         ("results of a run", f"about {describe_size(drive)}"),
+        *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
 
 

@@ -31,10 +31,10 @@ def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]
 
 def show_facts(facts: Iterable[tuple[str, str]]) -> None:
     """Write lines of a name and what it is."""
-    grid = Table.grid(padding=(0, 2))
-    for name, fact in facts:
-        grid.add_row(Text(name, style="dim"), Text(fact))
-    Console().print(grid)
+    rows = list(facts)
+    width = max((len(name) for name, _ in rows), default=0)
+    for name, fact in rows:
+        Console().print(Text.assemble((name.ljust(width), "dim"), "  ", fact), soft_wrap=True)
 
 
 def show_warnings(warnings: Iterable[str]) -> None:

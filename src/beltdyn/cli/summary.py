@@ -13,7 +13,6 @@ _LEAST_SHARE = 0.01
 """Part of the power put in from which a shaft is named."""
 _NOTHING = 1e-9
 """Newtons, watts, metres a second and revolutions a minute that are rounding."""
-_RPM = 30.0 / math.pi
 
 
 def show_summary(run: "Run") -> None:
@@ -41,10 +40,12 @@ def show_summary(run: "Run") -> None:
 
 
 def _pulley(pulley: "PulleySummary") -> tuple[str, ...]:
+    from beltdyn.parts.quantity import RPM
+
     return (
         pulley.name,
         f"{pulley.speed:z.2f}",
-        _number(_RPM * pulley.speed, 5),
+        _number(RPM * pulley.speed, 5),
         _number(pulley.shaft_torque),
         _number(pulley.power),
         _share(pulley.slip),
@@ -129,18 +130,23 @@ def _solver(summary: "Summary") -> list[tuple[str, str]]:
     """What the solver did; of a static equilibrium, which takes no steps, nothing but the time."""
     steps = f"{summary.steps}, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"
     facts = [
-        ("mesh", _mesh(summary.resolution)),
+        ("errors of mesh", _mesh(summary.resolution)),
         ("energy closure", f"within {abs(summary.energy_closure):.1e} of the energy put in"),
         ("steps", f"{steps}; {summary.outputs} outputs"),
-        ("real-time factor", f"{summary.real_time_factor:.3g} s of computing for each simulated second"),
     ]
-    took = f"{summary.wall_time:.3g} s, and {summary.compile_time:.3g} s to prepare kernels"
+    took = f"{summary.wall_time:.3g} s{_pace(summary)}, and {summary.compile_time:.3g} s to prepare"
     known = not math.isnan(summary.wall_time)
-    return [*(facts if summary.steps else []), *([("time taken", took)] if known else [])]
+    return [*(facts if summary.steps else []), *([("computing time", took)] if known else [])]
+
+
+def _pace(summary: "Summary") -> str:
+    """Computing time for a simulated second; none of a drive at rest."""
+    pace = summary.computing_time_per_second
+    return "" if math.isnan(pace) else f", {pace:.3g} s for each simulated second"
 
 
 def _mesh(resolution: "Resolution") -> str:
     """The estimated errors of the mesh, of which some may not be known."""
     known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
-    errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} above 100%" for name, error in known.items())
-    return f"errors of about: {errors}" if errors else "errors not known"
+    errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} > 100%" for name, error in known.items())
+    return errors or "not known"

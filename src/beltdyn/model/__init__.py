@@ -20,7 +20,7 @@ from beltdyn.machines import (
     Step,
     Table,
 )
-from beltdyn.model.advice import advise, unstable_balance
+from beltdyn.model.advice import advise, describe_time, off_the_stop, unstable_balance
 from beltdyn.model.belt import Belt
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
@@ -70,6 +70,7 @@ __all__ = [
     "WeightEnd",
     "advise",
     "describe",
+    "describe_time",
     "dumps",
     "elements_needed",
     "install",
@@ -78,6 +79,7 @@ __all__ = [
     "load",
     "loads",
     "mesh_errors",
+    "off_the_stop",
     "read_catalogue",
     "tensioner_balances",
     "unresolved",

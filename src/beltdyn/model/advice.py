@@ -1,20 +1,21 @@
 """Warnings about a drive that is valid, but perhaps not meant."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
+from beltdyn.parts.finding import Finding, listing
 from beltdyn.theory.stretch import stretch
 
 _MOST_TENSION_LOST = 0.02
 _DEEPEST_PENETRATION = 0.1
 _LARGEST_STRAIN = 0.1
 _LONG = 60.0
-"""Computing time that is told of, s."""
+"""Computing time whose cause is told, s."""
 _DEFAULT_RTOL = 1e-4
 _STEP = 1.7
 """Elements that an axial wave passes in a step at the default tolerance: 0.5 to 5 in the examples."""
@@ -36,39 +37,52 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
     Returns
     -------
     list of str
-        Warnings, each with the number, the limit and the remedy.
+        Warnings: what is wrong, which numbers it spoils and by how much, and what to do.
     """
-    return [
-        *_strain_warnings(installation),
-        *_tension_warnings(drive, installation),
-        *_tensioner_warnings(drive, installation),
+    found = [
+        *_strain(drive, installation),
+        *_tension(drive, installation),
+        *_stops(drive, installation),
         *_other_balances(drive, installation),
-        *_penetration_warnings(drive, installation),
-        *_creep_warnings(drive, installation),
-        *_mesh_warnings(drive, installation),
-        *_time_warnings(drive),
+        *_penetration(drive, installation),
+        *_creep(drive, installation),
+        *_mesh(drive, installation),
     ]
+    return [str(finding) for finding in found]
 
 
-def unstable_balance(name: str) -> str:
-    """Say that the tensioner of a pulley is not in stable balance at rest."""
-    return (
-        f'at rest the balance of the tensioner of "{name}" is not stable: what moves it a little drives it away, and '
-        "no real drive stays there. Turn its arm or direction away from its dead centre, raise the rate of its spring, "
-        "or give stops."
+def unstable_balance(names: Sequence[str]) -> Finding:
+    """Say that the tensioners of some pulleys are not in stable balance at rest."""
+    return Finding(
+        f"at rest the balance of the tensioner of {listing(names)} is not stable: a small push drives it away.",
+        "No real drive stays there: tensions and positions at rest, and what a run starts from, are of no use.",
+        "Turn its arm or direction away from its dead centre, raise the rate of its spring, or give stops.",
     )
 
 
-def _strain_warnings(installation: Installation) -> list[str]:
+def off_the_stop(stop: str) -> str:
+    """Say what keeps a tensioner from its lower or upper stop; what changes its tension comes last."""
+    belt, side, tension = ("Shorten", "towards", "lower") if stop == "upper" else ("Lengthen", "away from", "raise")
+    return (
+        f"{belt} the belt, move the tensioner {side} the belt, or give it more range by its stops; at last, for "
+        f"{'less' if stop == 'upper' else 'more'} tension, {tension} its preload."
+    )
+
+
+def _strain(drive: Drive, installation: Installation) -> list[Finding]:
     if installation.strain <= _LARGEST_STRAIN:
         return []
     return [
-        f"the installed strain is {installation.strain:.1%}, more than {_LARGEST_STRAIN:.0%}: the belt's material "
-        "law is linear. Lengthen the belt, or move the pulleys together."
+        Finding(
+            f"the belt at rest is stretched by {installation.strain:.1%}, more than {_LARGEST_STRAIN:.0%}.",
+            f"Its tension of {installation.tension:.4g} N is taken from a constant axial stiffness, which few belts "
+            "have so far.",
+            "Lengthen the belt, move the pulleys together, or lower the installed tension.",
+        )
     ]
 
 
-def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
+def _tension(drive: Drive, installation: Installation) -> list[Finding]:
     """Compare the tension with that on hard pulleys, where no spring makes up for what is lost."""
     lost = 1 - installation.tension / installation.laid_tension
     if lost <= _MOST_TENSION_LOST or installation.tensioner_positions.size:
@@ -76,14 +90,23 @@ def _tension_warnings(drive: Drive, installation: Installation) -> list[str]:
     tension, laid = installation.tension, installation.laid_tension
     if drive.belt.installed_tension is None:
         return [
-            f"penetration into the pulleys takes {lost:.1%} of the belt's tension, more than {_MOST_TENSION_LOST:.0%}: "
-            f"{_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}."
+            Finding(
+                f"the contact of belt and pulleys is so soft that it takes {lost:.1%} of the belt's tension, more than "
+                f"{_MOST_TENSION_LOST:.0%}.",
+                f"Tensions and hub loads are those of {tension:.4g} N, in place of {laid:.4g} N on hard pulleys.",
+                f"Raise {_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}.",
+            )
         ]
+    remedy = _remedy(drive, installation, tension, tension / (1 - _MOST_TENSION_LOST))
     shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt_length
     return [
-        f"the belt is {shorter:.1e} m shorter than hard pulleys would need for {tension:.4g} N, since penetration "
-        f"takes {lost:.1%} of what it is laid with, more than {_MOST_TENSION_LOST:.0%}: where its length matters, "
-        f"{_remedy(drive, installation, tension, tension / (1 - _MOST_TENSION_LOST))}."
+        Finding(
+            f"the contact of belt and pulleys is so soft that the belt must be {1e3 * shorter:.2g} mm shorter for "
+            f"{tension:.4g} N than on hard pulleys.",
+            f"Its length of {drive.belt_length:.5g} m is wrong by as much; the tension is right, after a loss of "
+            f"{lost:.1%}.",
+            f"Where its length matters, raise {remedy}.",
+        )
     ]
 
 
@@ -100,7 +123,7 @@ def _remedy(drive: Drive, installation: Installation, tension: float, laid: floa
     stiffness = tension * stretched * float(np.sum(path.wrap_angles / drive.radii)) / room
     depth = tension * stretched / (stiffness * float(drive.radii.min()))
     return (
-        f"raise contact.stiffness to {_two_digits(stiffness, math.ceil):.1e} N/m^2 or more "
+        f"contact.stiffness to {_two_digits(stiffness, math.ceil):.1e} N/m^2 or more "
         f"(contact.allowed_penetration = {_two_digits(depth, math.floor):.1e} m)"
     )
 
@@ -111,47 +134,57 @@ def _two_digits(value: float, rounded: Callable[[float], int]) -> float:
     return rounded(value / digit) * digit
 
 
-def _tensioner_warnings(drive: Drive, installation: Installation) -> list[str]:
-    warnings = []
-    for tensioner, position in zip(drive.moving_tensioners, installation.tensioner_positions, strict=True):
+def _stops(drive: Drive, installation: Installation) -> list[Finding]:
+    found = []
+    for tensioner, position in zip(drive.moving_tensioners, installation.tensioner_positions.tolist(), strict=True):
         if tensioner.stops is not None and not tensioner.stops[0] < position < tensioner.stops[1]:
-            which, remedy = (
-                ("upper", "shorten the belt or raise its installed tension, or lower the preload")
-                if position > 0
-                else ("lower", "lengthen the belt or lower its installed tension, or raise the preload")
+            which = "upper" if position > 0 else "lower"
+            found.append(
+                Finding(
+                    f"the tensioner of {tensioner.pulley} rests on its {which} stop, at {tensioner.written(position)}.",
+                    f"There the length of the belt and not its spring sets the tension, {installation.tension:.4g} N.",
+                    off_the_stop(which),
+                )
             )
-            warnings.append(
-                f'the tensioner of "{tensioner.pulley}" rests on its {which} stop, where its spring does not set the '
-                f"tension: {remedy}, or move the stops."
-            )
-    return warnings
+    return found
 
 
-def _other_balances(drive: Drive, installation: Installation) -> list[str]:
+def _other_balances(drive: Drive, installation: Installation) -> list[Finding]:
     """Tell of other stable balances, to which a blow may drive a tensioner."""
-    warnings = []
+    found = []
     for tensioner, balances in zip(drive.moving_tensioners, tensioner_balances(drive, installation), strict=True):
         others = [tensioner.written(balance.position) for balance in balances if balance.stable and not balance.here]
         if others:
-            warnings.append(
-                f'the tensioner of "{tensioner.pulley}" is in stable balance at {" and ".join(others)} too, and a run '
-                "may end there: give stops that keep it from there."
+            found.append(
+                Finding(
+                    f"the tensioner of {tensioner.pulley} is in stable balance at {listing(others)} too.",
+                    "A blow may drive it there, and tensions are others then.",
+                    "Give stops that keep it from there.",
+                )
             )
-    return warnings
+    return found
 
 
-def _penetration_warnings(drive: Drive, installation: Installation) -> list[str]:
-    warnings = []
-    for pulley, radius, depth in zip(drive.pulleys, drive.radii, installation.penetrations, strict=True):
-        if depth > _DEEPEST_PENETRATION * radius:
-            warnings.append(
-                f'the belt is expected to sink {depth / radius:.0%} of the radius into "{pulley.name}", '
-                f"more than {_DEEPEST_PENETRATION:.0%}: raise contact.stiffness."
-            )
-    return warnings
+def _penetration(drive: Drive, installation: Installation) -> list[Finding]:
+    shares = installation.penetrations / drive.radii
+    deep = shares > _DEEPEST_PENETRATION
+    if not deep.any():
+        return []
+    sinks = [
+        f"{share:.0%} of the radius into {pulley.name}"
+        for pulley, share, is_deep in zip(drive.pulleys, shares, deep, strict=True)
+        if is_deep
+    ]
+    return [
+        Finding(
+            f"at rest the belt sinks {listing(sinks)}, more than {_DEEPEST_PENETRATION:.0%}.",
+            f"Torque arms, wrap angles and tensions are those of pulleys up to {shares.max():.0%} smaller.",
+            "Raise contact.stiffness.",
+        )
+    ]
 
 
-def _creep_warnings(drive: Drive, installation: Installation) -> list[str]:
+def _creep(drive: Drive, installation: Installation) -> list[Finding]:
     """Compare the slip velocity at which friction is fully used with one that time steps can follow."""
     law, pressures = drive.contact.friction_parameters, installation.tension / drive.radii
     fastest = float(np.max(law.saturation(pressures, drive.frictions)))
@@ -159,28 +192,31 @@ def _creep_warnings(drive: Drive, installation: Installation) -> list[str]:
         return []
     remedy = law.softened(float(np.max(drive.frictions * pressures)), _SLOWEST_CREEP)
     return [
-        f"friction is fully used at a slip velocity of {fastest:.1e} m/s, less than {_SLOWEST_CREEP:g} m/s: time steps "
-        f"follow it, and a run takes long. For a fast one, {remedy}."
+        Finding(
+            f"friction is fully used at a slip velocity of {fastest:.1e} m/s, less than {_SLOWEST_CREEP:g} m/s.",
+            "Numbers are right, but a run takes long.",
+            f"For a fast one, {remedy}.",
+        )
     ]
 
 
-def _mesh_warnings(drive: Drive, installation: Installation) -> list[str]:
+def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     """Judge the mesh as that of a drive that runs slowly with the tension at rest."""
     if not installation.tension > 0:
         return []
     running = Running(installation.tension)
-    said = unresolved(mesh_errors(drive, running), elements_needed(drive, running))
-    return [" ".join(said).removesuffix(".") + "; speeds and torques need fewer."] if said else []
+    return unresolved(mesh_errors(drive, running), elements_needed(drive, running))
 
 
-def _time_warnings(drive: Drive) -> list[str]:
-    """Say beforehand that a run will take long, and what makes it so."""
+def describe_time(drive: Drive) -> str:
+    """Say about how long a run will take, and what makes it so where that is long; empty where nothing is known."""
     settings, belt = drive.simulation, drive.belt
+    if settings.integrator != "generalized_alpha":
+        return ""
     element = drive.belt_length / belt.elements
     passage = element / math.sqrt(belt.axial_stiffness / belt.mass_per_length)
     rates = {
-        f"simulation.rtol = {settings.rtol:g} with elements that an axial wave passes in {passage:.1e} s": 1.0
-        / (_STEP * math.sqrt(settings.rtol / _DEFAULT_RTOL) * passage),
+        f"simulation.rtol = {settings.rtol:g}": 1.0 / (_STEP * math.sqrt(settings.rtol / _DEFAULT_RTOL) * passage),
         f"simulation.output_interval = {settings.output_interval:g} s": 1.0 / settings.output_interval,
     }
     if settings.max_step:
@@ -188,10 +224,14 @@ def _time_warnings(drive: Drive) -> list[str]:
     cause = max(rates, key=rates.__getitem__)
     steps = settings.duration * rates[cause]
     seconds = steps * belt.elements * _ELEMENT_TIME
-    if settings.integrator != "generalized_alpha" or seconds < _LONG:
-        return []
-    time = f"{seconds / 60:.2g} minutes" if seconds < 120 * 60 else f"{seconds / 3600:.2g} hours"
-    return [
-        f"a run will take about {steps:.1g} steps and {time} of computing, a third or three times as much: "
-        f"{settings.duration:g} s with {belt.elements} elements, and steps as short as {cause} asks for."
-    ]
+    about = f"about {_spoken(seconds)}, a third or three times as much"
+    if seconds < _LONG:
+        return about
+    return f"{about}: {settings.duration:g} s in {steps:.1g} steps, as short as {cause} asks for"
+
+
+def _spoken(seconds: float) -> str:
+    """A time in the unit in which one speaks of it."""
+    if seconds < _LONG:
+        return f"{seconds:.2g} s"
+    return f"{seconds / 60:.2g} minutes" if seconds < 120 * 60 else f"{seconds / 3600:.2g} hours"

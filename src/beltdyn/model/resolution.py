@@ -23,6 +23,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import layer_lengths
+from beltdyn.parts.finding import Finding, listing
 
 ERROR_LIMITS: Mapping[str, float] = MappingProxyType(
     {"tension": 0.01, "mean pressure": 0.05, "peak pressure": 0.2, "slip": 0.1, "losses": 0.2}
@@ -120,8 +121,8 @@ def _fewest(drive: Drive, running: Running, name: str, limit: float) -> int:
     return many
 
 
-def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> tuple[str, str] | None:
-    """Say what a mesh does not resolve, and which ones would; None if it resolves all.
+def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> list[Finding]:
+    """Say what a mesh does not resolve, and which ones would; nothing if it resolves all.
 
     Parameters
     ----------
@@ -132,12 +133,19 @@ def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> tuple[
     """
     names = sorted((name for name in errors if errors[name] > ERROR_LIMITS[name]), key=lambda name: -needed[name])
     if not names:
-        return None
-    said = ", ".join(f"{name} ({_size(errors[name])})" for name in names)
-    wanted = ", ".join(f"{needed[name]} for {name} within {ERROR_LIMITS[name]:.0%}" for name in names)
-    return f"the mesh does not resolve {said}.", f"Set belt.elements = {wanted}."
+        return []
+    most, *fewer = names
+    other = f", or {needed[fewer[0]]} for all but {most}" if fewer else ""
+    return [
+        Finding(
+            f"the belt has too few elements for {listing(names)}.",
+            f"Of these, errors are about {listing([_size(errors[name]) for name in names])}; speeds and torques need "
+            "fewer elements.",
+            f"Set belt.elements = {needed[most]} for all of that{other}.",
+        )
+    ]
 
 
 def _size(error: float) -> str:
     """An error in words; no number where it says only that nothing is right."""
-    return f"error of about {error:.{0 if error > 0.1 else 1}%}" if error < 1.0 else "error above 100%"
+    return f"{error:.{0 if error > 0.1 else 1}%}" if error < 1.0 else "more than 100%"

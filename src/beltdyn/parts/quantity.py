@@ -17,6 +17,9 @@ _UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
 
+RPM = 30.0 / math.pi
+"""Revolutions a minute in 1 rad/s."""
+
 
 @lru_cache(maxsize=1)
 def _registry() -> "pint.UnitRegistry[float]":

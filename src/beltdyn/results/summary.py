@@ -57,8 +57,6 @@ class Summary:
         Time taken, s, without `compile_time`; NaN when the run's end was not recorded.
     compile_time : float
         Time taken by compilation, s; NaN when the run's end was not recorded.
-    real_time_factor : float
-        Time taken over simulated time; NaN when the run's end was not recorded.
     warnings : tuple of str
         What a reader of the results has to know.
     """
@@ -80,8 +78,12 @@ class Summary:
     newton_iterations: int
     wall_time: float
     compile_time: float
-    real_time_factor: float
     warnings: tuple[str, ...]
+
+    @property
+    def computing_time_per_second(self) -> float:
+        """Time taken for each simulated second, s; NaN at rest, and when the run's end was not recorded."""
+        return self.wall_time / self.end if self.end > 0.0 else np.nan
 
 
 def summarize(run: Run) -> Summary:
@@ -134,6 +136,5 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         newton_iterations=int(attribute(recorded, "newton_iterations", 0)),
         wall_time=attribute(recorded, "wall_time", np.nan),
         compile_time=attribute(recorded, "compile_time", np.nan),
-        real_time_factor=attribute(recorded, "real_time_factor", np.nan),
         warnings=tuple(run.warnings),
     )

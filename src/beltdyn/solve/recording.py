@@ -284,5 +284,4 @@ class Recording:
             "cpu_time": cpu,
             "compile_time": self._compiled - self._begun,
             "start_time": self._started - self._compiled,
-            **({"real_time_factor": wall / self._reached} if self._reached > 0.0 else {}),
         }

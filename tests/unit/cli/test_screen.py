@@ -34,7 +34,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "1200, 14 rejected, 4900 Newton iterations; 101 outputs",
     ):
         assert part in output
-    assert "2 s of computing for each simulated second" in output
+    assert "computing time 0.5 s, 0.5 s for each simulated second, and 2.5 s to prepare" in output
 
 
 def test_tensioners_stand_in_degrees_or_millimetres(
@@ -45,7 +45,7 @@ def test_tensioners_stand_in_degrees_or_millimetres(
     monkeypatch.setattr("beltdyn.results.summarize", lambda _: summary)
     show_summary(run)
     output = " ".join(capsys.readouterr().out.split())
-    assert "tensioner of idler at 11.46°, from 5.73° to 17.19° tensioner of driven at 2 mm mesh" in output
+    assert "tensioner of idler at 11.46°, from 5.73° to 17.19° tensioner of driven at 2 mm errors of mesh" in output
 
 
 def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:

@@ -56,8 +56,8 @@ def test_a_link_counts_as_the_element_that_misses_the_circle_as_much(drive: Driv
 def test_said_are_errors_and_meshes_from_the_most_demanding_on() -> None:
     errors = dict.fromkeys(ERROR_LIMITS, 0.0) | {"tension": 0.123, "peak pressure": 2.0, "losses": float("nan")}
     needed = dict.fromkeys(ERROR_LIMITS, 20) | {"tension": 47, "peak pressure": 90}
-    assert unresolved(errors, needed) == (
-        "the mesh does not resolve peak pressure (error above 100%), tension (error of about 12%).",
-        "Set belt.elements = 90 for peak pressure within 20%, 47 for tension within 1%.",
-    )
-    assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed) is None
+    (finding,) = unresolved(errors, needed)
+    assert finding.fault == "the belt has too few elements for peak pressure and tension."
+    assert finding.spoils.startswith("Of these, errors are about more than 100% and 12%;")
+    assert finding.remedy == "Set belt.elements = 90 for all of that, or 47 for all but peak pressure."
+    assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed) == []

@@ -60,7 +60,7 @@ def test_file_and_memory_hold_the_same(change: Change, tmp_path: Path) -> None:
     assert file.path == tmp_path / "run.nc"
     assert memory.path is None
     xr.testing.assert_equal(memory.dataset, open_run(tmp_path / "run.nc").dataset.load())
-    times = {"created", "wall_time", "cpu_time", "compile_time", "start_time", "check_time", "real_time_factor"}
+    times = {"created", "wall_time", "cpu_time", "compile_time", "start_time", "check_time"}
     assert times <= memory.dataset.attrs.keys() == file.dataset.attrs.keys()
     for name in memory.dataset.attrs.keys() - times:
         assert memory.dataset.attrs[name] == file.dataset.attrs[name]

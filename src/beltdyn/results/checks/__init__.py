@@ -5,15 +5,16 @@ them; to add one, write it there and enter it in `CHECKS`.
 """
 
 from beltdyn.model import Drive
+from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.contact import deep_penetration, large_strain, leaves_pulley, slack_spans
 from beltdyn.results.checks.creep import impossible_slip, regularised_slip
-from beltdyn.results.checks.ending import unfinished
+from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished
 from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
-from beltdyn.results.checks.finding import Check, Evidence, Finding
+from beltdyn.results.checks.evidence import Check, Evidence
 from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved_by_mesh
 from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
-from beltdyn.results.checks.sliding import near_gross_slip, near_gross_slip_before
+from beltdyn.results.checks.sliding import gross_slip, gross_slip_before, near_gross_slip
 from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
@@ -29,8 +30,9 @@ CHECKS: tuple[Check, ...] = (
     leaves_pulley,
     deep_penetration,
     large_strain,
+    gross_slip,
     near_gross_slip,
-    near_gross_slip_before,
+    gross_slip_before,
     impossible_slip,
     regularised_slip,
     driving_loads,
@@ -62,6 +64,6 @@ def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> lis
         What was found.
     """
     if resolution is None:
-        return [Finding("nothing was recorded: the run ended before its first output.")]
+        return [NOTHING_RECORDED]
     evidence = Evidence(recorded, drive, resolution)
     return [finding for check in CHECKS for finding in check(evidence)]

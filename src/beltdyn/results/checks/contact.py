@@ -4,7 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.arrays import FloatArray
+from beltdyn.parts.finding import Finding, listing
+from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.recorded import names
 from beltdyn.theory.stretch import stretch
 
@@ -21,51 +23,71 @@ _INSTANTS = 40
 def slack_spans(evidence: Evidence) -> Iterator[Finding]:
     """Spans whose tension falls to zero at any time."""
     tensions = np.asarray(evidence.recorded["span_tension"])
-    for name, tension in zip(names(evidence.recorded, "span"), tensions.T, strict=True):
-        known = np.where(np.isfinite(tension), tension, np.inf)
-        lowest = float(known.min())
-        if lowest <= 0.0:
-            time = float(evidence.time[int(known.argmin())])
-            yield Finding(
-                f"the span {name} is slack: its tension falls to {lowest:.4g} N at t = {time:.4g} s.",
-                remedy="Shorten the belt, or reduce the load.",
-            )
+    known = np.where(np.isfinite(tensions), tensions, np.inf)
+    spans = np.flatnonzero(known.min(axis=0) <= 0.0).tolist()
+    if not spans:
+        return
+    lowest, slack = known.min(axis=0), (known <= 0.0).any(axis=1)
+    names_, times = names(evidence.recorded, "span"), evidence.time[known.argmin(axis=0)]
+    falls = [f"{names_[span]} to {lowest[span]:.3g} N at t = {times[span]:.4g} s" for span in spans]
+    yield Finding(
+        f"the belt goes slack, since its tension falls to zero or below: {listing(falls)}.",
+        "A slack belt sags and flaps, and this one is pushed: tensions, hub loads and slip are wrong then, in "
+        f"{np.mean(slack):.0%} of the run.",
+        f"Raise the installed tension by more than {-lowest.min():.2g} N, start more gently, or lower the load.",
+    )
 
 
 def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys that the belt leaves, of those it is laid on."""
     free = np.asarray(evidence.recorded["wrap_angle"]) <= 0.0
-    drive = evidence.drive
-    for pulley, laid, left in zip(drive.pulleys, drive.path.wrap_angles, free.T, strict=True):
-        if laid > 0.0 and left.any():
-            time = float(evidence.time[int(left.argmax())])
-            yield Finding(
-                f"the belt leaves the pulley {pulley.name} at t = {time:.4g} s.",
-                "The spans before and behind it have no tension and no speed as long.",
-                "Raise the tension.",
-            )
+    left = free & (evidence.drive.path.wrap_angles > 0.0)
+    lost = [
+        f"{pulley.name} at t = {evidence.time[int(when.argmax())]:.4g} s"
+        for pulley, when in zip(evidence.drive.pulleys, left.T, strict=True)
+        if when.any()
+    ]
+    if lost:
+        yield Finding(
+            f"the belt lifts off {listing(lost)}.",
+            f"Spans beside a pulley without belt have no tension and no speed: in {left.any(axis=1).mean():.0%} of the "
+            "run numbers are missing.",
+            "Raise the installed tension, or lower the speed.",
+        )
 
 
 def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys into which the belt sinks so far that the softness of the contact shapes the result."""
+    drive = evidence.drive
+    depths, times = _deepest(evidence)
+    most = np.minimum(DEEPEST_OF_RADIUS * drive.radii, DEEPEST_OF_THICKNESS * drive.belt.thickness)
+    deep = [
+        f"{1e3 * depth:.2g} mm into {pulley.name} at t = {time:.4g} s ({depth / radius:.1%} of its radius, "
+        f"{depth / drive.belt.thickness:.0%} of the belt's thickness)"
+        for pulley, radius, depth, time, limit in zip(drive.pulleys, drive.radii, depths, times, most, strict=True)
+        if depth > limit
+    ]
+    if deep:
+        yield Finding(
+            f"the belt sinks {listing(deep)}.",
+            "Torque arms, wrap angles and tensions are those of pulleys up to "
+            f"{(depths / drive.radii).max():.1%} smaller.",
+            f"Raise contact.stiffness = {drive.contact_stiffness:g} N/m^2 to "
+            f"{drive.contact_stiffness * (depths / most).max():.1e}.",
+        )
+
+
+def _deepest(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
+    """Largest penetration into each pulley, m, and when that was, s."""
     drive, recorded = evidence.drive, evidence.recorded
     instants = np.asarray(recorded["field_time"])
     rows = np.unique(np.linspace(0, len(instants) - 1, _INSTANTS).round().astype(int))
     place, touched = (np.asarray(recorded[name][rows]) for name in ("contact_position", "contact_pulley"))
     centers = np.asarray(recorded["pulley_center"][np.searchsorted(evidence.time, instants[rows])])
-    for number, (pulley, radius) in enumerate(zip(drive.pulleys, drive.radii.tolist(), strict=True)):
-        away = np.hypot(*np.moveaxis(place - centers[:, number, None], -1, 0))
-        depths = np.where(touched == number, radius - away, 0.0)
-        depth, time = float(depths.max()), float(instants[rows[int(depths.max(axis=1).argmax())]])
-        most = min(DEEPEST_OF_RADIUS * radius, DEEPEST_OF_THICKNESS * drive.belt.thickness)
-        if depth > most:
-            yield Finding(
-                f"the belt sinks {depth:.2g} m into {pulley.name} at t = {time:.4g} s: {depth / radius:.1%} of its "
-                f"radius, {depth / drive.belt.thickness:.0%} of the belt's thickness.",
-                "Tensions, arms of torques and wrap angles are those of a pulley smaller by as much.",
-                f"Raise contact.stiffness = {drive.contact_stiffness:g} N/m^2 to "
-                f"{drive.contact_stiffness * depth / most:.1e}.",
-            )
+    away = np.hypot(*np.moveaxis(place[:, None] - centers[:, :, None], -1, 0))
+    on = touched[:, None] == np.arange(len(drive.radii))[:, None]
+    depths = np.where(on, drive.radii[:, None] - away, 0.0).max(axis=2)
+    return depths.max(axis=0), instants[rows][depths.argmax(axis=0)]
 
 
 def large_strain(evidence: Evidence) -> Iterator[Finding]:
@@ -77,6 +99,7 @@ def large_strain(evidence: Evidence) -> Iterator[Finding]:
         yield Finding(
             f"the span {names(evidence.recorded, 'span')[span]} is stretched by {strain:.1%} at t = "
             f"{evidence.time[row]:.4g} s, more than {STRAIN_LIMIT:.0%}: few belts bear that.",
-            "The law of the material is linear in a strain that real belts do not follow so far.",
-            f"Raise the axial stiffness of {evidence.drive.belt.axial_stiffness:.4g} N, or lower the tension.",
+            f"Up to {tension[row, span]:.4g} N are taken from a constant axial stiffness, which few belts have so far.",
+            f"Lower the tension, or see whether the axial stiffness of {evidence.drive.belt.axial_stiffness:.4g} N is "
+            "right.",
         )

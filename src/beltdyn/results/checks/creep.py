@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.parts.finding import Finding, listing
+from beltdyn.results.checks.evidence import Evidence
 
 SLIP_DEFECT = 5e-4
 """Part of the speed by which slip may fall short of elastic creep without a warning."""
@@ -24,6 +25,7 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
     driver = max(evidence.pulleys, key=lambda pulley: pulley.power)
     if not (driver.power > 0.0 and evidence.window.turns and np.isfinite(driver.slip)):
         return
+    faults, worst = [], 0.0
     for pulley in evidence.pulleys:
         slip, elastic, slid = (
             1.0 - (1.0 - own) / (1.0 - others)
@@ -35,26 +37,20 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
         )
         defect = elastic + slid - slip
         if pulley.power < -_TRANSMITS * driver.power and defect > SLIP_DEFECT:
-            yield Finding(
-                f"{pulley.name} turns faster than {driver.name}, by {-slip:.3%} of the rim's speed, though it takes "
-                f"{-pulley.power:.4g} W from it: creep cannot do that."
+            worst = max(worst, defect)
+            faults.append(
+                f"{pulley.name} turns {-slip:.3%} faster than {driver.name}, which drives it"
                 if slip < 0.0
-                else f"{pulley.name} slips {slip:.3%} behind {driver.name}, less than the {elastic:.3%} that elastic "
-                "creep alone takes: impossible.",
-                f"Slip, and what is told from it, is wrong by {defect:.2%} of the speed or more; tensions and torques "
-                "are not concerned.",
-                _finer(evidence),
+                else f"{pulley.name} slips {slip:.3%} behind {driver.name}, less than the {elastic:.3%} by which the "
+                "belt stretches"
             )
-
-
-def _finer(evidence: Evidence) -> str:
-    """Say how coarse the mesh is, which is to blame: what bending does to slip is in the rolling radii."""
-    drive = evidence.drive
-    covered = float(np.degrees(drive.belt_length / drive.belt.elements / drive.radii.min()))
-    return (
-        f"The mesh is to blame: compare a run with belt.elements = {2 * drive.belt.elements} (an element covers "
-        f"{covered:.0f}° of {drive.pulleys[int(drive.radii.argmin())].name})."
-    )
+    if faults:
+        yield Finding(
+            f"{listing(faults)}: no belt can do that.",
+            f"Speeds, speed ratios and slip are wrong by {worst:.2%} of the speed or more; tensions and torques are "
+            "not concerned.",
+            f"The belt has too few elements: set belt.elements = {2 * evidence.drive.belt.elements} and compare.",
+        )
 
 
 def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
@@ -70,12 +66,15 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
     ]
     worst = max(led, key=lambda pulley: abs(pulley.regularisation), default=None)
     if worst is not None and (evidence.window.turns or _exceeds_stretch(evidence, worst.regularisation)):
-        others = f" (so on {', '.join(one.name for one in led if one is not worst)} too)" if led[1:] else ""
+        radii = dict(zip((one.name for one in evidence.pulleys), evidence.drive.radii.tolist(), strict=True))
+        rim = abs(evidence.pulleys[0].speed) * float(evidence.drive.radii[0])
+        parts = [f"{one.regularisation:.2%} of {one.slip:.2%} on {one.name}" for one in led]
+        losses = sum(abs(one.regularisation * one.belt_torque) / radii[one.name] for one in led) * rim
         yield Finding(
-            f"of the slip of {worst.name}, {worst.slip:.2%}, elastic creep makes {worst.elastic_creep:.2%}, and the "
-            f"slope of the friction law {worst.regularisation:.2%}{others}.",
-            "Slip and friction losses are those of that slope rather than of the belt.",
-            f"For slip near that of Coulomb's friction {_steeper(evidence)}.",
+            "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, "
+            f"{listing(parts)}.",
+            f"Slip is too large by as much, and friction losses by about {losses:.2g} W.",
+            f"To have the slip of the belt, {_steeper(evidence)}.",
         )
 
 

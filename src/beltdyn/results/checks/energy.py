@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 
+from beltdyn.parts.finding import Finding
 from beltdyn.results.balance import power_balance
-from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.closure import largest_closure, largest_numerical_share
 
 CLOSURE_LIMIT = 0.01
@@ -24,9 +25,10 @@ def open_account(evidence: Evidence) -> Iterator[Finding]:
     time, error = largest_closure(evidence.recorded)
     if not abs(error) <= CLOSURE_LIMIT:
         yield Finding(
-            f"the energy account is open by {error:.2%} of the energy put in at t = {time:.4g} s, more than "
-            f"{CLOSURE_LIMIT:.0%}: works, losses and efficiency may be wrong by as much.",
-            remedy=f"Reduce simulation.rtol = {evidence.drive.simulation.rtol:g}.",
+            f"the energies do not add up: by t = {time:.4g} s {error:.2%} of the energy put in is missing, more than "
+            f"{CLOSURE_LIMIT:.0%}.",
+            "Losses and efficiency may be wrong by as much.",
+            shorter_steps(evidence.drive),
         )
 
 
@@ -35,10 +37,10 @@ def numerical_damping(evidence: Evidence) -> Iterator[Finding]:
     time, share = largest_numerical_share(evidence.recorded)
     if not abs(share) <= NUMERICAL_LIMIT:
         yield Finding(
-            f"the damping of the time integrator took {share:.2%} of the energy put in by t = {time:.4g} s, more than "
-            f"{NUMERICAL_LIMIT:.0%}:",
-            spoils="vibrations die out sooner than they should, and efficiency is too low.",
-            remedy=f"Reduce simulation.rtol = {evidence.drive.simulation.rtol:g}.",
+            f"time steps are too long for the vibrations: by t = {time:.4g} s they took {share:.2%} of the energy put "
+            f"in, more than {NUMERICAL_LIMIT:.0%}.",
+            "Vibrations die out sooner than they should, and the efficiency is too low by up to as much.",
+            shorter_steps(evidence.drive),
         )
 
 
@@ -55,8 +57,7 @@ def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
         interval = evidence.drive.simulation.output_interval
         yield Finding(
             f"of {balance.power_in:.4g} W put in, {missing:.3g} W ({missing / balance.power_in:.1%}) are neither taken "
-            "out, lost nor stored, though the energy account closes:",
-            f"outputs every {interval:g} s meet the ripple of a torque at the same place each time, and mean torques "
-            "and powers are wrong by as much; losses and efficiency are not concerned.",
+            f"out, lost nor stored: a torque ripples in step with the outputs, every {interval:g} s.",
+            "Mean torques and powers are wrong by as much; losses and speeds are right.",
             f"Set simulation.output_interval = {_OTHER_INTERVAL * interval:.2g}.",
         )

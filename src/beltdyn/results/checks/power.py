@@ -3,8 +3,10 @@
 import math
 from collections.abc import Iterator
 
+from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.quantity import RPM
 from beltdyn.results.balance import Balance, power_balance
-from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.recorded import attribute
 
 DAMPING_LIMIT = 0.01
@@ -23,16 +25,17 @@ _GIVES = 0.01
 def negative_losses(evidence: Evidence) -> Iterator[Finding]:
     """Losses that give power in the mean, against the second law."""
     balance = power_balance(evidence.recorded, evidence.window)
-    for cause, power in balance.losses.items():
-        if balance.power_in > 0.0 and -power > GAIN_LIMIT * balance.power_in:
-            point = evidence.drive.contact.moment_arm == "point" and cause == "friction"
-            yield Finding(
-                f"the losses in {cause} are {power:.3g} W in the mean: they give power, which no loss can.",
-                _spoiled(balance, power),
-                'Set contact.moment_arm = "rim", with which friction gives none.'
-                if point
-                else f"Reduce simulation.rtol = {evidence.drive.simulation.rtol:g}.",
-            )
+    giving = {cause: power for cause, power in balance.losses.items() if -power > GAIN_LIMIT * balance.power_in}
+    if giving and balance.power_in > 0.0:
+        point = evidence.drive.contact.moment_arm == "point" and "friction" in giving
+        gains = listing([f"{-power:.3g} W by {cause}" for cause, power in giving.items()])
+        yield Finding(
+            f"losses give power, which no loss can: {gains} in the mean.",
+            _spoiled(balance, sum(giving.values())),
+            'Set contact.moment_arm = "rim", with which friction gives none.'
+            if point
+            else shorter_steps(evidence.drive),
+        )
 
 
 def damping_share(evidence: Evidence) -> float:
@@ -53,8 +56,8 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
         critical = 2.0 * math.sqrt(drive.contact_stiffness * drive.belt.mass_per_length)
         growing = min(drive.contact.damping, critical)  # beyond it the loss no longer grows with the damping
         yield Finding(
-            f"contact damping takes {power:.3g} W, {share:.1%} of the power put in: it is a means of computation, and "
-            "no loss of a belt.",
+            f"the damping between belt and pulleys takes {power:.3g} W, {share:.1%} of the power put in: it steadies "
+            "the computation, and is no loss of a belt.",
             _spoiled(balance, power),
             f"Lower contact.damping = {drive.contact.damping:g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 "
             "or less.",
@@ -65,8 +68,8 @@ def _spoiled(balance: Balance, power: float) -> str:
     """What the efficiency is with a loss and without it."""
     rest = balance.power_out + balance.lost - power
     if not (balance.power_out > 0.0 and rest > 0.0):
-        return "The losses are wrong by that much."
-    return f"Without them the efficiency is {balance.power_out / rest:.2%}, not {balance.efficiency:.2%}."
+        return f"The losses are wrong by {abs(power):.3g} W."
+    return f"Without that the efficiency is {balance.power_out / rest:.2%}, not {balance.efficiency:.2%}."
 
 
 def driving_loads(evidence: Evidence) -> Iterator[Finding]:
@@ -74,13 +77,18 @@ def driving_loads(evidence: Evidence) -> Iterator[Finding]:
     drive = evidence.drive
     motors = [pulley.prescribed or any(one.driven_speed for one in pulley.load) for pulley in drive.pulleys]
     most = max(abs(one.power) for one in evidence.pulleys)
-    for pulley, motor, means in zip(drive.pulleys, motors, evidence.pulleys, strict=True):
-        if any(motors) and not motor and means.power > _GIVES * most:
-            sense = "counter-clockwise" if means.speed > 0.0 else "clockwise"
-            yield Finding(
-                f"the load on {pulley.name} drives: its torque of {means.shaft_torque:.4g} N m has the sign of its "
-                f"speed, {means.speed:.4g} rad/s, and gives {means.power:.4g} W.",
-                "Efficiency and slip are those of a drive with power from there.",
-                f"If it is meant to take power, change its sign: a load on a shaft that turns {sense} is "
-                f"{'negative' if means.speed > 0.0 else 'positive'}.",
-            )
+    if not any(motors):
+        return
+    loads = [one for one, motor in zip(evidence.pulleys, motors, strict=True) if not motor]
+    driving = [one for one in loads if one.power > _GIVES * most]
+    facts = [
+        f"{one.name} with {one.shaft_torque:.4g} N m at {RPM * one.speed:.4g} rpm, {one.power:.4g} W" for one in driving
+    ]
+    if driving:
+        yield Finding(
+            f"a load drives, since its torque has the sign of its speed: {listing(facts)}.",
+            f"Efficiency, slip and tensions are those of a drive that takes {sum(one.power for one in driving):.4g} W "
+            "in there.",
+            "If it is meant to take power, change its sign: a load is negative on a shaft that turns "
+            "counter-clockwise, and positive on one that turns clockwise.",
+        )

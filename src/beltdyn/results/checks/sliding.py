@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.parts.finding import Finding, listing
+from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import capstan_margin, rim_speeds
 
 MARGIN_LIMIT = 1.5
@@ -14,28 +15,53 @@ SLIDING_LIMIT = 1e-3
 """Largest velocity of sliding of a whole arc, over the speed of the belt, that passes without a warning."""
 
 
-def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that slide through at the end of the run, or are near to it; a belt held at an end slides for its use."""
-    if evidence.drive.ends:
+def gross_slip(evidence: Evidence) -> Iterator[Finding]:
+    """Pulleys that slide through at the end of the run; a belt held at an end slides for its use."""
+    drive, numbers = evidence.drive, _sliding(evidence)
+    if not numbers:
         return
-    remedy = "Raise the tension or the wrap angle, or reduce the load."
-    speeds = np.array([pulley.speed for pulley in evidence.pulleys])
-    first = float(abs(rim_speeds(speeds, evidence.drive)[0]))
-    for pulley in evidence.pulleys:
-        sliding = abs(pulley.sliding_speed)
-        if sliding > SLIDING_LIMIT * first:
-            part = sliding / first if first > 0.0 else np.inf
-            share = f", {part:.{0 if part > 0.1 else 1}%} of the rim's speed of {evidence.pulleys[0].name}"
-            share = share if np.isfinite(part) else ""
-            fault = f"{pulley.name} slides through: the whole arc slides, at {sliding:.3g} m/s{share}."
-            yield Finding(fault, remedy=remedy)
-        elif 0.0 < pulley.margin < MARGIN_LIMIT and first > 0.0:
-            slips = f" slips {pulley.slip:.1%}," if np.isfinite(pulley.slip) and pulley.slip else ":"
-            yield Finding(f"{pulley.name}{slips} gross slip at {pulley.margin:.1f} times this load.", remedy=remedy)
+    speeds, heats = [], []
+    for number in numbers:
+        pulley = evidence.pulleys[number]
+        speed = abs(pulley.sliding_speed)
+        speeds.append(f"{speed:.3g} m/s on {pulley.name}")
+        heats.append(f"{speed * abs(pulley.belt_torque) / drive.radii[number]:.3g} W on {pulley.name}")
+    names = [evidence.pulleys[number].name for number in numbers]
+    yield Finding(
+        f"{listing(names)} {'slide' if names[1:] else 'slides'} through: the belt slides on the whole arc, at "
+        f"{listing(speeds)}.",
+        f"Friction heats the belt by {listing(heats)}; speeds and torques are those that a coefficient of friction of "
+        f"{_frictions(evidence, numbers)} passes on, and change with it.",
+        "Raise the tension or the wrap angle, or reduce the load.",
+    )
 
 
-def near_gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output; as above."""
+def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
+    """Pulleys that are near to sliding through at the end of the run."""
+    sliding = _sliding(evidence)
+    near = [
+        (pulley, number)
+        for number, pulley in enumerate(evidence.pulleys)
+        if number not in sliding and 0.0 < pulley.margin < MARGIN_LIMIT
+    ]
+    if evidence.drive.ends or not near or not _first_rim(evidence) > 0.0:
+        return
+    worst, number = min(near, key=lambda one: one[0].margin)
+    half = 0.5 * evidence.drive.frictions[number] * worst.wrap_angle
+    least = float(np.arctanh(min(np.tanh(half) / worst.margin, np.tanh(half))) / half)
+    yield Finding(
+        f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near slipping through: the belt "
+        f"would slide on the whole arc at {listing([f'{pulley.margin:.2f}' for pulley, _ in near])} times this load, "
+        f"less than {MARGIN_LIMIT:g}.",
+        f"The numbers hold as long as friction does: where it falls by more than {1.0 - least:.0%}, as by water or "
+        f"oil, {worst.name} stops pulling.",
+        f"Raise the tension by about {MARGIN_LIMIT / worst.margin - 1.0:.0%}, lower the load by "
+        f"{1.0 - worst.margin / MARGIN_LIMIT:.0%}, or lay the belt around more of {worst.name}.",
+    )
+
+
+def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
+    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
     if evidence.drive.ends:
         return
     tension, speed, wrap, torque = (
@@ -44,11 +70,37 @@ def near_gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     first, drive = evidence.window.first, evidence.drive
     times, margins = evidence.time[:first], capstan_margin(tension, speed, wrap, drive)[:first]
     reached = (margins < 1.0) & (drive.frictions > 0.0)
-    for pulley, when, load in zip(drive.pulleys, reached.T, np.abs(torque[:first]).T, strict=True):
-        if np.count_nonzero(when) > 1:
-            yield Finding(
-                f"{pulley.name} reached gross slip between t = {times[when][0]:.4g} s and {times[when][-1]:.4g} s, "
-                f"first at {load[when][0]:.4g} N m: its load was more than friction transmits, for "
-                f"{np.gradient(times)[when].sum():.2g} s in all.",
-                remedy="Raise the tension or the wrap angle, or load it more gently.",
-            )
+    found, longest = [], 0.0
+    for number in np.flatnonzero(np.count_nonzero(reached, axis=0) > 1).tolist():
+        when = reached[:, number]
+        load = abs(torque[:first][when, number][0])
+        found.append(
+            f"{drive.pulleys[number].name} from t = {times[when][0]:.4g} to {times[when][-1]:.4g} s, first at "
+            f"{load:.4g} N m"
+        )
+        longest = max(longest, float(np.gradient(times)[when].sum()))
+    if found:
+        yield Finding(
+            f"the belt slid through on {listing(found)}: that was more than friction transmits.",
+            f"Speeds and angles of the driven pulleys fell behind then, for {longest:.2g} s in all; means are those of "
+            f"the time from {evidence.window.start:.4g} s on.",
+            "Raise the tension or the wrap angle, or start and load more gently.",
+        )
+
+
+def _sliding(evidence: Evidence) -> list[int]:
+    """Numbers of the pulleys that slide through at the end of the run."""
+    limit = SLIDING_LIMIT * _first_rim(evidence)
+    sliding = (abs(pulley.sliding_speed) > limit for pulley in evidence.pulleys)
+    return [] if evidence.drive.ends else [number for number, slides in enumerate(sliding) if slides]
+
+
+def _first_rim(evidence: Evidence) -> float:
+    """Mean speed of the first rim, m/s."""
+    speeds = np.array([pulley.speed for pulley in evidence.pulleys])
+    return float(abs(rim_speeds(speeds, evidence.drive)[0]))
+
+
+def _frictions(evidence: Evidence, numbers: list[int]) -> str:
+    """Coefficients of friction of some pulleys, with the wedge factor."""
+    return listing(sorted({f"{evidence.drive.frictions[number]:.3g}" for number in numbers}))

@@ -5,15 +5,16 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.model import unstable_balance
-from beltdyn.results.checks.finding import Evidence, Finding
+from beltdyn.model import off_the_stop, unstable_balance
+from beltdyn.parts.finding import Finding
+from beltdyn.results.checks.evidence import Evidence
 
 
 def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
     """Tensioners whose balance at rest is not stable."""
     names = str(evidence.recorded.attrs.get("unstable_tensioners", ""))
-    for name in filter(None, names.split(", ")):
-        yield Finding(unstable_balance(name))
+    if names:
+        yield unstable_balance(names.split(", "))
 
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
@@ -25,11 +26,11 @@ def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
         lower, upper = tensioner.stops
         for name, on in (("lower", position <= lower), ("upper", position >= upper)):
             if on.any():
-                held = "It no longer keeps the tension:" if on[-1] else "It did not keep the tension then:"
+                tension = float(np.nanmean(np.asarray(evidence.recorded["span_tension"])[on]))
                 yield Finding(
                     f"the tensioner of {tensioner.pulley} {_when(on, evidence.time, name)}.",
-                    held,
-                    "change the length of the belt, or the stops.",
+                    f"There the length of the belt and not its spring sets the tension, {tension:.4g} N in the mean.",
+                    off_the_stop(name),
                 )
 
 

@@ -1,4 +1,4 @@
-"""The shape of a finding, and what checks look at."""
+"""What checks look at, and what they have in common."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -8,33 +8,12 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
+from beltdyn.parts.finding import Finding
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.means import PulleySummary, pulley_means
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.window import Window
-
-
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """What makes a result doubtful, in whole sentences or parts of one with their punctuation.
-
-    Attributes
-    ----------
-    fault : str
-        What is wrong, with its value and the rule that it breaks.
-    spoils : str
-        Which numbers it spoils and by how much; empty when `fault` says it.
-    remedy : str
-        What to do.
-    """
-
-    fault: str
-    spoils: str = ""
-    remedy: str = ""
-
-    def __str__(self) -> str:
-        return " ".join(part for part in (self.fault, self.spoils, self.remedy) if part)
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,3 +51,12 @@ class Evidence:
 
 
 Check = Callable[[Evidence], Iterator[Finding]]
+
+_FINER = 10.0
+"""How many times smaller a tolerance is that a remedy names."""
+
+
+def shorter_steps(drive: Drive) -> str:
+    """The remedy where time steps are too long; steps of a second-order method grow with the root of the tolerance."""
+    rtol = drive.simulation.rtol
+    return f"Set simulation.rtol = {rtol / _FINER:g} in place of {rtol:g}; a run then takes about three times as long."
