@@ -41,7 +41,7 @@ class Analysis(NamedTuple):
 
     @property
     def grows(self) -> bool:
-        """Whether results are written as they come: the function has a parameter ``output`` then."""
+        """Whether results grow over time and are written as they come: the function has a parameter ``output``."""
         return "output" in signature(self.function).parameters
 
     def result_file(self, drive_file: Path) -> Path:

@@ -79,7 +79,7 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         if one.kind is Parameter.KEYWORD_ONLY and name not in SHARED
     }
     common = [one for one in signature(command).parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
-    if not _is_over_time(function):
+    if not analysis.grows:  # there are plain tables of results over time alone
         common = [one for one in common if one.name != "csv"]
     parameters = [*common[:2], *own.values(), *common[2:]]
     command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
@@ -87,13 +87,6 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
     command.__name__ = analysis.name
     command.__doc__ = _help(analysis, own)
     return command
-
-
-def _is_over_time(function: Callable[..., Any]) -> bool:
-    """Whether a function gives runs, of which there are plain tables."""
-    from beltdyn.results import Run
-
-    return signature(function, eval_str=True).return_annotation is Run
 
 
 def _help(analysis: Analysis, own: dict[str, Parameter]) -> str:

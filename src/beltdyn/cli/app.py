@@ -95,4 +95,4 @@ def _usage(error: CycloptsError) -> str:
     if isinstance(error, UnusedCliTokensError):
         words = ", ".join(f'"{word}"' for word in error.unused_tokens or ())
         return f"{command} takes no argument {words}. See {command} --help."
-    return f"{error}"
+    return str(error)

@@ -27,6 +27,19 @@ def verdict(condition: bool) -> Verdict:
     return Verdict.HOLDS if condition else Verdict.FAILS
 
 
+def judged(holds: bool, fails: bool) -> Verdict:
+    """Give the verdict of a criterion that is met, or whose contrary is, or that is undecided in between.
+
+    Parameters
+    ----------
+    holds, fails : bool
+        Whether the criterion is met, and whether its contrary is.
+    """
+    if holds:
+        return Verdict.HOLDS
+    return Verdict.FAILS if fails else Verdict.OPEN
+
+
 _SCATTER = 0.2
 """Part by which forces at an instant change with time steps and meshes, about."""
 
@@ -41,9 +54,7 @@ def clearly_below(value: float, limit: float) -> Verdict:
     value, limit : float
         Both in one unit.
     """
-    if value < (1.0 - _SCATTER) * limit:
-        return Verdict.HOLDS
-    return Verdict.FAILS if limit < (1.0 - _SCATTER) * value else Verdict.OPEN
+    return judged(holds=value < (1.0 - _SCATTER) * limit, fails=limit < (1.0 - _SCATTER) * value)
 
 
 def all_hold(verdicts: Iterable[Verdict]) -> Verdict:

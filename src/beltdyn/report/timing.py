@@ -4,7 +4,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.report.numbers import shown
-from beltdyn.report.statement import Value, Verdict
+from beltdyn.report.statement import Value, Verdict, judged
 
 
 def below(times: FloatArray, others: FloatArray) -> Verdict:
@@ -15,9 +15,7 @@ def below(times: FloatArray, others: FloatArray) -> Verdict:
     times, others : ndarray, shape (repeats,)
         Repetitions of both.
     """
-    if np.max(times) < np.min(others):
-        return Verdict.HOLDS
-    return Verdict.FAILS if np.min(times) > np.max(others) else Verdict.OPEN
+    return judged(holds=bool(np.max(times) < np.min(others)), fails=bool(np.min(times) > np.max(others)))
 
 
 def with_spread(times: FloatArray) -> Value:

@@ -54,7 +54,7 @@ class Result:
 
     @property
     def status(self) -> str:
-        """How the analysis ended: "completed", or else no result but a `Run` is there."""
+        """How the analysis ended: "completed"; of a `Run` also "running", "interrupted" or "failed"."""
         return str(self.dataset.attrs["status"])
 
     @property

@@ -41,10 +41,12 @@ class StaticResult(Result):
 
     def fields_at(self, time: float | None = None) -> "xr.Dataset":
         """The drive as the instant of a run, at time zero; see `Run.fields_at`."""
-        dims = {name: VARIABLES[name].dims[1:] for name in _MOTION}
-        still = {name: (of, np.zeros([self.dataset.sizes[dim] for dim in of])) for name, of in dims.items()}
-        attributes = {name: VARIABLES[name].attributes for name in _MOTION}
-        return self.dataset.assign({name: (*still[name], attributes[name]) for name in _MOTION}).assign_coords(time=0.0)
+        sizes, motion = self.dataset.sizes, {name: VARIABLES[name] for name in _MOTION}
+        still = {
+            name: (one.dims[1:], np.zeros([sizes[dim] for dim in one.dims[1:]]), one.attributes)
+            for name, one in motion.items()
+        }
+        return self.dataset.assign(still).assign_coords(time=0.0)
 
     @cached_property
     def resolution(self) -> Resolution:

@@ -2,7 +2,8 @@
 
 The local error of the position is (beta + (am - af) / 2 - 1/6) h^2 (A1 - A0) to leading order.  It is
 allowed in proportion to the length of the step; but not beyond a length at which errors that pull the same way would
-add up to what the tension of the belt feels.
+add up to what the tension of the belt feels.  With tight tolerances, what numerical damping takes is kept to a part of
+the physical losses as well.
 """
 
 from math import ceil, floor, inf, sqrt

@@ -36,8 +36,6 @@ ACCELERATE: Final = 2
 """Prescribe the motion of what is driven, linearise, and put the solution into the trial acceleration."""
 CORRECT: Final = 3
 """Assemble the residual alone at the trial state of the integration, and solve with the factors that are there."""
-MOVE: Final = 4
-"""Take a part of the solution off the trial position."""
 
 _NO_SETTINGS = Settings(0.0, 1.0, 1.0, 1.0)
 
@@ -51,12 +49,10 @@ class Request(NamedTuple):
     budget: int = 0
     """Steps to try at most."""
     factors: TangentFactors = NO_TANGENT
-    factor: float = 0.0
-    """Part of the solution."""
 
 
 @kernel
-def serve(
+def dispatch(
     system: System, request: Request, settings: Settings, state: IntegratorState, equations: Equations, steps: Steps
 ) -> tuple[int, int]:
     """Do what is asked for.
@@ -80,10 +76,6 @@ def serve(
     kind, trial = request.kind, state.trial
     if kind == ADVANCE:
         return alpha_advance.advance(system, settings, state, equations, request.time, request.budget, steps)
-    if kind == MOVE:
-        subtract_solution(system, equations, request.factor, trial.position)
-        subtract_multipliers(system, equations, request.factor, state.multipliers)
-        return 1, 0
     motion = trial_motion(state, request.time)
     if kind == ACCELERATE:
         prescribe(system, motion)
@@ -109,7 +101,7 @@ def advance(
     steps: Steps,
 ) -> tuple[int, int]:
     """Integrate; see `alpha_advance.advance`."""
-    return serve(system, Request(ADVANCE, stop, budget), settings, state, equations, steps)
+    return dispatch(system, Request(ADVANCE, stop, budget), settings, state, equations, steps)
 
 
 def linearise(
@@ -122,18 +114,12 @@ def linearise(
     bool
         False if the tangent is singular.
     """
-    return _serve(system, Request(LINEARISE, motion.time, factors=factors), motion, multipliers, equations)
+    return _dispatch_at(system, Request(LINEARISE, motion.time, factors=factors), motion, multipliers, equations)
 
 
 def correct(system: System, motion: Motion, multipliers: FloatArray, equations: Equations) -> None:
     """Solve tangent x = residual at a state with the tangent of another, which `linearise` left in the equations."""
-    _serve(system, Request(CORRECT, motion.time), motion, multipliers, equations)
-
-
-def move(system: System, equations: Equations, factor: float, position: FloatArray, multipliers: FloatArray) -> None:
-    """Take factor times the solution off a position and the multipliers of the joint, in place."""
-    motion = Motion(0.0, position, np.zeros_like(position), np.zeros_like(position))
-    _serve(system, Request(MOVE, factor=factor), motion, multipliers, equations)
+    _dispatch_at(system, Request(CORRECT, motion.time), motion, multipliers, equations)
 
 
 def accelerate(system: System, motion: Motion, multipliers: FloatArray, equations: Equations) -> bool:
@@ -158,16 +144,18 @@ def accelerate(system: System, motion: Motion, multipliers: FloatArray, equation
     motion.acceleration[:] = 0.0
     multipliers[:] = 0.0
     request = Request(ACCELERATE, motion.time, factors=TangentFactors(by_acceleration=1.0))
-    return _serve(system, request, motion, multipliers, equations)
+    return _dispatch_at(system, request, motion, multipliers, equations)
 
 
-def _serve(system: System, request: Request, motion: Motion, multipliers: FloatArray, equations: Equations) -> bool:
+def _dispatch_at(
+    system: System, request: Request, motion: Motion, multipliers: FloatArray, equations: Equations
+) -> bool:
     """Do at a state, which is changed in place, what is asked for; False if the tangent is singular."""
     size, vectors = motion.position.size, (motion.position, motion.velocity, motion.acceleration)
     state = new_state(system, request.time, 0.0, np.zeros(size), np.zeros(size))._replace(multipliers=multipliers)
     for own, given in zip(state.trial, vectors, strict=False):
         own[:] = given
-    solved = serve(system, request, _NO_SETTINGS, state, equations, empty_steps(system, 0))[0] == 1
+    solved = dispatch(system, request, _NO_SETTINGS, state, equations, empty_steps(system, 0))[0] == 1
     for changed, vector in zip(vectors, state.trial, strict=False):
         changed[:] = vector
     return solved

@@ -30,7 +30,7 @@ _CROSSINGS = 2.0
 """The drive vibrates on its belt about as slowly as an axial wave crosses it so often.  Until that turns, errors that
 pull the same way add up: a step is long from sqrt(rtol) times this time."""
 _FINE = 1e-4
-"""Looser tolerances leave vibrations to numerical damping."""
+"""The default tolerance; looser ones leave vibrations to numerical damping."""
 _NUMERICAL_SHARE = 10.0
 """Part of the losses that numerical damping may take, over rtol.  The losses err by about five times this part: waves
 that errors of time excite have an energy of fourth order in the step, and are lost in contact."""

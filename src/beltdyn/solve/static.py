@@ -16,7 +16,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.records import Records
-from beltdyn.solve.engine import correct, linearise, move
+from beltdyn.solve.engine import correct, linearise
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.state import State
@@ -196,7 +196,11 @@ class _Search:
 
     def step(self, length: float) -> None:
         """Take the step, or a part of it."""
-        move(self._system, self._here, length, self.position, self._multipliers)
+        nodes, border, count = self._system.first_body, self._here.border_part, self._reach.size
+        self.position[:nodes] -= length * self._here.node_part.ravel()
+        self.position[self.position.size - count :] -= length * border[:count]
+        if self._system.joint:
+            self._multipliers -= length * border[count:]
 
     def step_naturally(self) -> bool:
         """Take the longest of halved steps that passes the natural monotonicity test; False if there is none."""

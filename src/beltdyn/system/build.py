@@ -17,15 +17,9 @@ from beltdyn.model.pulley import friction_on
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
-from beltdyn.records import Records, records
-from beltdyn.system.arrays import BODY, PULLEY, Supports, System
-from beltdyn.system.build_machines import (
-    body_inertias,
-    machine_arrays,
-    shaft_bodies,
-    tensioner_inertias,
-    tensioner_reaches,
-)
+from beltdyn.records import records
+from beltdyn.system.arrays import Supports, System
+from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
 from beltdyn.system.discretization import discretize
 from beltdyn.system.weight import weight_forces
 
@@ -134,6 +128,8 @@ def belt_system(
     radii = effective_radii(pulleys, belt)
     frictions = [friction_on(pulley, belt, contact) for pulley in pulleys] if contact else []
     machines = machine_arrays(pulleys, tensioners, path, gravity)
+    shafts = pulley_arrays(pulleys, radii, frictions, machines.tensioners)
+    bodies = body_arrays(pulleys, radii, tensioners)
     supports = _supports(nodes, len(mesh.scale), fixed, forces, moments)
     return System(
         nodes=nodes,
@@ -143,9 +139,9 @@ def belt_system(
         **mesh._asdict(),
         law=_contact_law(contact),
         contact=contact_points(contact),
-        pulleys=_pulley_arrays(pulleys, radii, frictions, machines.tensioners),
+        pulleys=shafts,
         rims=_rims(pulleys, radii),
-        bodies=_bodies(pulleys, radii, tensioners),
+        bodies=bodies,
         **machines._asdict(),
         supports=supports._replace(force=supports.force + weight_forces(mesh, nodes, gravity)),
     )
@@ -183,22 +179,6 @@ def _contact_law(contact: Contact | None) -> ContactLaw:
     )
 
 
-def _pulley_arrays(
-    pulleys: Sequence[Pulley], radii: FloatArray, frictions: Sequence[float], tensioners: Records
-) -> Records:
-    """The pulleys, with their shafts and carriers."""
-    carrier = np.full(len(pulleys), -1, dtype=np.int64)
-    carrier[tensioners.pulley] = np.arange(tensioners.size)
-    return records(
-        PULLEY,
-        center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
-        radius=radii,
-        friction=np.array(frictions, dtype=float),
-        shaft=shaft_bodies(pulleys),
-        carrier=carrier,
-    )
-
-
 def _rims(pulleys: Sequence[Pulley], radii: FloatArray) -> RoundRims | ShapedRims:
     """Surfaces of the pulleys."""
     surfaces = [pulley.surface or SURFACES["circle"]() for pulley in pulleys]
@@ -210,24 +190,6 @@ def _rims(pulleys: Sequence[Pulley], radii: FloatArray) -> RoundRims | ShapedRim
         for name, value in surface.parameters.items():
             row[name] = value
     return ShapedRims(radii, table)
-
-
-def _bodies(
-    pulleys: Sequence[Pulley],
-    radii: FloatArray,
-    tensioners: Sequence[Tensioner],
-) -> Records:
-    """Inertia and unknowns of rims, hub chains and tensioners."""
-    inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, tensioners)])
-    free = np.ones(inertia.size, dtype=bool)
-    free[[shaft for shaft, pulley in zip(shaft_bodies(pulleys), pulleys, strict=True) if pulley.prescribed]] = False
-    chains = [radius for radius, pulley in zip(radii, pulleys, strict=True) for _ in pulley.hub]
-    return records(
-        BODY,
-        inertia=inertia,
-        unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
-        reach=np.concatenate([radii, chains, tensioner_reaches(pulleys, tensioners)]),
-    )
 
 
 def _at_ends(drive: Drive) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""From the machines of the model to the arrays, on which the kernels work."""
+"""From pulleys, machines and tensioners of the model to the arrays, on which the kernels work."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -15,6 +15,7 @@ from beltdyn.machines.tensioners.registry import TENSIONER
 from beltdyn.model import Path, Pulley
 from beltdyn.model.carrier import carriers_of
 from beltdyn.records import Records, records
+from beltdyn.system.arrays import BODY, PULLEY
 
 
 class Machines(NamedTuple):
@@ -63,6 +64,40 @@ def machine_arrays(
         shaft_loads([pulley.load for pulley in pulleys], of_loads),
         link_rows(_placed(pulleys, of_links)),
         _tensioners(pulleys, tensioners, path, gravity),
+    )
+
+
+def pulley_arrays(
+    pulleys: Sequence[Pulley], radii: FloatArray, frictions: Sequence[float], tensioners: Records
+) -> Records:
+    """Arrays of the pulleys: centers and radii (m), friction, shafts by their number among the bodies, tensioners."""
+    carrier = np.full(len(pulleys), -1, dtype=np.int64)
+    carrier[tensioners.pulley] = np.arange(tensioners.size)
+    return records(
+        PULLEY,
+        center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
+        radius=radii,
+        friction=np.array(frictions, dtype=float),
+        shaft=shaft_bodies(pulleys),
+        carrier=carrier,
+    )
+
+
+def body_arrays(
+    pulleys: Sequence[Pulley],
+    radii: FloatArray,
+    tensioners: Sequence[Tensioner],
+) -> Records:
+    """Arrays of what moves: inertia and unknowns of rims, then of hub chains, then of tensioners."""
+    inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, tensioners)])
+    free = np.ones(inertia.size, dtype=bool)
+    free[[shaft for shaft, pulley in zip(shaft_bodies(pulleys), pulleys, strict=True) if pulley.prescribed]] = False
+    chains = [radius for radius, pulley in zip(radii, pulleys, strict=True) for _ in pulley.hub]
+    return records(
+        BODY,
+        inertia=inertia,
+        unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
+        reach=np.concatenate([radii, chains, tensioner_reaches(pulleys, tensioners)]),
     )
 
 

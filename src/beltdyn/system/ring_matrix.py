@@ -160,7 +160,7 @@ def substitute(matrix: RingMatrix, closed: bool, node_part: FloatArray, border_p
         Factorised by `factorise_ring`, since when its blocks between nodes and in the border's rows are the same.
     closed
         As there.
-    node_part : ndarray, shape (N, 6)
+    node_part : ndarray, shape (N, n)
         Overwritten by the solution.
     border_part : ndarray, shape (m,)
         Overwritten by the solution.

@@ -12,7 +12,7 @@ from beltdyn.solve.compilation import usable_cores
 COMPILE = """
 from beltdyn.published import loaded_two_pulley
 from beltdyn.solve.compilation import compile_kernels
-from beltdyn.solve.engine import serve
+from beltdyn.solve.engine import dispatch
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
@@ -20,7 +20,7 @@ drive = loaded_two_pulley()
 drive = drive.replace(belt=drive.belt.replace(discretization="{}"))
 system = drive_system(drive)
 compile_kernels(system, laid(system, drive.path))
-print(sum(serve.dispatcher.stats.cache_hits.values()), sum(serve.dispatcher.stats.cache_misses.values()))
+print(sum(dispatch.dispatcher.stats.cache_hits.values()), sum(dispatch.dispatcher.stats.cache_misses.values()))
 """
 
 

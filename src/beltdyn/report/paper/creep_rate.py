@@ -13,7 +13,7 @@ from beltdyn.report.measures import DRIVER, LAG_START, RAMP_END, RAMP_START, lag
 from beltdyn.report.numbers import power_of_ten
 from beltdyn.report.picture import picture
 from beltdyn.report.runs import Runs
-from beltdyn.report.statement import Finding, Number, Section, Statement, Verdict, verdict
+from beltdyn.report.statement import Finding, Number, Section, Statement, Verdict, judged, verdict
 from beltdyn.results import Run
 
 _FINE = 120
@@ -159,8 +159,7 @@ def _efficiency(runs: Runs) -> Statement:
             ]
         low, high = (float(np.exp(np.mean(np.log(part)))) for part in (spent[:3], spent[3:]))
         numbers.append(Number("three larger factors over three smaller ones", high / low))
-        holds, fails = high > _CLEARLY * low, low > _CLEARLY * high
-        return Finding(settings, numbers, Verdict.HOLDS if holds else Verdict.FAILS if fails else Verdict.OPEN)
+        return Finding(settings, numbers, judged(holds=high > _CLEARLY * low, fails=low > _CLEARLY * high))
 
     return Statement(
         name="low-factor-is-cheaper",

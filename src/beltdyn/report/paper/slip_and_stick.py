@@ -10,7 +10,7 @@ from beltdyn.report.measures import times
 from beltdyn.report.numbers import power_of_ten
 from beltdyn.report.paper.loaded_runs import FACTORS, POWERS, loaded_cases, published_name
 from beltdyn.report.runs import Runs
-from beltdyn.report.statement import Finding, Number, Section, Statement, Verdict, verdict
+from beltdyn.report.statement import Finding, Number, Section, Statement, judged, verdict
 
 _STEEP = {1e5: "two_pulley_20", 1e7: "coulomb_1e7_20"}
 _STEEP_BETTER = {factor: f"{name}_better" for factor, name in _STEEP.items()}
@@ -50,8 +50,7 @@ def _coulomb(runs: Runs) -> Statement:
             ]
         dearer = spent[-1] / spent[0]
         numbers.append(Number("iterations, last over first", dearer))
-        holds, fails = dearer > _CLEARLY, dearer < 1.0 / _CLEARLY
-        return Finding(settings, numbers, Verdict.HOLDS if holds else Verdict.FAILS if fails else Verdict.OPEN)
+        return Finding(settings, numbers, judged(holds=dearer > _CLEARLY, fails=dearer < 1.0 / _CLEARLY))
 
     return Statement(
         name="coulomb-is-costlier",
