@@ -23,7 +23,6 @@ from beltdyn.theory.capstan import capstan_ratio
 from beltdyn.theory.creep import creep_speed_loss, layer_length
 from beltdyn.theory.elastic_creep import gross_slip_tensions
 from beltdyn.theory.path import open_belt
-from beltdyn.theory.stretch import stretch
 
 RPM = pi / 30.0
 
@@ -257,11 +256,11 @@ def creep(run: Run) -> float:
     tensions = [span.tension for span in spans]
     speed = max(span.belt_speed for span in spans)
     layer = layer_length(
-        run.drive.contact.creep_rate_factor or np.inf, abs(speed), belt.axial_stiffness, mass=belt.mass_per_length
+        run.drive.contact.creep_rate_factor or np.inf, abs(speed), belt.stretch_parameters, mass=belt.mass_per_length
     )
     arcs = run.drive.path.wrap_angles * run.drive.radii
     return 0.5 * sum(
-        creep_speed_loss(max(tensions), min(tensions), belt.axial_stiffness, float(arc), layer)
+        creep_speed_loss(max(tensions), min(tensions), belt.stretch_parameters, float(arc), layer)
         for arc in (arcs[0], arcs[-1])
     )
 
@@ -288,7 +287,7 @@ def without_idler(drive: Drive) -> Drive:
     """The same drive with fixed centres and without its idler, its belt as long as 600 N stretch it to the path."""
     pulleys = [pulley for pulley in drive.pulleys if pulley.side == "inside"]
     path = open_belt(pulleys[1].center[0], tuple(pulley.radius + drive.belt.pitch_offset for pulley in pulleys)).length
-    length = path / float(stretch(600.0, drive.belt.axial_stiffness))
+    length = path / float(drive.belt.stretch_parameters.stretch(600.0))
     return drive.replace(pulley=pulleys, tensioner=[], belt=drive.belt.replace(length=length))
 
 

@@ -18,6 +18,7 @@ ELSEWHERE = {
     "machines/loads/*.py": "unit/machines/loads/test_shaft.py",
     "machines/profiles/*.py": "unit/machines/profiles/test_functions.py",
     "machines/tensioners/registry.py": "unit/machines/tensioners/test_tensioner.py",
+    "stretch/*.py": "unit/stretch/test_laws.py",
     "results/checks/*.py": "unit/results/test_checks.py",
     # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
     "elements/planar_curve.py": "unit/elements/test_kind.py",

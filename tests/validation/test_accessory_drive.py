@@ -17,7 +17,6 @@ from beltdyn.model import Resistance, RotaryTensioner
 from beltdyn.plot.curve import centerline, element_lengths
 from beltdyn.results import derived
 from beltdyn.results.mechanics import cells
-from beltdyn.theory.stretch import stretch
 
 pytestmark = pytest.mark.slow
 
@@ -139,7 +138,7 @@ def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
         belts.append(float(np.linalg.norm(pieces, axis=2).sum()))
         paths.append(path.length - float(np.sum(sunk * cell)))
         tension = output["belt_tension"].values
-        stretched.append(float(np.sum(lengths * [stretch(one, drive.belt.axial_stiffness) for one in tension])))
+        stretched.append(float(np.sum(lengths * [drive.belt.stretch_parameters.stretch(one) for one in tension])))
     assert np.ptp(paths) > 2e-3
     assert np.ptp(np.array(belts) - paths) < 16e-6
     assert np.array(stretched) - drive.belt_length == pytest.approx(np.array(belts) - drive.belt_length, rel=0.01)

@@ -16,7 +16,6 @@ import pytest
 from beltdyn import Run, simulate
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.published import better, loaded_two_pulley
-from beltdyn.theory.stretch import stretch, tangent_stiffness
 
 LOAD = 45.0
 ALLOWED = 3e-3
@@ -88,11 +87,11 @@ def spectrum_of(run: Run, end: float = 1.0) -> Spectrum:
 def lines_of(run: Run) -> Lines:
     data, belt = run.dataset.isel(time=window(run, 1.0)).mean("time"), run.drive.belt
     tension, speed = np.asarray(data["span_tension"]), np.asarray(data["belt_speed"])
-    g, span, driven = stretch(tension, belt.axial_stiffness), run.drive.path.span_lengths[0], run.drive.pulleys[1]
+    g, span, driven = belt.stretch_parameters.stretch(tension), run.drive.path.span_lengths[0], run.drive.pulleys[1]
     wave = np.sqrt(tension * g / belt.mass_per_length)
     transverse = (wave**2 - speed**2) / (2.0 * span * wave)
     nodes = float(np.mean(speed / g)) * belt.elements / belt.given_length
-    stiffness = driven.radius**2 * np.sum(tangent_stiffness(g, belt.axial_stiffness) * g / span)
+    stiffness = driven.radius**2 * np.sum(belt.stretch_parameters.tangent_stiffness(g) * g / span)
     torsion = float(np.sqrt(stiffness / driven.inertia)) / (2.0 * np.pi)
     return Lines(np.multiply(nodes, np.arange(1.0, 7.0)), np.outer(transverse, [1, 2, 3]).ravel(), torsion)
 

@@ -16,12 +16,11 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.solve.vibrations import Vibrations
+from beltdyn.stretch import StretchParameters
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
-from beltdyn.system.discretization import belt_section
 from beltdyn.system.state import State
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
-from beltdyn.theory.stretch import stretch
 
 GRAVITY = 9.81
 PINS = [(0, 0), (0, 1), (-1, 0), (-1, 1)]
@@ -42,24 +41,24 @@ def hang(elements: int) -> tuple[Belt, System]:
     return belt, belt_system(belt, closure="open", fixed=PINS, gravity=(0.0, -GRAVITY))
 
 
-def half_shape(pull: float, weight: float, axial: float, upto: float) -> FloatArray:
+def half_shape(pull: float, weight: float, law: StretchParameters, upto: float) -> FloatArray:
     """Place (x, y) over the lowest point of the belt's point at the reference length s = upto from it."""
     points, weights = np.polynomial.legendre.leggauss(100)
     s = 0.5 * upto * (points + 1.0)
     tension = np.hypot(pull, weight * s)
-    factor = 0.5 * upto * weights * stretch(tension, axial) / tension
+    factor = 0.5 * upto * weights * law.stretch(tension) / tension
     return np.array([factor.sum() * pull, (factor * s).sum() * weight])
 
 
 def catenary(belt: Belt, span: float) -> tuple[float, FloatArray, FloatArray]:
     """Horizontal pull, places of the nodes over the lowest point, and their tangents' angles."""
-    axial, weight = belt_section(belt).axial, belt.mass_per_length * GRAVITY
+    law, weight = belt.stretch_parameters, belt.mass_per_length * GRAVITY
     half = 0.5 * belt.given_length
     pull = float(
-        brentq(lambda h: half_shape(h, weight, axial, half)[0] - 0.5 * span, 1e-3 * weight, 1e2 * weight, xtol=1e-16)
+        brentq(lambda h: half_shape(h, weight, law, half)[0] - 0.5 * span, 1e-3 * weight, 1e2 * weight, xtol=1e-16)
     )
     s = np.linspace(-half, half, belt.elements + 1)
-    places = np.array([half_shape(pull, weight, axial, abs(u)) * [np.sign(u), 1.0] for u in s])
+    places = np.array([half_shape(pull, weight, law, abs(u)) * [np.sign(u), 1.0] for u in s])
     return pull, places, np.arctan2(weight * s, pull)
 
 

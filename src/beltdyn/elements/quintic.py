@@ -2,9 +2,10 @@
 
 With q = dr/dx, w = d2r/dx2, G = q . q and c = q x w the strain energy is
 
-    U = integral of EA alpha1 / 8 (G - 1)^2 + EI alpha2 / 2 c^2 / G over the reference length,
+    U = integral of W(G) + EI alpha2 / 2 c^2 / G over the reference length,
 
-the axial and the first bending term of Eq. 14 without shear.  The curvature is continuous from element to element.
+the energy W of the law of stretch, and the first bending term of Eq. 14 without shear.  The curvature is continuous
+from element to element.
 """
 
 from math import comb
@@ -18,6 +19,7 @@ from beltdyn.elements.planar_curve import Density, add_density, combine, curve_s
 from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature, gauss_points
+from beltdyn.stretch import stretching
 
 Six = tuple[float, float, float, float, float, float]
 _DEGREE = 5
@@ -66,8 +68,8 @@ def quintic_energy(element: Quintic, e: FloatArray, length: float) -> float:
         qx, qy = combine(e, slopes(points[k], length))
         wx, wy = combine(e, bends(points[k], length))
         metric, cross = qx * qx + qy * qy, qx * wy - qy * wx
-        stretching = 0.125 * element.section.axial * (metric - 1.0) * (metric - 1.0)
-        total += weights[k] * length * (stretching + 0.5 * element.section.bending * cross * cross / metric)
+        along = stretching(element.section.stretch, metric).energy
+        total += weights[k] * length * (along + 0.5 * element.section.bending * cross * cross / metric)
     return total
 
 
@@ -81,13 +83,14 @@ def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, 
     for k in range(points.size):
         slope, bend = slopes(points[k], length), bends(points[k], length)
         q, w = combine(e, slope), combine(e, bend)
-        axial, bending = weights[k] * length * element.section.axial, weights[k] * length * element.section.bending
+        weight, bending = weights[k] * length, weights[k] * length * element.section.bending
         metric = q[0] * q[0] + q[1] * q[1]
         turning = (q[0] * w[1] - q[1] * w[0]) / metric
+        along = stretching(element.section.stretch, metric)
         density = Density(
-            0.25 * axial * (metric - 1.0) - 0.5 * bending * turning * turning,
+            weight * along.slope - 0.5 * bending * turning * turning,
             bending * turning,
-            0.25 * axial + bending * turning * turning / metric,
+            weight * along.curvature + bending * turning * turning / metric,
             -bending * turning / metric,
             bending / metric,
         )

@@ -3,13 +3,14 @@
 from typing import NamedTuple
 
 from beltdyn.kernel import kernel
+from beltdyn.stretch import StretchParameters
 
 
 class Section(NamedTuple):
     """The factors of Eqs. 14 and 15 after integration over the section, and the section's inertia and damping."""
 
-    axial: float
-    """E A alpha1, N."""
+    stretch: StretchParameters
+    """Parameters of the law of stretch, E A alpha1 among them; their type says which law it is."""
     bending: float
     """E I alpha2, N m^2."""
     quartic: float
@@ -28,6 +29,11 @@ class Section(NamedTuple):
     """E A alpha1 times the damping time of stretch, N s."""
     bending_damping: float = 0.0
     """E I alpha2 times the damping time of bending, N m^2 s."""
+
+    @property
+    def axial(self) -> float:
+        """E A alpha1 without strain, N."""
+        return self.stretch.stiffness
 
 
 @kernel(inline=True)

@@ -32,7 +32,7 @@ def beam_energy(beam: ThreeNodeBeam, e: FloatArray, length: float) -> float:
     """Strain energy of an element; see `ElementKind.energy`."""
     link, total = length / LINKS, 0.0
     for k in range(LINKS):
-        total += link_energy(e, 2 * k, beam.section.axial, link)
+        total += link_energy(e, 2 * k, beam.section.stretch, link)
         total += spring_energy(e, 2 * k, beam.section.bending / link)
     return total
 
@@ -44,7 +44,7 @@ def beam_force(beam: ThreeNodeBeam, e: FloatArray, length: float, _wanted: bool,
     work.tangent[:] = 0.0
     link = length / LINKS
     for k in range(LINKS):
-        add_link(e, 2 * k, beam.section.axial, link, work.gradient, work.tangent)
+        add_link(e, 2 * k, beam.section.stretch, link, work.gradient, work.tangent)
         add_spring(e, 2 * k, beam.section.bending / link, work.gradient, work.tangent)
 
 

@@ -1,4 +1,4 @@
-"""Truss element of Leamy and Wasfy: a straight link between two points that stretches, with the strain of Eq. 14."""
+"""Truss element of Leamy and Wasfy: a straight link between two points, which stretches by the belt's law."""
 
 from typing import NamedTuple
 
@@ -9,6 +9,7 @@ from beltdyn.elements.kind import ElementKind
 from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature
+from beltdyn.stretch import StretchParameters, stretching
 
 _CIRCLE = 48.0
 """A straight link over the angle a misses a circle by R a^2 / 8, a cubic over b by R b^4 / 384."""
@@ -22,8 +23,8 @@ class Truss(NamedTuple):
 
 
 @kernel
-def link_energy(e: FloatArray, i: int, axial: float, length: float) -> float:
-    """Strain energy EA L (G - 1)^2 / 8 of the link between two points, with G = |r_j - r_i|^2 / L^2.
+def link_energy(e: FloatArray, i: int, law: StretchParameters, length: float) -> float:
+    """Strain energy L W(G) of the link between two points, with G = |r_j - r_i|^2 / L^2.
 
     Parameters
     ----------
@@ -31,8 +32,8 @@ def link_energy(e: FloatArray, i: int, axial: float, length: float) -> float:
         Places of points in turn, m.
     i
         Index of the first coordinate of point i; those of point j follow.
-    axial
-        Axial stiffness E A alpha1, N.
+    law
+        Parameters of the law of stretch.
     length
         Reference length L of the link, m.
 
@@ -42,17 +43,18 @@ def link_energy(e: FloatArray, i: int, axial: float, length: float) -> float:
         J.
     """
     x, y = e[i + 2] - e[i], e[i + 3] - e[i + 1]
-    excess = (x * x + y * y) / (length * length) - 1.0
-    return 0.125 * axial * length * excess * excess
+    return length * stretching(law, (x * x + y * y) / (length * length)).energy
 
 
 @kernel
-def add_link(e: FloatArray, i: int, axial: float, length: float, gradient: FloatArray, tangent: FloatArray) -> None:
+def add_link(
+    e: FloatArray, i: int, law: StretchParameters, length: float, gradient: FloatArray, tangent: FloatArray
+) -> None:
     """Add gradient and exact tangent of `link_energy`.
 
     Parameters
     ----------
-    e, i, axial, length
+    e, i, law, length
         As for `link_energy`.
     gradient : ndarray
         dU/de, N.
@@ -61,8 +63,8 @@ def add_link(e: FloatArray, i: int, axial: float, length: float, gradient: Float
     """
     x, y = e[i + 2] - e[i], e[i + 3] - e[i + 1]
     square = length * length
-    factor = 0.5 * axial * ((x * x + y * y) / square - 1.0) / length
-    steep = axial / (length * square)
+    along = stretching(law, (x * x + y * y) / square)
+    factor, steep = 2.0 * along.slope / length, 4.0 * along.curvature / (length * square)
     xx, xy, yy = factor + steep * x * x, steep * x * y, factor + steep * y * y
     for a in range(2):
         sign, p = 2.0 * a - 1.0, i + 2 * a
@@ -79,7 +81,7 @@ def add_link(e: FloatArray, i: int, axial: float, length: float, gradient: Float
 @kernel
 def truss_energy(truss: Truss, e: FloatArray, length: float) -> float:
     """Strain energy of an element; see `ElementKind.energy`."""
-    return link_energy(e, 0, truss.section.axial, length)
+    return link_energy(e, 0, truss.section.stretch, length)
 
 
 @kernel
@@ -87,7 +89,7 @@ def truss_force(truss: Truss, e: FloatArray, length: float, _wanted: bool, work:
     """Elastic force of an element with its tangent; see `ElementKind.force`."""
     work.gradient[:] = 0.0
     work.tangent[:] = 0.0
-    add_link(e, 0, truss.section.axial, length, work.gradient, work.tangent)
+    add_link(e, 0, truss.section.stretch, length, work.gradient, work.tangent)
 
 
 def lumped_mass(section: Section, length: float) -> FloatArray:

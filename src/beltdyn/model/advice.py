@@ -9,7 +9,6 @@ from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.parts.finding import Finding, listing
-from beltdyn.theory.stretch import stretch
 
 _MOST_TENSION_LOST = 0.02
 _DEEPEST_PENETRATION = 0.1
@@ -98,7 +97,7 @@ def _tension(drive: Drive, installation: Installation) -> list[Finding]:
             )
         ]
     remedy = _remedy(drive, installation, tension, tension / (1 - _MOST_TENSION_LOST))
-    shorter = installation.path.length / float(stretch(tension, drive.belt.axial_stiffness)) - drive.belt_length
+    shorter = installation.path.length / float(drive.belt.stretch_parameters.stretch(tension)) - drive.belt_length
     return [
         Finding(
             f"the contact of belt and pulleys is so soft that the belt must be {1e3 * shorter:.2g} mm shorter for "
@@ -116,10 +115,9 @@ def _remedy(drive: Drive, installation: Installation, tension: float, laid: floa
     The stiffness is that with which the penetration, T g / (R k_p) along each arc, shortens the path by as much as the
     belt is stretched less.
     """
-    path, axial = installation.path, drive.belt.axial_stiffness
-    stretched, most = float(stretch(tension, axial)), float(stretch(laid, axial))
-    less = 2 * (laid - tension) / (axial * (most**2 + most * stretched + stretched**2 - 1))  # most - stretched
-    room = path.length * less / most
+    path, law = installation.path, drive.belt.stretch_parameters
+    stretched, most = float(law.stretch(tension)), float(law.stretch(laid))
+    room = path.length * (most - stretched) / most
     stiffness = tension * stretched * float(np.sum(path.wrap_angles / drive.radii)) / room
     depth = tension * stretched / (stiffness * float(drive.radii.min()))
     return (

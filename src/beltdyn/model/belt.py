@@ -14,6 +14,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, describe_forms, to_material
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
+from beltdyn.stretch import Green, StretchParameters
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
 
@@ -218,6 +219,16 @@ class Belt(Part):
     def axial_stiffness(self) -> float:
         """Axial stiffness E A α₁, N."""
         return self.youngs_modulus * self.area * self.axial_factor
+
+    @property
+    def stretch_parameters(self) -> StretchParameters:
+        """Parameters of the law of stretch, which know tension over stretch and stretch over tension."""
+        return Green(self.axial_stiffness)
+
+    def local_stiffness(self, tension: float) -> float:
+        """Rate dN/dg at which the tension grows with the stretch, where it is `tension`, N."""
+        law = self.stretch_parameters
+        return float(law.tangent_stiffness(law.stretch(max(tension, 0.0))))
 
     @property
     def bending_stiffness(self) -> float:

@@ -11,7 +11,6 @@ from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
 from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, balance_tensioners
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
-from beltdyn.theory.stretch import tension as tension_of
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ def describe(
     laid = path.length / drive.belt_length
     return Installation(
         strain=laid - 1,
-        laid_tension=float(tension_of(laid, drive.belt.axial_stiffness)),
+        laid_tension=float(drive.belt.stretch_parameters.tension(laid)),
         tension=float(span_tensions.mean()),
         span_tensions=span_tensions,
         penetrations=penetrations,
@@ -152,7 +151,7 @@ def _span_frequencies(drive: Drive, path: Path, tensions: FloatArray) -> FloatAr
             tension,
             mass,
             bending=belt.bending_stiffness,
-            sag_parameter=sag_parameter(mass * gravity, length, tension, belt.axial_stiffness),
+            sag_parameter=sag_parameter(mass * gravity, length, tension, belt.local_stiffness(tension)),
         )
         for length, gravity, tension in zip(path.span_lengths.tolist(), across.tolist(), tensions.tolist(), strict=True)
     ]

@@ -8,7 +8,6 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.end import PathEnd, pulling
 from beltdyn.model.path import Path
-from beltdyn.theory.stretch import stretch
 
 _ANY_LENGTH = 1.0  # m
 
@@ -53,7 +52,7 @@ def open_path(centers: FloatArray, radii: FloatArray, ends: Sequence[PathEnd], b
             f"belt.installed_tension = {belt.installed_tension:.5g} N does not go with an end that is pulled, which "
             "gives the belt its tension. Give belt.length in its place"
         )
-    missing = belt.length * float(stretch(tension, belt.axial_stiffness)) - path.length
+    missing = belt.length * float(belt.stretch_parameters.stretch(tension)) - path.length
     if missing <= -_ANY_LENGTH:
         name = next(end.name for end in ends if end.pull is not None)
         raise ValueError(

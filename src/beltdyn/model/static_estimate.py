@@ -8,9 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.path import Path
-from beltdyn.theory.stretch import stretch as stretch_under
 from beltdyn.theory.stretch import stretch_with_penetration
-from beltdyn.theory.stretch import tension as tension_of
 
 
 @dataclass(frozen=True)
@@ -41,10 +39,10 @@ class StaticEstimate:
 def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
     """Estimate tension and penetration of a belt on pulleys that stand still.
 
-    At the stretch g the tension is T = E A alpha1 (g^2 - 1) g / 2 (the axial term of the strain energy). On a
-    pulley of radius R it presses with T g / R per unstretched metre, so the belt sinks by d = T g / (R k_p),
-    which shortens the path by the wrap angle times d. Of the length and the tension of the belt, and of the
-    stiffness of contact and the largest d, one is given and the other found.
+    At the stretch g the tension T is that of the law of stretch. On a pulley of radius R it presses with T g / R per
+    unstretched metre, so the belt sinks by d = T g / (R k_p), which shortens the path by the wrap angle times d. Of the
+    length and the tension of the belt, and of the stiffness of contact and the largest d, one is given and the other
+    found.
 
     Parameters
     ----------
@@ -54,7 +52,7 @@ def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
     contact : Contact
         With its stiffness or its penetration.
     """
-    radii = np.abs(path.radii)
+    radii, law = np.abs(path.radii), belt.stretch_parameters
 
     def penetrations(load: float) -> FloatArray:
         if contact.stiffness is None:
@@ -63,13 +61,13 @@ def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
 
     if belt.installed_tension is not None:
         tension = belt.installed_tension
-        stretch = float(stretch_under(tension, belt.axial_stiffness))
+        stretch = float(law.stretch(tension))
         depths = penetrations(tension * stretch)
         length = (path.length - float(path.wrap_angles @ depths)) / stretch
     else:
         length = belt.given_length
         stretch = _stretch(path, belt, contact, penetrations(0.0))
-        tension = max(float(tension_of(stretch, belt.axial_stiffness)), 0.0)
+        tension = max(float(law.tension(stretch)), 0.0)
         depths = penetrations(tension * stretch)
     stiffness = contact.stiffness
     if stiffness is None:
@@ -85,4 +83,4 @@ def _stretch(path: Path, belt: Belt, contact: Contact, depths: FloatArray) -> fl
     if path.length <= length:
         return path.length / length
     sinking = float(np.sum(path.wrap_angles / np.abs(path.radii))) / contact.stiffness
-    return stretch_with_penetration(length, path.length, belt.axial_stiffness, sinking)
+    return stretch_with_penetration(length, path.length, belt.stretch_parameters, sinking)

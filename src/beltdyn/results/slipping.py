@@ -5,7 +5,6 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import across, relative_loss, slip
-from beltdyn.theory.stretch import stretch
 
 
 def slip_parts(
@@ -36,11 +35,12 @@ def slip_parts(
         Parts of the first rim's speed, of which the first is the sum of the others. NaN while the first rim stands
         still: while it goes no further than the belt is stretched.
     """
-    stretched = np.max(tension, axis=-1) / drive.belt.axial_stiffness * drive.belt_length
+    law = drive.belt.stretch_parameters
+    stretched = (law.stretch(np.max(tension, axis=-1)) - 1.0) * drive.belt_length
     runs = np.abs(rim[..., 0]) * elapsed > np.maximum(stretched, 0.0)
     rim = np.where(runs[..., None], rim, 0.0)
     before, after = across(tension, drive)
-    reached = stretch(np.where(rim[..., :1] > 0.0, before, after), drive.belt.axial_stiffness)
+    reached = law.stretch(np.where(rim[..., :1] > 0.0, before, after))
     total, sliding = slip(rim), relative_loss(gross - gross[..., :1], rim)
     elastic = np.where(runs[..., None], 1.0 - reached / reached[..., :1], np.nan)
     return total, elastic, total - elastic - sliding, sliding

@@ -87,7 +87,7 @@ def belt_section(belt: Belt) -> Section:
     """
     shear = belt.shear_coefficient * belt.shear_modulus * belt.bending_factor
     return Section(
-        axial=belt.axial_stiffness,
+        stretch=belt.stretch_parameters,
         bending=belt.bending_stiffness,
         quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
         shear=shear * belt.area,

@@ -11,11 +11,11 @@ from math import exp, expm1, tanh
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.theory.stretch import stretch, tangent_stiffness
+from beltdyn.stretch import StretchParameters
 
 
 def layer_length(
-    creep_rate_factor: float, transport_speed: float, axial_stiffness: float, *, mass: float = 0.0, at: float = 1.0
+    creep_rate_factor: float, transport_speed: float, law: StretchParameters, *, mass: float = 0.0, at: float = 1.0
 ) -> float:
     """Reference length (dT/dg - rho A c^2) / (nu_s c) over which a slip velocity grows e-fold along an arc, m.
 
@@ -25,14 +25,14 @@ def layer_length(
         nu_s, kg/(m s).
     transport_speed
         c, m/s.
-    axial_stiffness
-        EA, N.
+    law
+        Parameters of the law of stretch.
     mass
         rho A, kg/m.
     at
         Stretch at which the law of tension is linearised.
     """
-    stiffness = float(tangent_stiffness(at, axial_stiffness)) - mass * transport_speed**2
+    stiffness = float(law.tangent_stiffness(at)) - mass * transport_speed**2
     return stiffness / (creep_rate_factor * transport_speed)
 
 
@@ -63,7 +63,7 @@ def friction_along_arc(x: FloatArray, entry: float, leaving: float, arc: float, 
     return np.asarray((entry - leaving) / layer * np.exp((x - arc) / layer) / -np.expm1(-arc / layer))
 
 
-def creep_speed_loss(tight: float, slack: float, axial_stiffness: float, arc: float, layer: float) -> float:
+def creep_speed_loss(tight: float, slack: float, law: StretchParameters, arc: float, layer: float) -> float:
     """Loss of speed (omega1 - omega2) / omega1 of a drive with equal pulleys below the cap, linearised.
 
     With a growing exponential on each arc, (omega1 - omega2) R / c = (g1 - g2) coth(a / 2 l) and
@@ -74,12 +74,12 @@ def creep_speed_loss(tight: float, slack: float, axial_stiffness: float, arc: fl
     ----------
     tight, slack
         T1, T2, N.
-    axial_stiffness
-        EA, N.
+    law
+        Parameters of the law of stretch.
     arc, layer
         Reference lengths a of each arc and l, m.
     """
-    first, second = (float(stretch(end, axial_stiffness)) for end in (tight, slack))
+    first, second = (float(law.stretch(end)) for end in (tight, slack))
     rim = first + (first - second) * exp(-arc / layer) / -expm1(-arc / layer)
     return (first - second) / tanh(0.5 * arc / layer) / rim
 
@@ -90,13 +90,13 @@ def creeping_arc(
     rim_speed: float,
     transport_speed: float,
     *,
-    axial_stiffness: float,
+    law: StretchParameters,
     mass: float,
     radius: float,
     friction: float,
     creep_rate_factor: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Tension and friction along an arc with Green's strain, inertia and the Coulomb cap, integrated from the entry.
+    """Tension and friction along an arc with inertia and the Coulomb cap, integrated from the entry.
 
     Parameters
     ----------
@@ -108,8 +108,10 @@ def creeping_arc(
         omega R, m/s.
     transport_speed
         c, m/s.
-    axial_stiffness, mass
-        EA (N) and rho A (kg/m).
+    law
+        Parameters of the law of stretch.
+    mass
+        rho A, kg/m.
     radius
         R, m.
     friction
@@ -130,11 +132,11 @@ def creeping_arc(
         return np.asarray(-np.clip(creep_rate_factor * (transport_speed * g - rim_speed), -cap, cap))
 
     def slope(_: float, force: FloatArray) -> FloatArray:
-        g = stretch(force, axial_stiffness)
-        lifted = mass * transport_speed**2 / tangent_stiffness(g, axial_stiffness)
+        g = law.stretch(force)
+        lifted = mass * transport_speed**2 / law.tangent_stiffness(g)
         return -friction_force(force, g) / (1.0 - lifted)
 
     found = solve_ivp(slope, (0.0, float(x[-1])), [entry], t_eval=x, method="LSODA", rtol=1e-10, atol=1e-12 * entry).y[
         0
     ]
-    return found, friction_force(found, stretch(found, axial_stiffness))
+    return found, friction_force(found, law.stretch(found))

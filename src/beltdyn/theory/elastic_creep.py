@@ -2,12 +2,12 @@
 
 from math import exp
 
+from beltdyn.stretch import StretchParameters
 from beltdyn.theory.capstan import sliding_angle
 from beltdyn.theory.path import open_belt
-from beltdyn.theory.stretch import stretch
 
 
-def speed_loss(tight: float, slack: float, axial_stiffness: float) -> float:
+def speed_loss(tight: float, slack: float, law: StretchParameters) -> float:
     """Loss of speed (v1 - v2) / v1 = 1 - g(T2) / g(T1) of the rims, (T1 - T2) / EA at small strain.
 
     Where the belt runs onto a pulley it adheres and has the speed of the rim: c g(T1) on the driver, c g(T2) on the
@@ -17,15 +17,16 @@ def speed_loss(tight: float, slack: float, axial_stiffness: float) -> float:
     ----------
     tight, slack
         T1, T2, N.
-    axial_stiffness
-        EA, N.
+    law
+        Parameters of the law of stretch.
 
     Examples
     --------
-    >>> f"{bd.theory.elastic_creep.speed_loss(tight=300.0, slack=100.0, axial_stiffness=1e5):.3%}"
-    '0.198%'
+    >>> from beltdyn.stretch import Linear
+    >>> f"{bd.theory.elastic_creep.speed_loss(tight=300.0, slack=100.0, law=Linear(1e5)):.3%}"
+    '0.199%'
     """
-    return 1.0 - float(stretch(slack, axial_stiffness) / stretch(tight, axial_stiffness))
+    return 1.0 - float(law.stretch(slack) / law.stretch(tight))
 
 
 def slip_arc(tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0) -> float:

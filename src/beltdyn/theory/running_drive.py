@@ -2,7 +2,7 @@
 
 The belt runs along a fixed closed curve p(X) with the transport speed c (reference length per second): its velocity is
 c p' and its acceleration c^2 p''.  With p' = g t, the angle theta of the tangent t and the angle phi of the section,
-Green's tension N(g), bending EI, shear K and the force n in the belt,
+tension N(g), bending EI, shear K and the force n in the belt,
 
     m = n - rho A c^2 p',        m' = -f,
     m . t = N(g) + (3/2 EI phi'^2 + K s^2 - rho A c^2) g,        m . n = -K g s,        s = phi - theta,
@@ -20,9 +20,9 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
+from beltdyn.stretch import StretchParameters
 from beltdyn.theory.path import OpenBelt, open_belt
 from beltdyn.theory.static_tension import static_tension
-from beltdyn.theory.stretch import stretch, tangent_stiffness, tension
 
 _X, _Y, _SECTION, _SECTION_RATE, _FORCE_X, _FORCE_Y, _TORQUE = range(7)
 
@@ -35,8 +35,10 @@ class RunningDrive:
     ----------
     length
         Unstretched length of the belt, m.
-    axial, bending, shear
-        EA (N), EI (N m^2) and k_s G A (N), with the factors alpha.
+    law
+        Parameters of the law of stretch.
+    bending, shear
+        EI (N m^2) and k_s G A (N), with the factors alpha.
     mass, rotary_inertia
         rho A (kg/m) and rho I (kg m).
     distance, radii
@@ -50,7 +52,7 @@ class RunningDrive:
     """
 
     length: float
-    axial: float
+    law: StretchParameters
     bending: float
     shear: float
     mass: float
@@ -118,7 +120,7 @@ def run_steadily(drive: RunningDrive, points: int = 20001) -> RunningBelt:
     y, (transport, driven) = found.sol(x), np.asarray(found.p, dtype=float)
     angle, g = _tangent(drive, y, transport)
     forces = _contact(drive, y, angle, g, transport, driven)
-    return RunningBelt(x, y[:2], tension(g, drive.axial), forces[:, 0], forces[:, 1], float(transport), float(driven))
+    return RunningBelt(x, y[:2], drive.law.tension(g), forces[:, 0], forces[:, 1], float(transport), float(driven))
 
 
 def _rates(drive: RunningDrive) -> Callable[[FloatArray, FloatArray, FloatArray], FloatArray]:
@@ -163,15 +165,15 @@ def _closed(drive: RunningDrive, begin: FloatArray) -> Callable[[FloatArray, Flo
 def _tangent(drive: RunningDrive, y: FloatArray, transport: float) -> tuple[FloatArray, FloatArray]:
     """Angle of the tangent and stretch from the force and the section, by Newton's method from no shear."""
     size, direction = np.hypot(y[_FORCE_X], y[_FORCE_Y]), np.arctan2(y[_FORCE_Y], y[_FORCE_X])
-    lean, g = _difference(y[_SECTION], direction), 1.0 + size / drive.axial
+    lean, g = _difference(y[_SECTION], direction), drive.law.stretch(size)
     turn, shear, lifted = np.zeros_like(size), drive.shear, drive.mass * transport**2
     curving = 1.5 * drive.bending * y[_SECTION_RATE] ** 2
     for _ in range(20):
         s, sine, cosine = lean - turn, np.sin(turn), np.cos(turn)
-        along = size * cosine - tension(g, drive.axial) + (lifted - curving - shear * s * s) * g
+        along = size * cosine - drive.law.tension(g) + (lifted - curving - shear * s * s) * g
         across = -size * sine + shear * g * s
         along_turn, along_g = -size * sine + 2.0 * shear * s * g, lifted - curving - shear * s * s
-        along_g = along_g - tangent_stiffness(g, drive.axial)
+        along_g = along_g - drive.law.tangent_stiffness(g)
         across_turn, across_g = -size * cosine - shear * g, shear * s
         scale = along_turn * across_g - across_turn * along_g
         step = (along * across_g - across * along_g) / scale
@@ -211,14 +213,14 @@ def _guess(drive: RunningDrive) -> tuple[FloatArray, FloatArray, FloatArray]:
         drive.length,
         drive.distance,
         drive.radii,
-        axial_stiffness=drive.axial,
+        law=drive.law,
         contact_stiffness=drive.stiffness,
     )
     inner = drive.radii[0] - installed.penetration[0], drive.radii[1] - installed.penetration[1]
     way = open_belt(drive.distance, inner)
     x = np.linspace(0.0, drive.length, 800)
     place, angle = _trace(way, inner, x * way.length / drive.length)
-    g = float(stretch(installed.tension, drive.axial))
+    g = float(drive.law.stretch(installed.tension))
     transport = drive.speed * drive.radii[0] / g
     force = installed.tension - drive.mass * transport**2 * g
     y = np.zeros((7, x.size))

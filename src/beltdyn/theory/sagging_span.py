@@ -27,7 +27,7 @@ def sag_parameter(weight: float, length: float, tension: float, axial_stiffness:
     tension
         T, N.
     axial_stiffness
-        EA, N.
+        EA, N: the rate dN/dg of the law of stretch at that tension.
     """
     sag = weight * length / tension
     return sag**2 * axial_stiffness / (tension * (1.0 + sag**2 / 8.0))

@@ -37,7 +37,7 @@ class SlidingBelt(NamedTuple):
     mass_per_length: float
     """m, kg/m."""
     axial_stiffness: float
-    """EA, N."""
+    """EA, N: the rate dN/dg of the law of stretch at the tension of the belt."""
     radius: float
     """R, m."""
     stiffness: float

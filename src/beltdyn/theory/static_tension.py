@@ -1,11 +1,10 @@
-"""Tension of a belt at rest on pulleys of penalty contact: Green's strain, penetration, ends of contact."""
+"""Tension of a belt at rest on pulleys of penalty contact: stretch, penetration, ends of contact."""
 
 from typing import NamedTuple
 
 from beltdyn.errors import ModelError
+from beltdyn.stretch import StretchParameters
 from beltdyn.theory.path import open_belt
-from beltdyn.theory.stretch import stretch
-from beltdyn.theory.stretch import tension as force_of
 
 _DEEPEST = 0.15
 """Tension over k_p R^2 that is still looked at; beyond 1/6, a belt R/3 deep, none is in balance."""
@@ -29,7 +28,7 @@ def static_tension(
     distance: float,
     radii: tuple[float, float],
     *,
-    axial_stiffness: float,
+    law: StretchParameters,
     contact_stiffness: float,
     bending_stiffness: float = 0.0,
 ) -> StaticTension:
@@ -51,8 +50,8 @@ def static_tension(
         Between the centres, m.
     radii
         R, m.
-    axial_stiffness
-        EA, N.
+    law
+        Parameters of the law of stretch.
     contact_stiffness
         k_p, N/m^2.
     bending_stiffness
@@ -70,14 +69,15 @@ def static_tension(
 
     Examples
     --------
+    >>> from beltdyn.stretch import Linear
     >>> from beltdyn.theory.static_tension import static_tension
-    >>> round(static_tension(1.295, 0.4, (0.08, 0.08), axial_stiffness=1e4, contact_stiffness=1e8).tension, 2)
+    >>> round(static_tension(1.295, 0.4, (0.08, 0.08), law=Linear(1e4), contact_stiffness=1e8).tension, 2)
     59.27
     """
     from scipy.optimize import brentq
 
-    belt = _Belt(length, distance, radii, axial_stiffness, contact_stiffness, bending_stiffness)
-    rigid = float(force_of(open_belt(distance, radii).length / length, axial_stiffness))
+    belt = _Belt(length, distance, radii, law, contact_stiffness, bending_stiffness)
+    rigid = float(law.tension(open_belt(distance, radii).length / length))
     most = min(1.1 * rigid, _DEEPEST * contact_stiffness * min(radii) ** 2)
     least = max(1e-3 * most, 4.0 * bending_stiffness / min(radii) ** 2)
     if not least < most or _path(belt, least)[1] < length:
@@ -96,7 +96,7 @@ class _Belt(NamedTuple):
     length: float
     distance: float
     radii: tuple[float, float]
-    axial: float
+    law: StretchParameters
     contact: float
     bending: float
 
@@ -115,7 +115,7 @@ def _path(belt: _Belt, tension: float) -> tuple[float, float]:
     inner = belt.radii[0] - arcs[0].depth, belt.radii[1] - arcs[1].depth
     way = open_belt(belt.distance, inner)
     ends = sum(2 * _end(arc.depth, radius, belt.bending / tension) for arc, radius in zip(arcs, inner, strict=True))
-    unstretched = (2 * way.span + ends) / float(stretch(tension, belt.axial))
+    unstretched = (2 * way.span + ends) / float(belt.law.stretch(tension))
     for arc, radius, wrap in zip(arcs, inner, way.wrap, strict=True):
         unstretched += radius * wrap / arc.stretch
     return way.length + ends, unstretched
@@ -130,10 +130,10 @@ def _arc(belt: _Belt, tension: float, radius: float) -> _Arc:
     """Depth, stretch and tension on an arc; what the depth adds to the tension converges like d / R."""
     here, depth = tension, 0.0
     for _ in range(50):
-        g = float(stretch(here, belt.axial))
+        g = float(belt.law.stretch(here))
         depth = 0.5 * (radius - (radius**2 - 4.0 * here * g / belt.contact) ** 0.5)
         here = tension + 0.5 * belt.contact * depth**2 / g - 2.0 * belt.bending / (radius - depth) ** 2
-    return _Arc(here, float(stretch(here, belt.axial)), depth)
+    return _Arc(here, float(belt.law.stretch(here)), depth)
 
 
 def _end(depth: float, radius: float, bend: float) -> float:

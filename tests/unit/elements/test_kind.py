@@ -13,6 +13,7 @@ from beltdyn.elements.section import Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
+from beltdyn.stretch import LAWS, StretchLaw
 from beltdyn.system.discretization import belt_section
 
 LENGTH = 0.06
@@ -26,9 +27,11 @@ def kind(request: pytest.FixtureRequest) -> ElementKind:
     return chosen
 
 
-@pytest.fixture(scope="module")
-def section(drive: Drive) -> Section:
-    return belt_section(drive.belt)
+@pytest.fixture(scope="module", params=list(LAWS.values()), ids=list(LAWS))
+def section(drive: Drive, request: pytest.FixtureRequest) -> Section:
+    """With each law of stretch."""
+    law: StretchLaw = request.param
+    return belt_section(drive.belt)._replace(stretch=law.make(drive.belt.axial_stiffness))
 
 
 def stretched(kind: ElementKind, stretch: float) -> FloatArray:
@@ -86,6 +89,22 @@ def test_ends_are_pulled_by_the_tension(kind: ElementKind, section: Section, str
     for first, weight in zip(kind.vectors, kind.shift, strict=True):
         shifts[0, first], shifts[1, first + 1] = weight, weight
     np.testing.assert_allclose(shifts @ gradient, 0.0, atol=ROUNDING * section.axial)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_derivatives(kind: ElementKind, section: Section, seed: int) -> None:
+    """Force and tangent are slopes of energy and force, to what central differences with a step of 1e-5 can show."""
+    scale = np.tile([LENGTH / each for each in kind.scale(LENGTH)], 2)
+    e = stretched(kind, 1.0) + 0.1 * scale * np.random.default_rng(seed).uniform(-1.0, 1.0, 2 * kind.dof)
+    element, step = kind.element(section, gauss_points(4)), 1e-5
+    gradient, tangent = force(kind, element, e)
+    moves = step * np.diag(scale)
+    slopes = [strain_energy(element, e + h, LENGTH) - strain_energy(element, e - h, LENGTH) for h in moves]
+    np.testing.assert_allclose(scale * gradient, np.array(slopes) / (2 * step), atol=1e-8 * np.abs(slopes).max() / step)
+    slopes = [scale * (force(kind, element, e + h)[0] - force(kind, element, e - h)[0]) for h in moves]
+    np.testing.assert_allclose(
+        scale[:, None] * tangent * scale, np.array(slopes) / (2 * step), atol=1e-8 * np.abs(slopes).max() / step
+    )
 
 
 def test_unstretched_it_is_free(kind: ElementKind, section: Section) -> None:

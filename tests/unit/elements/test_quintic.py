@@ -8,9 +8,10 @@ from beltdyn.elements.quintic import QUINTIC, Quintic, bends, slopes
 from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
+from beltdyn.stretch import Green
 
 LENGTH, AXIAL, BENDING, MASS = 0.05, 1e4, 0.02, 0.1
-SECTION = Section(*(0.0 for _ in Section._fields[:8]))._replace(axial=AXIAL, bending=BENDING, mass=MASS)
+SECTION = Section(Green(AXIAL), *[0.0] * 7)._replace(bending=BENDING, mass=MASS)
 ELEMENT = Quintic(SECTION, gauss_points(4))
 SCALE = np.tile([LENGTH, LENGTH, 1.0, 1.0, 1.0 / LENGTH, 1.0 / LENGTH], 2)
 """Changes of the coordinates that strain alike."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from math import pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,19 +12,23 @@ from beltdyn.elements.section import Section
 from beltdyn.elements.three_node_beam import LINKS, THREE_NODE_BEAM, ThreeNodeBeam
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
+from beltdyn.stretch import Green
 
 AXIAL, BENDING = 1e4, 0.02
 DIFFERENCES = 1e-8
 """Central differences with a step of 1e-5 lengths, relative to the largest entry."""
 
 
-def section(**values: float) -> Section:
-    return Section(*(0.0 for _ in Section._fields[:8]))._replace(**values)
+def section(**values: Any) -> Section:
+    return Section(Green(0.0), *[0.0] * 7)._replace(**values)
 
 
 def element(e: FloatArray, length: float, bending: float = BENDING) -> tuple[float, FloatArray, FloatArray]:
     """Energy, gradient and tangent of an element, of four points."""
-    beam, work = ThreeNodeBeam(section(axial=AXIAL, bending=bending), gauss_points(1)), blank(THREE_NODE_BEAM.workspace)
+    beam, work = (
+        ThreeNodeBeam(section(stretch=Green(AXIAL), bending=bending), gauss_points(1)),
+        blank(THREE_NODE_BEAM.workspace),
+    )
     work.gradient[:], work.tangent[:] = np.nan, np.nan
     THREE_NODE_BEAM.force(beam, e, length, True, work)
     return THREE_NODE_BEAM.energy(beam, e, length), work.gradient, work.tangent

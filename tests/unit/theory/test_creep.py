@@ -5,10 +5,10 @@ from math import exp
 import numpy as np
 import pytest
 
+from beltdyn.stretch import Green
 from beltdyn.theory.creep import creep_speed_loss, creeping_arc, friction_along_arc, layer_length, tension_along_arc
-from beltdyn.theory.stretch import stretch
 
-AXIAL, ARC, TIGHT, SLACK = 1e5, 0.25, 1900.0, 1300.0
+LAW, ARC, TIGHT, SLACK = Green(1e5), 0.25, 1900.0, 1300.0
 X = np.linspace(0.0, ARC, 4001)
 
 
@@ -21,13 +21,13 @@ def test_profile(layer: float) -> None:
 
 
 def test_limits_of_the_speed_loss() -> None:
-    elastic = 1.0 - float(stretch(SLACK, AXIAL) / stretch(TIGHT, AXIAL))
-    assert creep_speed_loss(TIGHT, SLACK, AXIAL, ARC, 1e-3 * ARC) == pytest.approx(elastic, rel=1e-12)
+    elastic = 1.0 - float(LAW.stretch(SLACK) / LAW.stretch(TIGHT))
+    assert creep_speed_loss(TIGHT, SLACK, LAW, ARC, 1e-3 * ARC) == pytest.approx(elastic, rel=1e-12)
     speed, small = 10.0, 1e-3
-    layer = layer_length(1e3, speed, AXIAL)
+    layer = layer_length(1e3, speed, LAW)
     viscous = 2.0 * small * (TIGHT - SLACK) / (1e3 * ARC) / speed
     assert layer == pytest.approx(10.0)
-    assert creep_speed_loss(small * TIGHT, small * SLACK, AXIAL, ARC, layer) == pytest.approx(viscous, rel=1e-3)
+    assert creep_speed_loss(small * TIGHT, small * SLACK, LAW, ARC, layer) == pytest.approx(viscous, rel=1e-3)
 
 
 @pytest.mark.parametrize("layer", [0.1, 1.0])
@@ -35,14 +35,14 @@ def test_integrated_arc_at_small_strain(layer: float) -> None:
     """Without the cap: EA so large that the law of tension is linear."""
     axial, speed = 1e8, 5.0
     factor = axial / (layer * speed)
-    g = float(stretch(TIGHT, axial))
+    g = float(Green(axial).stretch(TIGHT))
     rim = speed * (g + (TIGHT - SLACK) / axial / np.expm1(ARC / layer))
     tension, friction = creeping_arc(
         X,
         TIGHT,
         rim,
         speed,
-        axial_stiffness=axial,
+        law=Green(axial),
         mass=0.0,
         radius=0.08,
         friction=1e3,
@@ -59,7 +59,7 @@ def test_cap_gives_the_capstan_ratio() -> None:
         SLACK,
         0.0,
         5.0,
-        axial_stiffness=1e8,
+        law=Green(1e8),
         mass=0.0,
         radius=0.08,
         friction=0.3,

@@ -4,11 +4,12 @@ from math import exp, pi
 
 import pytest
 
+from beltdyn.stretch import Linear
 from beltdyn.theory.elastic_creep import gross_slip_tensions, slip_arc, speed_loss
 
 
 def test_speed_loss_at_small_strain() -> None:
-    assert speed_loss(110.0, 90.0, 1e7) == pytest.approx(20.0 / 1e7, rel=1e-4)
+    assert speed_loss(110.0, 90.0, Linear(1e7)) == pytest.approx(20.0 / 1e7, rel=1e-4)
 
 
 def test_gross_slip_uses_all_of_the_wrap() -> None:

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError
+from beltdyn.stretch import Green
 from beltdyn.theory.running_drive import RunningDrive, run_steadily
 
 DRIVE = RunningDrive(
     length=1.2443,
-    axial=1e5,
+    law=Green(1e5),
     bending=8e-4,
     shear=30.0,
     mass=0.1,

@@ -20,7 +20,6 @@ from beltdyn.solve import equilibrium, simulate
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight
-from beltdyn.theory.stretch import stretch
 
 GRAVITY = 9.81
 PULL = {"name": "pull", "kind": "pulled", "direction": [0.0, -1.0], "tension": 100.0}
@@ -112,7 +111,7 @@ def test_a_string_with_a_mass_at_its_end(brake: Drive, measured: Callable[..., N
         forces=[(-1, (pull, 0.0))],
         masses=[(-1, mass * total)],
     )
-    g = float(stretch(pull, belt.axial_stiffness))
+    g = float(belt.stretch_parameters.stretch(pull))
     state = straight(system)
     nodes = state.nodes(system)
     nodes[:, :3:2] *= g  # places and tangents along the belt

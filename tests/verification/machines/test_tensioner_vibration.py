@@ -27,7 +27,6 @@ from beltdyn.model.instants import Instants
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.state import State
-from beltdyn.theory.stretch import tension as tension_of
 
 Make = Callable[..., Drive]
 Measured = Callable[..., None]
@@ -71,13 +70,13 @@ def tension(drive: Drive, carrier: Carrier, q: float) -> float:
     path, belt = moved(drive.path, [carrier], np.array([q])), drive.belt
 
     def excess(stretch: float) -> float:
-        pull = float(tension_of(stretch, belt.axial_stiffness))
+        pull = float(belt.stretch_parameters.tension(stretch))
         depth = pull * stretch / (drive.contact_stiffness * path.radii)
         sunk = path.wrap_angles @ depth - 10 / 12 * float(np.sum(np.sqrt(depth * path.radii) * depth / path.radii))
         return stretch * belt.given_length - path.length + float(sunk)
 
     found = float(brentq(excess, 1.0, path.length / belt.given_length, xtol=1e-14))
-    return float(tension_of(found, belt.axial_stiffness))
+    return float(belt.stretch_parameters.tension(found))
 
 
 @pytest.mark.parametrize(("stiff", "error"), [(3e7, 3e-3), (3e8, 1e-3)], ids=["soft contact", "stiff contact"])

@@ -75,7 +75,7 @@ def running() -> Callable[[Drive, float, float], RunningDrive]:
         assert contact.creep_rate_factor is not None
         return RunningDrive(
             length=drive.belt_length,
-            axial=section.axial,
+            law=section.stretch,
             bending=section.bending,
             shear=section.shear,
             mass=section.mass,

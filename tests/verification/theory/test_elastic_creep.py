@@ -48,7 +48,7 @@ def capacity(thin: Callable[[float], Drive]) -> float:
         belt.given_length,
         distance,
         (driver.radius, driven.radius),
-        axial_stiffness=belt.axial_stiffness,
+        law=belt.stretch_parameters,
         contact_stiffness=drive.contact_stiffness,
         bending_stiffness=belt.bending_stiffness,
     )
@@ -84,7 +84,7 @@ def test_speed_loss_and_sliding_grow_with_the_load(
         slack, tight = map(float, last.span_tension)
         inertia = {"mass_per_length": belt.mass_per_length, "speed": SPEED * thin(load).pulleys[0].radius}
         loss = 1.0 - float(last.pulley_speed[1] / last.pulley_speed[0])
-        losses.append((loss, speed_loss(tight, slack, belt.axial_stiffness)))
+        losses.append((loss, speed_loss(tight, slack, belt.stretch_parameters)))
         arcs.append((sliding(run, 0), sliding(run, 1), slip_arc(tight, slack, FRICTION, **inertia)))
         measured(load=load, loss=loss, loss_error=loss / losses[-1][1] - 1.0, driver=arcs[-1][0], driven=arcs[-1][1])
         measured(load=load, tight=tight, slack=slack, slip_arc=arcs[-1][2])

@@ -20,7 +20,6 @@ from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 from beltdyn.theory.hoop import hoop_stretch, hoop_tension
-from beltdyn.theory.stretch import tension
 
 SPEED, TURNS = 200.0, 2.0
 
@@ -29,7 +28,7 @@ def theory(belt: Belt) -> tuple[float, float]:
     """Stretch and tension."""
     section, turning = belt_section(belt), 2.0 * pi / belt.given_length
     g = hoop_stretch(SPEED / turning, section.axial, section.mass, bending_stiffness=section.bending, turning=turning)
-    return g, float(tension(g, section.axial))
+    return g, float(section.stretch.tension(g))
 
 
 def spin(belt: Belt, g: float, rtol: float) -> tuple[FloatArray, Observations]:

@@ -15,7 +15,6 @@ from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive
 from beltdyn.theory.creep import creep_speed_loss, friction_along_arc, layer_length
 from beltdyn.theory.running_drive import RunningBelt, RunningDrive, run_steadily
-from beltdyn.theory.stretch import stretch
 
 Around = Callable[[FloatArray, tuple[float, float]], FloatArray]
 SPEED, LOAD = 120.0, 45.0
@@ -141,8 +140,8 @@ def test_rigid_pulley_in_closed_form(
     The drag of the ends of contact, where the belt runs on and off at an angle, is not in it: it lowers the loss.
     """
     slack, tight = theory.tension.min(), theory.tension.max()
-    mean = float(stretch(0.5 * (slack + tight), numbers.axial))
-    layer = layer_length(numbers.creep_rate_factor, theory.transport_speed, numbers.axial, mass=numbers.mass, at=mean)
+    mean = float(numbers.law.stretch(0.5 * (slack + tight)))
+    layer = layer_length(numbers.creep_rate_factor, theory.transport_speed, numbers.law, mass=numbers.mass, at=mean)
     points, angle = angles(numbers, theory, 0, around)
     depth = numbers.radii[0] - float(np.hypot(*theory.position[:, points]).min())
     inner = numbers.radii[0] - depth
@@ -152,7 +151,7 @@ def test_rigid_pulley_in_closed_form(
     rigid = friction_along_arc(x, tight, slack, arc, layer)
     middle = np.abs(angle) < np.pi / 4
     growth = np.polyfit(theory.coordinate[points[middle]], np.log(theory.friction_force[0, points[middle]]), 1)[0]
-    loss, found = creep_speed_loss(tight, slack, numbers.axial, arc, layer), 1.0 - theory.driven_speed / SPEED
+    loss, found = creep_speed_loss(tight, slack, numbers.law, arc, layer), 1.0 - theory.driven_speed / SPEED
     measured(
         layer=layer, arc=arc, contact=contact, fitted_layer=1.0 / growth, loss=loss, found=found, ratio=loss / found
     )

@@ -17,7 +17,6 @@ from beltdyn.system.state import laid
 from beltdyn.theory.path import open_belt
 from beltdyn.theory.running_drive import RunningDrive, run_steadily
 from beltdyn.theory.static_tension import StaticTension, static_tension
-from beltdyn.theory.stretch import tension
 
 Change = Callable[..., Drive]
 MESHES = [20, 30, 40, 60, 80, 120, 240]
@@ -37,7 +36,7 @@ def closed_form(numbers: RunningDrive) -> StaticTension:
         numbers.length,
         numbers.distance,
         numbers.radii,
-        axial_stiffness=numbers.axial,
+        law=numbers.law,
         contact_stiffness=numbers.stiffness,
         bending_stiffness=numbers.bending,
     )
@@ -72,7 +71,7 @@ def test_tension_of_the_installed_belt(
     numbers = running(drives[case](20), 1e-6, 0.0)
     closed, found = closed_form(numbers), np.array([simulated(drives[case](n)) for n in MESHES])
     spans, arcs = found.T
-    rigid = float(tension(open_belt(numbers.distance, numbers.radii).length / numbers.length, numbers.axial))
+    rigid = float(numbers.law.tension(open_belt(numbers.distance, numbers.radii).length / numbers.length))
     exact = closed.tension if finest is None else float(run_steadily(numbers).tension[0])
     errors = spans / exact - 1.0
     measured(

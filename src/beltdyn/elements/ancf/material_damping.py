@@ -1,7 +1,7 @@
-"""Kelvin-Voigt damping of the belt element in stretch and bending, with the strains of Eqs. 13 and 14.
+"""Kelvin-Voigt damping of the belt element in stretch and bending.
 
-With the elongation eps = (q . q - 1) / 2 of Eq. 13, q = r_c,x, and the curvature kappa = n . w + |q| p, w = r_c,xx,
-whose square is the first bending term of Eq. 14 (|q| (theta + p) in `strain_energy`), the rate potential is
+With the elongation eps = |q| - 1, q = r_c,x, whatever the law of stretch, and the curvature kappa = n . w + |q| p,
+w = r_c,xx, whose square is the first bending term of Eq. 14 (|q| (theta + p) in `strain_energy`), the rate potential is
 
     R = integral of EA alpha1 tau_s / 2 (deps/dt)^2 + EI alpha2 tau_b / 2 (dkappa/dt)^2 over the reference length.
 
@@ -172,15 +172,14 @@ def _strain_rates(
         scratch.change[1, c] = q_along_rate * scratch.by_shear[0, c] + stretch * scratch.by_shear[1, c]
     for a in range(4):
         x, y = _first(a), _first(a) + 1
-        scratch.slope[0, x], scratch.slope[0, y] = slope[a] * qx, slope[a] * qy
-        scratch.change[0, x], scratch.change[0, y] = slope[a] * rate_x, slope[a] * rate_y
+        scratch.slope[0, x], scratch.slope[0, y] = slope[a] * ux, slope[a] * uy
+        scratch.change[0, x], scratch.change[0, y] = -slope[a] * turn * uy, slope[a] * turn * ux
         scratch.slope[1, x] += slope[a] * (shear * ux + lean * uy) - bend[a] * uy
         scratch.slope[1, y] += slope[a] * (shear * uy - lean * ux) + bend[a] * ux
         scratch.change[1, x] += slope[a] * (along * ux - across * uy) - bend[a] * turn * ux
         scratch.change[1, y] += slope[a] * (along * uy + across * ux) - bend[a] * turn * uy
-    strain_rate = stretch * q_along_rate
     curvature_rate = shear * q_along_rate - lean * q_across_rate + w_across_rate + stretch * shear_rate
-    return _Point(ux, uy, stretch, strain_rate, curvature_rate, fold, cross)
+    return _Point(ux, uy, stretch, q_along_rate, curvature_rate, fold, cross)
 
 
 @kernel(inline=True)
@@ -203,13 +202,13 @@ def _add_products(
 def _add_curvature(point: _Point, slope: Four, bend: Four, force: float, moment: float, tangent: FloatArray) -> None:
     """Add force times the second derivative of eps and moment times that of kappa in the centreline's vectors.
 
-    The latter is fold (n u^T + u n^T) + cross n n^T in q and q, -n u^T / |q| in q and w.
+    The former is n n^T / |q|, the latter fold (n u^T + u n^T) + cross n n^T in q and q, -n u^T / |q| in q and w.
     """
     ux, uy = point.tangent_x, point.tangent_y
-    fold, cross, turn = moment * point.fold, moment * point.cross, moment / point.stretch
-    xx = force - 2.0 * fold * ux * uy + cross * uy * uy
+    fold, cross, turn = moment * point.fold, force / point.stretch + moment * point.cross, moment / point.stretch
+    xx = -2.0 * fold * ux * uy + cross * uy * uy
     xy = fold * (ux * ux - uy * uy) - cross * ux * uy
-    yy = force + 2.0 * fold * ux * uy + cross * ux * ux
+    yy = 2.0 * fold * ux * uy + cross * ux * ux
     for a in range(4):
         for b in range(4):
             row, column = _first(a), _first(b)

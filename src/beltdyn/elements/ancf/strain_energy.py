@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
+from beltdyn.stretch import stretching
 
 
 class EnergyGradient(NamedTuple):
@@ -40,10 +41,11 @@ def energy_density(metric: float, turning: float, sine: float, sine_rate: float,
 
     With a = G - 1, k = theta + p, c = k^2 + s^2 theta^2:
 
-        psi = EA alpha1 / 8 a^2 + EI alpha2 / 2 (G k^2 + a c / 2) + E I4 alpha2 / 8 c^2
+        psi = W(G) + EI alpha2 / 2 (G k^2 + a c / 2) + E I4 alpha2 / 8 c^2
               + k_s G alpha2 / 2 (A G s^2 + I s^2 p^2)
 
-    The terms odd in y vanish over the symmetric section, so the stray "-1" printed in Eq. 11 has no effect.
+    where W is the energy of the law of stretch, EA alpha1 / 8 a^2 of the published one.  The terms odd in y vanish over
+    the symmetric section, so the stray "-1" printed in Eq. 11 has no effect.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ def energy_density(metric: float, turning: float, sine: float, sine_rate: float,
     lean = sine * turning
     spread = bend * bend + lean * lean
     return (
-        section.axial / 8.0 * excess * excess
+        stretching(section.stretch, metric).energy
         + section.bending / 2.0 * (metric * bend * bend + 0.5 * excess * spread)
         + section.quartic / 8.0 * spread * spread
         + 0.5 * sine * sine * (section.shear * metric + section.shear_gradient * sine_rate * sine_rate)
@@ -84,7 +86,7 @@ def energy_gradient(metric: float, turning: float, sine: float, sine_rate: float
     weight = 0.25 * (section.bending * excess + section.quartic * spread)
     moment = section.bending * metric * bend
     return EnergyGradient(
-        0.25 * section.axial * excess
+        stretching(section.stretch, metric).slope
         + 0.5 * section.bending * (bend * bend + 0.5 * spread)
         + 0.5 * section.shear * sine * sine,
         moment + weight * 2.0 * (bend + sine * sine * turning),
@@ -107,7 +109,7 @@ def energy_curvature(metric: float, turning: float, sine: float, sine_rate: floa
     half, quarter = 0.25 * section.bending, 0.25 * section.quartic
     stiff = section.bending * metric
     return EnergyCurvature(
-        0.25 * section.axial,
+        stretching(section.stretch, metric).curvature,
         section.bending * bend + half * by_turning,
         half * by_sine + section.shear * sine,
         section.bending * bend + half * by_rate,

@@ -8,7 +8,6 @@ from beltdyn.arrays import FloatArray
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.recorded import names
-from beltdyn.theory.stretch import stretch
 
 STRAIN_LIMIT = 0.05
 """Largest strain of a span that passes without a warning; belts with cords work below 0.02, elastic ones below 0.05."""
@@ -94,7 +93,7 @@ def large_strain(evidence: Evidence) -> Iterator[Finding]:
     """Spans that stretch more than belts do."""
     tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     row, span = np.unravel_index(int(tension.argmax()), tension.shape)
-    strain = float(stretch(tension[row, span], evidence.drive.belt.axial_stiffness)) - 1.0
+    strain = float(evidence.drive.belt.stretch_parameters.stretch(tension[row, span])) - 1.0
     if strain > STRAIN_LIMIT:
         yield Finding(
             f"the span {names(evidence.recorded, 'span')[span]} is stretched by {strain:.1%} at t = "

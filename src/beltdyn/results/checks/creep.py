@@ -82,8 +82,8 @@ def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
     """Whether rims come apart by more, within the window, than the belt's stretch changes with its tension."""
     drive, window = evidence.drive, evidence.window
     passed = abs(evidence.pulleys[0].speed) * float(drive.rolling_radii[0]) * (window.end - window.start)
-    change = float(np.ptp(np.asarray(evidence.recorded["span_tension"][window.first :]), axis=0).max())
-    return abs(slip) * passed > change / drive.belt.axial_stiffness * drive.belt_length
+    stretch = drive.belt.stretch_parameters.stretch(evidence.recorded["span_tension"][window.first :])
+    return abs(slip) * passed > float(np.ptp(stretch, axis=0).max()) * drive.belt_length
 
 
 def _steeper(evidence: Evidence) -> str:
@@ -95,6 +95,6 @@ def _steeper(evidence: Evidence) -> str:
     most = max(abs(pulley.power) for pulley in pulleys)
     loaded = np.array([abs(pulley.power) > _TRANSMITS * most and pulley.wrap_angle > 0.0 for pulley in pulleys])
     arcs = (drive.radii * np.array([pulley.wrap_angle for pulley in pulleys]))[loaded]
-    slopes = _LAYERS * drive.belt.axial_stiffness / (abs(speed) * arcs)
+    slopes = _LAYERS * drive.belt.local_stiffness(tension) / (abs(speed) * arcs)
     pressing = (tension - drive.belt.mass_per_length * speed**2) / drive.radii[loaded]
     return drive.contact.friction_parameters.steepened(slopes, drive.frictions[loaded] * pressing)

@@ -1,0 +1,12 @@
+"""Laws of stretch, a law a file: tension over stretch. Importing one here puts it on the list."""
+
+from beltdyn.kernel import by_type
+from beltdyn.stretch.green import Green as Green
+from beltdyn.stretch.law import LAWS as LAWS
+from beltdyn.stretch.law import Stretching as Stretching
+from beltdyn.stretch.law import StretchLaw as StretchLaw
+from beltdyn.stretch.law import StretchParameters as StretchParameters
+from beltdyn.stretch.linear import Linear as Linear
+
+stretching = by_type({law.record: law.stretching for law in LAWS.values()}, "stretching")
+"""Strain energy of stretch per reference length and its derivatives in G = q . q; see `StretchLaw.stretching`."""

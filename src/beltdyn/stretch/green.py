@@ -1,0 +1,69 @@
+"""Green's strain as published: N = EA (g^2 - 1) g / 2, the elongation (g^2 - 1) / 2 of Eq. 13 in Eq. 14."""
+
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.stretch.law import Stretching, StretchLaw, register
+
+
+class Green(NamedTuple):
+    """Parameters of the published law."""
+
+    stiffness: float
+    """EA, N."""
+
+    @property
+    def largest_stretch(self) -> float:
+        """None: a formula holds everywhere."""
+        return inf
+
+    def tension(self, stretch: ArrayLike) -> FloatArray:
+        """Tension EA (g^2 - 1) g / 2, N."""
+        g = np.asarray(stretch, dtype=float)
+        return np.asarray(0.5 * self.stiffness * (g * g - 1.0) * g)
+
+    def tangent_stiffness(self, stretch: ArrayLike) -> FloatArray:
+        """Rate dN/dg = EA (3 g^2 - 1) / 2, N."""
+        g = np.asarray(stretch, dtype=float)
+        return np.asarray(0.5 * self.stiffness * (3.0 * g * g - 1.0))
+
+    def stretch(self, tension: ArrayLike) -> FloatArray:
+        """Root of g^3 - g - 2 N / EA = 0 that is 1 without tension.
+
+        By Cardano's formula 2 / sqrt(3) cos(arccos(x) / 3) with x = sqrt(27) N / EA, or with arcosh for x > 1. Below
+        -EA / sqrt(27) a belt of this law gives way.
+        """
+        x = np.sqrt(27.0) * np.asarray(tension, dtype=float) / self.stiffness
+        third = np.where(
+            x <= 1.0,
+            np.cos(np.arccos(np.clip(x, -1.0, 1.0)) / 3.0),
+            np.cosh(np.arccosh(np.maximum(x, 1.0)) / 3.0),
+        )
+        return np.asarray(2.0 / np.sqrt(3.0) * third)
+
+
+@kernel
+def green(law: Green, metric: float) -> Stretching:
+    """Strain energy EA / 8 (G - 1)^2 and its derivatives.
+
+    Parameters
+    ----------
+    law
+        Parameters.
+    metric
+        G = q . q with q = dr/dx, dimensionless.
+    """
+    excess = metric - 1.0
+    return Stretching(
+        0.125 * law.stiffness * excess * excess,
+        0.25 * law.stiffness * excess,
+        0.25 * law.stiffness,
+    )
+
+
+register(StretchLaw("green", "as published, by Green's strain", Green, green, Green))

@@ -1,0 +1,64 @@
+"""What a law of stretch provides, and the list of all of them."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol
+
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import FloatArray
+
+
+class StretchParameters(Protocol):
+    """Parameters of a law of stretch: a named tuple that knows tension over stretch, and stretch over tension."""
+
+    @property
+    def stiffness(self) -> float:
+        """EA, rate dN/dg without strain, N."""
+
+    def tension(self, stretch: ArrayLike) -> FloatArray:
+        """Tension N, N, at a stretch g, length over reference length."""
+
+    def tangent_stiffness(self, stretch: ArrayLike) -> FloatArray:
+        """Rate dN/dg at a stretch g, N."""
+
+    def stretch(self, tension: ArrayLike) -> FloatArray:
+        """Stretch g under a tension (N); 1 without tension."""
+
+    @property
+    def largest_stretch(self) -> float:
+        """Stretch up to which the law is known; infinite for a formula."""
+
+
+class Stretching(NamedTuple):
+    """Strain energy of stretch per reference length over G = g^2; the tension is 2 g dW/dG."""
+
+    energy: float
+    """W, J/m."""
+    slope: float
+    """dW/dG, N."""
+    curvature: float
+    """d2W/dG2, N."""
+
+
+class StretchLaw(NamedTuple):
+    """A law of stretch in the list."""
+
+    name: str
+    """Its name in a drive file."""
+    meaning: str
+    """A phrase that says what it is."""
+    record: type[Any]
+    """Class of its parameters, a named tuple."""
+    stretching: Callable[[Any, float], Stretching]
+    """Kernel: from parameters and G the energy and its exact derivatives."""
+    make: Callable[[float], Any]
+    """Parameters from the axial stiffness EA (N) of a belt."""
+
+
+LAWS: dict[str, StretchLaw] = {}
+"""All laws of stretch by their names."""
+
+
+def register(law: StretchLaw) -> None:
+    """Add a law of stretch to the list."""
+    LAWS[law.name] = law
