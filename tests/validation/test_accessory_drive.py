@@ -14,9 +14,9 @@ from make_examples import simulated
 
 from beltdyn import Run
 from beltdyn.model import Resistance, RotaryTensioner
-from beltdyn.plot.curve import centerline, element_lengths
+from beltdyn.plot.curve import centerline
 from beltdyn.results import derived
-from beltdyn.results.mechanics import cells
+from beltdyn.results.mechanics import cells, element_lengths
 
 pytestmark = pytest.mark.slow
 

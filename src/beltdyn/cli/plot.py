@@ -1,5 +1,6 @@
 """`beltdyn plot`."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 def plot(
     file: Path,
     /,
-    *,
+    *more: Path,
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     figures: str | None = None,
     pulley: str | None = None,
@@ -23,14 +24,16 @@ def plot(
     animate: Annotated[bool, Parameter(negative="")] = False,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Draw the figures of a result file.
+    """Draw the figures of a result file, or of several files, to compare them.
 
     Parameters
     ----------
     file
         The result file, NetCDF, written by `beltdyn run` or another command.
+    more
+        More result files, whose lines are drawn into the same figures.
     output
-        The folder of the figures; by default beside the result file, named after it with -figures.
+        The folder of the figures; by default beside the first result file, named after the files with -figures.
     figures
         Names of figures with commas between, such as slip,hub_loads; by default the essential ones. A name that is not
         known gives the list of all.
@@ -46,21 +49,24 @@ def plot(
     """
     from beltdyn.results import open_result
 
-    folder = output or file.with_name(f"{file.stem}-figures")
+    others = f"-and-{more[0].stem if len(more) == 1 else f'{len(more)}-more'}" if more else ""
+    folder = output or file.with_name(f"{file.stem}{others}-figures")
     choice = {"figures": _names(figures), "pulley": pulley, "variable": variable, "overwrite": force}
-    draw(open_result(file), folder, animate, **choice)
+    draw([open_result(one) for one in (file, *more)], folder, animate, **choice)
 
 
-def draw(result: "Result", folder: Path, animate: bool, **choice: Any) -> None:
-    """Draw figures of a result into a folder, as `plot.save_all` does, and say where they are."""
+def draw(results: "Sequence[Result]", folder: Path, animate: bool, **choice: Any) -> None:
+    """Draw figures of results into a folder, as `plot.save_all` does, and say where they are."""
     from beltdyn import plot
     from beltdyn.results import Run
 
-    if animate and not isinstance(result, Run):
-        raise ModelError(f"--animate needs results over time, and these are of {result.kind}. Leave it away.")
-    paths = plot.save_all(result, folder, **choice)
-    if animate and isinstance(result, Run):
-        paths = [*paths, plot.animate(result, folder / "animation.gif", overwrite=bool(choice.get("overwrite")))]
+    first = results[0]
+    if animate and not (isinstance(first, Run) and len(results) == 1):
+        these = f"are of {first.kind}" if len(results) == 1 else f"are {len(results)}"
+        raise ModelError(f"--animate needs results over time of one run, and these {these}. Leave it away.")
+    paths = plot.save_all(results, folder, **choice)
+    if animate and isinstance(first, Run):
+        paths = [*paths, plot.animate(first, folder / "animation.gif", overwrite=bool(choice.get("overwrite")))]
     show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
 
 

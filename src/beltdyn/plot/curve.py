@@ -1,7 +1,6 @@
 """The belt's centreline as smooth curves, from nodal coordinates."""
 
 import numpy as np
-import xarray as xr
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import BINOMIALS
@@ -9,25 +8,6 @@ from beltdyn.elements import ElementKind
 
 POINTS = 17
 """Points drawn on an element, ends included."""
-
-
-def element_lengths(dataset: xr.Dataset, belt_length: float) -> FloatArray:
-    """Give the reference lengths of the elements.
-
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        A result; only ``node_coordinate`` and the number of elements are used.
-    belt_length : float
-        Unstretched length of the belt, m.
-
-    Returns
-    -------
-    ndarray, shape (elements,)
-        Lengths between a node and the next along the belt, m.
-    """
-    nodes = dataset["node_coordinate"].values
-    return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
 
 def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, points: int = POINTS) -> FloatArray:

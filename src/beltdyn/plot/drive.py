@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
-from beltdyn.plot.curve import centerline, element_lengths
+from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
 from beltdyn.results import Run, StaticResult
+from beltdyn.results.mechanics import element_lengths
 
 _ARROW_RADIUS = 0.62
 _ARROW_ANGLE = np.radians(60.0)

@@ -1,10 +1,10 @@
 """Figures of a run, in files."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.registry import FIGURES, Choice, require_kind
+from beltdyn.plot.registry import FIGURES, Choice, require_results
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run, derived
@@ -13,7 +13,7 @@ from beltdyn.results.atomic import is_marked, make_folder, require_replaceable
 
 @styled
 def save_all(
-    run: Result,
+    run: Result | Sequence[Result],
     folder: Path | str,
     figures: Iterable[str] | None = None,
     pulley: str | int | None = None,
@@ -24,12 +24,13 @@ def save_all(
 
     Parameters
     ----------
-    run : Result
-        The run or other result.
+    run : Result or sequence of Result
+        The run or other result; or several, to compare them.
     folder : Path or str
         Where to write; made if need be.
     figures : iterable of str, optional
-        Names out of `FIGURES`; by default the essential ones, those over time only if there is more than one output.
+        Names out of `FIGURES`; by default the essential ones, those over time only if there is more than one output,
+        and of several results those that compare them.
     pulley : str or int, optional
         Name or number of the pulley of hub loads and contact, all by default, and of the speed in a sweep, by default
         the one that was swept, or else the first.
@@ -49,20 +50,29 @@ def save_all(
         If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, a file cannot
         be written, or would replace one that is no figure of ours.
     """
-    if isinstance(run, Run):
-        run.require_output()
-    known = {name: figure for name, figure in FIGURES.items() if run.kind in figure.of}
+    results = [run] if isinstance(run, Result) else list(run)
+    for result in results:
+        if isinstance(result, Run):
+            result.require_output()
+    known = [name for name, figure in FIGURES.items() if all(result.kind in figure.of for result in results)]
     if not known:
-        raise ModelError(f"there is no figure of {run.kind}. Look at its dataset: `bd.open_result(path).dataset`.")
-    chosen = tuple(figures if figures is not None else (name for name in known if known[name].by_default(run)))
+        kinds = " and ".join(dict.fromkeys(result.kind for result in results))
+        raise ModelError(f"there is no figure of {kinds}. Look at its dataset: `bd.open_result(path).dataset`.")
+    chosen = tuple(figures) if figures is not None else tuple(name for name in known if _by_default(name, results))
     for name in chosen:
         if name not in FIGURES:
             raise ModelError(f"figure {name!r} is not known. Choose out of {', '.join(known)}.")
-        require_kind(name, run, FIGURES[name].of)
-    choice = Choice(None if pulley is None else derived.pulley_number(run, pulley), variable)
+        require_results(name, results)
+    choice = Choice(None if pulley is None else derived.pulley_number(results[0], pulley), variable)
     paths = {name: Path(folder) / f"{name}.png" for name in chosen}
     for path in paths.values():
         require_replaceable(path, is_marked, overwrite)
-    drawn = {name: known[name].arrange(run, choice) for name in chosen}
+    drawn = {name: FIGURES[name].arrange(results, choice) for name in chosen}
     make_folder(Path(folder))
     return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]
+
+
+def _by_default(name: str, results: Sequence[Result]) -> bool:
+    """Whether a figure is drawn where none is chosen."""
+    figure = FIGURES[name]
+    return all(map(figure.by_default, results)) and (figure.compares or len(results) == 1)

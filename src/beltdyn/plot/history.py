@@ -1,5 +1,7 @@
 """Figures over time."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -24,7 +26,7 @@ _WAVES = 5.0
 """Vibrations as high as the figure above which dashes cannot be told from them."""
 
 
-@figure(over_time)
+@figure(over_time, compares=True)
 def speeds(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the speeds of the pulleys over time, and those of the shafts behind hub chains.
 
@@ -50,7 +52,7 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(over_time)
+@figure(over_time, compares=True)
 def torques(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the torques of the belt on the pulleys over time.
 
@@ -69,7 +71,7 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
     return lines(run.dataset["pulley_torque"], axes_or_new(ax))
 
 
-@figure(over_time)
+@figure(over_time, compares=True)
 def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the tensions of the spans over time, marked where the mesh does not resolve them.
 
@@ -126,10 +128,10 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def lines(variable: xr.DataArray, ax: Axes) -> Axes:
+def lines(variable: xr.DataArray, ax: Axes, names: Sequence[str] | None = None) -> Axes:
     """Draw one line for each name along the second dimension, dashed unless it vibrates a lot; none without values."""
     vibrating = vibrates(variable)
-    for number, name in enumerate(variable[variable.dims[1]].values):
+    for number, name in enumerate(variable[variable.dims[1]].values if names is None else names):
         if bool(variable[:, number].isnull().all()):
             continue
         if vibrating[number]:

@@ -20,7 +20,7 @@ _LARGEST_MARGIN = 10.0
 _RINGS = 4
 
 
-@figure(over_time)
+@figure(over_time, compares=True)
 def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the first over time, and dotted the part of it that is elastic creep.
 
@@ -45,10 +45,8 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
         If the run holds no output.
     """
     parts, summary = derived.slips(run), summarize(run)
-    ax = lines(parts["slip"], axes_or_new(ax))
-    for line, pulley in zip(ax.lines, (one for one in summary.pulleys if np.isfinite(one.slip)), strict=False):
-        line.set_label(f"{pulley.name} {pulley.slip:.3%}")
-    name_lines(ax)
+    names = [f"{one.name} {one.slip:.3%}" if np.isfinite(one.slip) else one.name for one in summary.pulleys]
+    ax = lines(parts["slip"], axes_or_new(ax), names)
     notes = [f"numbers: means from {summary.start:.4g} to {summary.end:.4g} s"]
     slides = bool((np.abs(parts["sliding"]) > 0.0).any())
     inner = parts["creep" if slides else "elastic_creep"]
@@ -64,7 +62,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(over_time)
+@figure(over_time, compares=True)
 def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     """Draw how many times its load each pulley could transmit, over time; below 1 its whole arc slides.
 
@@ -96,7 +94,7 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(over_time)
+@figure(over_time, compares=True)
 def powers(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the power that comes in at each shaft over time; negative where a load takes it out.
 

@@ -1,8 +1,9 @@
 """Figures by name. A figure registers itself with the decorator `figure`, and is then drawn by `save_all`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import wraps
+from inspect import signature
 from typing import Any, NamedTuple, ParamSpec
 
 from matplotlib.axes import Axes
@@ -10,7 +11,9 @@ from matplotlib.figure import Figure
 
 from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
+from beltdyn.plot.headline import headlines, write_headline
 from beltdyn.plot.panels import one_panel
+from beltdyn.plot.several import overlay
 from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run
 
@@ -39,16 +42,19 @@ class Registered:
     Attributes
     ----------
     arrange : callable
-        ``arrange(run, choice) -> Figure``: all its panels on one page.
+        ``arrange(results, choice) -> Figure``: all its panels on one page, of one result or more.
     by_default : callable
         ``by_default(run) -> bool``: whether it is drawn where no figures are chosen.
     of : tuple of str
         Kinds of the results that it is drawn of, names of analyses.
+    compares : bool
+        Whether it shows several results together.
     """
 
-    arrange: Callable[[Any, Choice], Figure]
+    arrange: Callable[[Result | Sequence[Result], Choice], Figure]
     by_default: Callable[[Any], bool]
     of: tuple[str, ...]
+    compares: bool
 
 
 FIGURES: dict[str, Registered] = {}
@@ -74,8 +80,11 @@ def figure(
     by_default: Callable[[Any], bool] = on_request,
     arrange: Callable[[Callable[..., Axes], Any, Choice], Figure] = one_panel,
     of: tuple[str, ...] = (RUN,),
+    compares: bool = False,
 ) -> Callable[[Callable[P, Axes]], Callable[P, Axes]]:
     """Register a figure under the name of the function that draws it, and draw it in the style of this package.
+
+    A figure that is drawn on axes of its own gets a headline, with the drive and its operating point.
 
     Parameters
     ----------
@@ -85,6 +94,8 @@ def figure(
         ``arrange(draw, run, choice) -> Figure`` lays its panels out where it is saved; one panel by default.
     of : tuple of str
         Kinds of the results that it is drawn of, names of analyses: of runs by default.
+    compares : bool
+        Whether it takes a sequence of results too, whose lines are laid over each other.
 
     Returns
     -------
@@ -93,16 +104,73 @@ def figure(
     """
 
     def register(draw: Callable[P, Axes]) -> Callable[P, Axes]:
+        name, form, painted = draw.__name__, signature(draw), styled(draw)
+
         @wraps(draw)
         def drawn(*args: P.args, **kwargs: P.kwargs) -> Axes:
-            result: Any = next(iter((*args, *kwargs.values())))
-            require_kind(draw.__name__, result, of)
-            return styled(draw)(*args, **kwargs)
+            bound = form.bind(*args, **kwargs)
+            first, given = next(iter(bound.arguments.items()))
+            results = require_results(name, given)
 
-        FIGURES[draw.__name__] = Registered(lambda run, choice: arrange(drawn, run, choice), by_default, of)
+            def on(result: Result, ax: Axes | None) -> Axes:
+                bound.arguments |= {first: result, "ax": ax}
+                return painted(*bound.args, **bound.kwargs)
+
+            ax = bound.arguments.get("ax")
+            made = on(results[0], ax) if len(results) == 1 else styled(overlay)(on, results, ax)
+            if ax is None:
+                write_headline(made.figure.figure, headlines(results))
+            return made
+
+        @styled
+        def page(given: Result | Sequence[Result], choice: Choice) -> Figure:
+            results = require_results(name, given)
+
+            def draw_all(_: Result, *args: Any, **kwargs: Any) -> Axes:
+                return drawn(results, *args, **kwargs)  # type: ignore[arg-type]
+
+            made = arrange(draw_all if len(results) > 1 else drawn, results[0], choice)
+            write_headline(made, headlines(results))
+            return made
+
+        FIGURES[name] = Registered(page, by_default, of, compares)
         return drawn
 
     return register
+
+
+def require_results(name: str, given: Result | Sequence[Result]) -> list[Result]:
+    """Make sure that a figure can be drawn of a result, or of several.
+
+    Parameters
+    ----------
+    name : str
+        Name of the figure.
+    given : Result or sequence of Result
+        What it is to show.
+
+    Returns
+    -------
+    list of Result
+        One or more.
+
+    Raises
+    ------
+    ModelError
+        If there is none, a kind is none of those that it is drawn of, or it does not compare results.
+    """
+    results = [given] if isinstance(given, Result) else list(given)
+    if not results:
+        raise ModelError(f"the figure {name!r} shows a result or several, and there is none. Give one.")
+    for result in results:
+        require_kind(name, result, FIGURES[name].of)
+    if len(results) > 1 and not FIGURES[name].compares:
+        others = [other for other, one in FIGURES.items() if one.compares]
+        raise ModelError(
+            f"the figure {name!r} shows one result, and there are {len(results)}. Draw each by itself. "
+            f"Several are shown together by: {', '.join(others)}."
+        )
+    return results
 
 
 def require_kind(name: str, result: Result, kinds: tuple[str, ...]) -> None:

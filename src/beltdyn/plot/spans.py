@@ -13,7 +13,7 @@ _FLOOR = 1e-6
 """Part of the largest amplitude below which a spectrum is cut off."""
 
 
-@figure()
+@figure(compares=True)
 def mid_spans(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the transverse displacements of the spans at their middle over time.
 
@@ -38,7 +38,7 @@ def mid_spans(run: Run, ax: Axes | None = None) -> Axes:
     return lines((1e3 * displacement).assign_attrs(displacement.attrs | {"units": "mm"}), axes_or_new(ax))
 
 
-@figure()
+@figure(compares=True)
 def tension_spectrum(run: Run, start: float | None = None, end: float | None = None, ax: Axes | None = None) -> Axes:
     """Draw the amplitude spectra of the span tensions.
 
@@ -82,7 +82,7 @@ def _moves_over_time(run: Run) -> bool:
     return over_time(run) and "tensioner_position" in run.dataset
 
 
-@figure(_moves_over_time)
+@figure(_moves_over_time, compares=True)
 def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the positions of the tensioners over time: mm along a line, degrees of an arm.
 

@@ -1,6 +1,6 @@
 """How every figure looks, and how axes are labelled from the dataset."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
@@ -9,13 +9,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from cycler import cycler
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.typing import LineStyleType
 
 P = ParamSpec("P")
 R = TypeVar("R")
-Dash = str | tuple[int, tuple[float, ...]]
+Dash = LineStyleType
 
 INK = "#2b2f36"
 """Color of text and outlines."""
@@ -38,6 +40,8 @@ POLAR_SIZE = (6.2, 4.6)
 _IN_A_ROW = 4
 _ROW = 60
 """Letters of a legend that fit beside each other."""
+_BEYOND_A_SCALE = 1.13
+"""Where a legend begins beside axes with a second scale."""
 
 _RULES: dict[Any, Any] = {
     "figure.dpi": 110,
@@ -178,15 +182,17 @@ def reserve(ax: Axes, text: str) -> None:
     )
 
 
-def name_lines(ax: Axes) -> None:
-    """Write the legend above the axes, or beside them where the names are many; none without a line."""
-    names = ax.get_legend_handles_labels()[1]
+def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
+    """Write the legend of lines, by default all, above the axes, or beside them where the names are many."""
+    lines = ax.get_legend_handles_labels()[0] if lines is None else lines
+    names = [str(line.get_label()) for line in lines]
     if not names:
         return
     if len(names) <= _IN_A_ROW and sum(map(len, names)) < _ROW:
-        ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=_IN_A_ROW, borderaxespad=0.2)
+        ax.legend(handles=lines, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=_IN_A_ROW, borderaxespad=0.2)
     else:
-        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        beside = _BEYOND_A_SCALE if ax.child_axes else 1.0
+        ax.legend(handles=lines, loc="center left", bbox_to_anchor=(beside, 0.5))
 
 
 def dash(number: int) -> Dash:

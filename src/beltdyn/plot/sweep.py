@@ -88,7 +88,7 @@ def waterfall(
     return ax
 
 
-@figure(on_request, _one_by_one)
+@figure(on_request, _one_by_one, compares=True)
 def orders(
     run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
 ) -> Axes:

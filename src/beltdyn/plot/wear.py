@@ -8,7 +8,7 @@ from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
 from beltdyn.results import Run, derived
 
 
-@figure()
+@figure(compares=True)
 def wear_by_arc(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the work of friction over the arcs of the pulleys, from where the belt enters.
 
@@ -39,7 +39,7 @@ def wear_by_arc(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure()
+@figure(compares=True)
 def wear_by_belt(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the work of friction over the belt, and what each pulley does of it.
 

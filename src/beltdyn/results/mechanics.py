@@ -4,10 +4,15 @@ Along the last axis lie pulleys, spans or contact points. Span i leaves pulley i
 last one reaches pulley 0.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 UNLOADED = 1e-4
 """Difference of the tensions at a pulley, over their sum, up to which it counts as unloaded."""
@@ -104,6 +109,25 @@ def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:
     """
     gaps = np.diff(belt_coordinate, append=belt_coordinate[0] + length)
     return np.asarray(0.5 * (gaps + np.roll(gaps, 1)))
+
+
+def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
+    """Give the reference lengths of the elements.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result; only ``node_coordinate`` and the number of elements are used.
+    belt_length : float
+        Unstretched length of the belt, m.
+
+    Returns
+    -------
+    ndarray, shape (elements,)
+        Lengths between a node and the next along the belt, m.
+    """
+    nodes = dataset["node_coordinate"].values
+    return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
 
 def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, drive: Drive) -> FloatArray:

@@ -1,6 +1,7 @@
 """`beltdyn sweep`, and the figures that it names."""
 
-import sys
+import importlib
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ def test_a_sweep_takes_quantities_and_names_its_file(
         simulated.extend([drive, output, attributes])
         return run
 
-    monkeypatch.setattr(sys.modules["beltdyn.solve.sweep"], "record_run", record_run)
+    monkeypatch.setattr(importlib.import_module("beltdyn.solve.sweep"), "record_run", record_run)
     code, output, _ = run_main(["sweep", str(drive_file), *SPEEDS, "--duration", "2 s"])
     assert code == 0
     drive, path, attributes = simulated
@@ -71,6 +72,18 @@ def test_chosen_figures_of_one_pulley(run_main: RunMain, result_file: Path) -> N
     assert "hub_loads.png, slip.png" in output
     folder = result_file.with_name("result-figures")
     assert {path.name for path in folder.iterdir()} == {"hub_loads.png", "slip.png"}
+
+
+def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file: Path) -> None:
+    other = result_file.with_name("other.nc")
+    shutil.copy(result_file, other)
+    code, _, message = run_main(["plot", str(result_file), str(other), "--figures", "speeds,slip"])
+    assert (code, message) == (0, "")
+    folder = result_file.with_name("result-and-other-figures")
+    assert {path.name for path in folder.iterdir()} == {"speeds.png", "slip.png"}
+    files = ["plot", str(result_file), str(other)]
+    assert "'losses' shows one result, and there are 2" in refuse([*files, "--figures", "losses"])
+    assert "--animate needs results over time of one run, and these are 2" in refuse([*files, "--animate"])
 
 
 @pytest.mark.parametrize(

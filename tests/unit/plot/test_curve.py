@@ -3,14 +3,7 @@ import pytest
 
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.truss import TRUSS
-from beltdyn.plot.curve import centerline, element_lengths
-from beltdyn.results import Run
-
-
-def test_lengths_add_up_to_the_belt(run: Run) -> None:
-    lengths = element_lengths(run.dataset, run.drive.belt_length)
-    assert lengths.shape == (20,)
-    assert lengths.sum() == pytest.approx(run.drive.belt_length)
+from beltdyn.plot.curve import centerline
 
 
 def test_circle_is_missed_by_no_more_than_the_cubic_must() -> None:

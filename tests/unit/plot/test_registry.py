@@ -5,6 +5,8 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from beltdyn import plot
+from beltdyn.errors import ModelError
 from beltdyn.plot.registry import FIGURES, Choice, Registered, always, figure, on_request, over_time
 from beltdyn.plot.style import INK, axes_or_new
 from beltdyn.results import Run
@@ -55,3 +57,17 @@ def test_what_is_drawn_where_nothing_is_chosen(run: Run) -> None:
         *(True, False),
         *(False, False),
     ]
+
+
+def test_the_result_may_be_named(run: Run) -> None:
+    """Wherever it stands among the keywords."""
+    ax = Figure().add_subplot()
+    assert plot.speeds(ax=ax, run=run) is ax
+    assert len(ax.lines) == 2
+
+
+def test_a_figure_of_one_result_refuses_several(run: Run) -> None:
+    with pytest.raises(ModelError, match=r"'configuration' shows one result, and there are 2.*speeds, torques"):
+        plot.configuration([run, run])  # type: ignore[arg-type]
+    with pytest.raises(ModelError, match="there is none"):
+        plot.speeds([])  # type: ignore[arg-type]

@@ -25,7 +25,8 @@ def run_up(run: Run) -> Run:
         "span_tension": tension + 0.01 * np.cos(7.0 * angle)[:, None],
     }
     made = dataset.assign_coords(time=("time", time, dataset["time"].attrs))
-    return Run(made.assign({name: made[name].copy(data=array) for name, array in values.items()}), run.drive)
+    made = made.assign({name: made[name].copy(data=array) for name, array in values.items()})
+    return Run(made.assign_attrs(swept_pulley="driver"), run.drive)
 
 
 def test_orders(run_up: Run, ax: Axes) -> None:

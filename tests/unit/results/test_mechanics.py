@@ -11,10 +11,12 @@ from hypothesis import strategies as st
 
 from beltdyn.contact.friction import CoefficientSlope, ForceSlope, FrictionParameters
 from beltdyn.model import Drive
+from beltdyn.results import Run
 from beltdyn.results.mechanics import (
     across,
     capstan_margin,
     cells,
+    element_lengths,
     gross_sliding,
     pressing,
     rim_speeds,
@@ -127,3 +129,9 @@ def test_a_whole_arc_slides_only_if_all_of_it_slides_one_way() -> None:
 def test_a_pulley_without_contact_does_not_slide() -> None:
     pressed = pressing(np.zeros((1, 2)), np.array([[-1, 0]]), 3)
     assert not gross_sliding(np.array([[1.0, 1.0]]), pressed, serpentine()).any()
+
+
+def test_lengths_add_up_to_the_belt(run: Run) -> None:
+    lengths = element_lengths(run.dataset, run.drive.belt_length)
+    assert lengths.shape == (20,)
+    assert lengths.sum() == pytest.approx(run.drive.belt_length)

@@ -1,7 +1,5 @@
 """Wear intensity: work of friction, by place on the arc and by place on the belt (Archard 1953: wear grows with it)."""
 
-from itertools import accumulate
-
 import numpy as np
 import xarray as xr
 
@@ -10,6 +8,7 @@ from beltdyn.errors import ModelError
 from beltdyn.results.arc import arc_ends
 from beltdyn.results.derived.labels import window
 from beltdyn.results.friction_work import ARC_PARTS, BEYOND
+from beltdyn.results.mechanics import element_lengths
 from beltdyn.results.run import Run
 
 
@@ -81,9 +80,8 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}
     attributes = {"units": "J/m", "long_name": "Wear intensity on the belt"}
-    middles = dataset["element_coordinate"].values
-    ends = np.fromiter(accumulate(middles, lambda end, middle: 2.0 * middle - end, initial=0.0), float)
-    return xr.DataArray(work / np.diff(ends), coordinates, ("pulley", "element"), attrs=attributes)
+    lengths = element_lengths(dataset, run.drive.belt_length)
+    return xr.DataArray(work / lengths, coordinates, ("pulley", "element"), attrs=attributes)
 
 
 def _work(run: Run, name: str, start: float | None, end: float | None) -> tuple[xr.Dataset, FloatArray]:

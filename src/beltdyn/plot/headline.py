@@ -1,0 +1,76 @@
+"""What stands above a figure: the name of the drive, and the point at which it runs."""
+
+from collections.abc import Sequence
+from math import pi
+
+from matplotlib.figure import Figure
+
+from beltdyn.results import Result, Run, StaticResult, power_balance
+from beltdyn.results.cycles import mean_window
+
+_RPM = 30.0 / pi
+_SIZE = 11
+
+
+def write_headline(page: Figure, text: str) -> None:
+    """Write above all panels of a page, at the left."""
+    page.suptitle(text, x=0.01, horizontalalignment="left", fontsize=_SIZE)
+
+
+def headlines(results: Sequence[Result]) -> str:
+    """The headline of one result, or the names of several, as far as they have names."""
+    if len(results) == 1:
+        return headline(results[0])
+    return ", ".join(name for name in map(name_of, results) if name)
+
+
+def headline(result: Result) -> str:
+    """Say which drive a result is of, by the name of its file, and at which point it runs.
+
+    Parameters
+    ----------
+    result : Result
+        Of a run with at least one output, or of another analysis.
+
+    Returns
+    -------
+    str
+        Such as "fan: motor 1440 rpm, 2.21 kW in"; without a name where the result is in memory.
+    """
+    if isinstance(result, Run):
+        point = _range(result) or _operating_point(result)
+    elif isinstance(result, StaticResult):
+        point = f"at rest, mean belt tension {float(result.dataset['tension']):.4g} N"
+    else:
+        point = result.kind
+    return ": ".join(part for part in (name_of(result), point) if part)
+
+
+def name_of(result: Result) -> str:
+    """Name of a result: that of its file without suffix; empty in memory."""
+    return result.path.stem if result.path is not None else ""
+
+
+def _range(run: Run) -> str:
+    """Speeds of the pulley that was swept; empty of other runs."""
+    swept = run.dataset.attrs.get("swept_pulley", "")
+    if not swept:
+        return ""
+    speed = _RPM * run.dataset["pulley_speed"].sel(pulley=swept)
+    return f"{swept} from {float(speed[0]):.4g} to {float(speed[-1]):.4g} rpm"
+
+
+def _operating_point(run: Run) -> str:
+    """Mean speed at the end of the pulley that gives most power, and the power that is put in."""
+    with run.recorded() as recorded:
+        over = mean_window(recorded, run.drive)
+        power = over.product(recorded, "shaft_torque", "shaft_speed")
+        speed = _RPM * over.mean(recorded, "pulley_speed")
+        put_in = power_balance(recorded, over).power_in
+    first = int(power.argmax()) if put_in > 0.0 else 0
+    given = f", {_power(put_in)} in" if put_in > 0.0 else ""
+    return f"{run.drive.pulleys[first].name} {speed[first]:.4g} rpm{given} at the end"
+
+
+def _power(power: float) -> str:
+    return f"{power / 1e3:.3g} kW" if power >= 1e3 else f"{power:.3g} W"

@@ -1,0 +1,128 @@
+"""Several results in one figure: what each is called, and how its lines differ from those of the others."""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import count
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.lines import Line2D
+
+from beltdyn.model import Drive, loads
+from beltdyn.plot.headline import name_of
+from beltdyn.plot.style import INK, dash, name_lines
+from beltdyn.results import Result
+
+_PALER = 0.25
+"""By how much the lines of a result are paler than those of the result before."""
+_PALEST = 0.6
+_MOST_KEYS = 2
+
+
+def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Result], ax: Axes | None) -> Axes:
+    """Draw results on one pair of axes: a color for each thing that is drawn, a line style for each result.
+
+    Parameters
+    ----------
+    draw : callable
+        ``draw(result, ax) -> Axes``.
+    results : sequence of Result
+        Two or more.
+    ax : Axes or None
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    names, drawn, titles = names_of_results(results), list[list[Line2D]](), set[str]()
+    for number, result in enumerate(results):
+        before = set(ax.get_children()) if ax is not None else set()
+        ax = draw(result, ax)
+        titles.add(ax.get_title(loc="left"))
+        new = [artist for artist in ax.get_children() if artist not in before]
+        drawn.append([artist for artist in new if isinstance(artist, Line2D)])
+        _tell_apart(new, number)
+        for repeated in (artist for artist in new if number and artist in (*ax.texts, *ax.patches)):
+            repeated.remove()
+    assert ax is not None
+    if len(titles) > 1:
+        ax.set_title("")
+    name_lines(ax, _named(drawn, names))
+    return ax
+
+
+def names_of_results(results: Sequence[Result]) -> list[str]:
+    """Name results so that each is told from the others.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        The results.
+
+    Returns
+    -------
+    list of str
+        The names of their files; or what differs in their drive files, at most two keys; or their numbers.
+    """
+    names = [name_of(result) for result in results]
+    if all(names) and len(set(names)) == len(names):
+        return names
+    given = [dict(_keys(_drive_as_given(result).data)) for result in results]
+    keys = list(dict.fromkeys(key for one in given for key in one))
+    differing = [key for key in keys if len({str(one.get(key)) for one in given}) > 1][:_MOST_KEYS]
+    names = [", ".join(f"{key} = {one.get(key, 'by default')}" for key in differing) for one in given]
+    return names if len(set(names)) == len(names) else [f"result {n}" for n, _ in zip(count(1), results, strict=False)]
+
+
+def _drive_as_given(result: Result) -> Drive:
+    """The drive before its length or take-up was found for an installed tension."""
+    text = result.dataset.attrs.get("drive_as_given")
+    return loads(text, base=result.path.parent if result.path else None) if text else result.drive
+
+
+def _keys(data: Any, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Numbers and texts of a drive with their paths; what has a name is called by it."""
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield from _keys(value, f"{path}.{key}" if path else key)
+    elif isinstance(data, list) and any(isinstance(one, dict) for one in data):
+        for number, one in enumerate(data, 1):
+            yield from _keys(one, f"{path}[{one.get('name', number)}]")
+    else:
+        yield path, data
+
+
+def _tell_apart(artists: Sequence[Any], number: int) -> None:
+    """Give what a result is drawn with its line style, paler than before; lines without a name keep their style."""
+    for artist in artists:
+        if isinstance(artist, Line2D):
+            artist.set_color(_paler(artist.get_color(), number))
+            if _has_name(artist):
+                artist.set_linestyle(dash(number))
+
+
+def _paler(tint: Any, number: int) -> tuple[float, float, float]:
+    share = min(_PALER * number, _PALEST)
+    red, green, blue = (channel + share * (1.0 - channel) for channel in to_rgb(tint))
+    return red, green, blue
+
+
+def _named(drawn: Sequence[Sequence[Line2D]], names: Sequence[str]) -> list[Line2D]:
+    """Lines of a legend: what all results show once, what only some show with their names, and the line styles."""
+    named = [[line for line in lines if _has_name(line)] for lines in drawn]
+    shared = set.intersection(*({str(line.get_label()) for line in lines} for lines in named))
+    legend = [line for line in named[0] if line.get_label() in shared]
+    for lines, name in zip(named, names, strict=True):
+        for line in lines:
+            if line.get_label() not in shared:
+                line.set_label(f"{line.get_label()}, {name}")
+                legend.append(line)
+    if shared or not legend:
+        legend += [Line2D([], [], color=INK, linestyle=dash(n), label=name) for n, name in enumerate(names)]
+    return legend
+
+
+def _has_name(line: Line2D) -> bool:
+    return not str(line.get_label()).startswith("_")

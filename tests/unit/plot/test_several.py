@@ -1,0 +1,73 @@
+"""Several results in one figure."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+
+from beltdyn import plot
+from beltdyn.plot.several import names_of_results
+from beltdyn.results import Run
+
+
+def named(run: Run, path: str) -> Run:
+    """The same results, from a file of this name."""
+    return Run(run.dataset, run.drive, Path(path))
+
+
+@pytest.fixture
+def pair(run: Run, make_run: Callable[..., Run]) -> list[Run]:
+    """A run, and one whose driven pulley is slower."""
+    turning = {name: run.dataset[name].values * [1.0, 0.9] for name in ("pulley_speed", "pulley_angle")}
+    slower = make_run(**turning)
+    return [named(run, "one.nc"), named(slower, "other.nc")]
+
+
+def legend(ax: Axes) -> list[str]:
+    box = ax.get_legend()
+    assert box is not None
+    return [text.get_text() for text in box.get_texts()]
+
+
+def test_a_color_for_each_pulley_and_a_line_style_for_each_run(pair: list[Run], ax: Axes) -> None:
+    assert plot.speeds(pair, ax) is ax  # type: ignore[arg-type]
+    assert legend(ax) == ["driver", "driven", "one", "other"]
+    for number, run in enumerate(pair):
+        for pulley in (0, 1):
+            line = ax.lines[2 * number + pulley]
+            np.testing.assert_array_equal(line.get_ydata(), run.dataset["pulley_speed"][:, pulley])
+            assert (line.get_linestyle() == "-") == (number == 0)
+    hue, paler = (np.array(to_rgb(ax.lines[number].get_color())) for number in (1, 3))
+    np.testing.assert_allclose(1.0 - paler, 0.75 * (1.0 - hue))
+
+
+def test_what_differs_is_named_after_its_run(pair: list[Run], ax: Axes) -> None:
+    """The slip of the driven pulley is a part of its name; notes are written once."""
+    plot.slip(pair, ax)  # type: ignore[arg-type]
+    names = legend(ax)
+    assert names[0] == "driver 0.000%"
+    assert [name.split(", ")[1] for name in names[1:3]] == ["one", "other"]
+    assert len(ax.texts) == 1
+
+
+def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path: Path) -> None:
+    page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
+    assert page.get_suptitle() == "one, other"
+    names = [path.stem for path in plot.save_all(pair, tmp_path)]
+    assert names == ["speeds", "torques", "span_tensions", "slip", "capstan_margins", "powers"]
+
+
+def test_runs_in_memory_are_named_by_what_differs(run: Run) -> None:
+    stiffer = run.drive.replace(belt=run.drive.belt.replace(elements=30))
+    assert names_of_results([run, Run(run.dataset, stiffer)]) == ["belt.elements = 20", "belt.elements = 30"]
+    assert names_of_results([run, run]) == ["result 1", "result 2"]
+
+
+def test_runs_are_named_by_what_was_given_and_not_by_what_was_found(run: Run) -> None:
+    """The belt's length follows from the tension."""
+    given = [run.drive.replace(belt=run.drive.belt.replace(installed_tension=tension)) for tension in (40.0, 50.0)]
+    runs = [Run(run.dataset.assign_attrs(drive_as_given=one.text), run.drive) for one in given]
+    assert names_of_results(runs) == ["belt.installed_tension = 40.0", "belt.installed_tension = 50.0"]
