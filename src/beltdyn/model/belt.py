@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, describe_forms, to_material
+from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, describe_forms, in_new_form, to_material
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
 from beltdyn.stretch import Green, StretchParameters
@@ -118,6 +118,11 @@ class Belt(Part):
     def alternatives(cls) -> Mapping[str, FieldInfo]:
         """Arguments in place of the material, see `beltdyn.model.belt_form`."""
         return FORMS
+
+    def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """As of any part; a stiffness takes the place of the material, and a profile that of the section."""
+        own = {key: getattr(self, key) for key in ("axial_stiffness", "bending_stiffness", "mass_per_length")}
+        return in_new_form(super().merged(changes), changes, own)
 
     @model_validator(mode="before")
     @classmethod

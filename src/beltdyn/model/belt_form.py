@@ -95,6 +95,33 @@ def to_material(data: Any, base: Path | None) -> Any:
     return {"poissons_ratio": _POISSONS_RATIO} | values | _material(Stiffnesses.model_validate(given_section))
 
 
+def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: Mapping[str, float]) -> dict[str, Any]:
+    """Let the arguments of a changed belt give it in one form: that of the changes.
+
+    Parameters
+    ----------
+    arguments
+        Those of the belt by its material, with the changes.
+    changes
+        What was changed.
+    own
+        Axial and bending stiffness and mass per length of the belt as it was.
+
+    Returns
+    -------
+    dict
+        A profile takes the place of the whole section; a stiffness or the mass of a metre that of the material.
+    """
+    if any(key in changes for key in Sold.model_fields):
+        gone = {*_MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *_TAKEN_OVER}
+        own = {}
+    elif any(key in changes for key in _OWN):
+        gone = {*_MATERIAL}
+    else:
+        return dict(arguments)
+    return {**own, **{key: value for key, value in arguments.items() if key in changes or key not in gone}}
+
+
 def _material(section: Stiffnesses) -> dict[str, float]:
     """Give the material of a rectangle that has the stiffnesses and the mass."""
     area = section.width * section.thickness

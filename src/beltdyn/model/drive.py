@@ -1,6 +1,6 @@
 """The drive: a belt, its pulleys, their contact, and how to simulate them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, Self
 
@@ -20,6 +20,7 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Simulation
+from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration
 from beltdyn.parts.text_file import parse_toml
@@ -169,6 +170,35 @@ class Drive(Part):
     def frictions(self) -> FloatArray:
         """Coefficients of friction of the pulleys, with the wedge factor on those that touch the inside; shape (n,)."""
         return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])
+
+    def with_(self, changes: Mapping[str, Any]) -> "Drive":
+        """Make a copy with numbers changed by their paths, all at once, and validate it.
+
+        Parameters
+        ----------
+        changes : mapping
+            Path -> new value, a number in SI units or text with a unit, or whatever a drive file takes there; None
+            leaves an argument open. Paths are those of error messages: keys with dots between, and in brackets the
+            name of a pulley, the pulley of a tensioner, or the number of an entry, counted from 1. Where one value is
+            given in place of another, as a tension of the belt in place of its length, it takes the other's place.
+
+        Returns
+        -------
+        Drive
+
+        Raises
+        ------
+        ModelError
+            If a path leads nowhere, or the changed drive is not valid.
+
+        Examples
+        --------
+        >>> changes = {"belt.installed_tension": "40 N", "pulley[driven].inertia": 0.2}
+        >>> changed = drive.with_(changes)
+        >>> changed.belt.installed_tension, changed.pulleys[1].inertia
+        (40.0, 0.2)
+        """
+        return Drive(**changed_arguments(self, changes))
 
     def tightened(self, distance: float) -> "Drive":
         """Settle what an installed tension leaves open: the length, or, where that is given, the take-up.

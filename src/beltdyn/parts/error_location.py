@@ -52,7 +52,7 @@ class ErrorLocation:
                 continue
             data = _item(data, step)
             if isinstance(step, int):
-                path += f"[{_name(data) or step + 1}]"
+                path += f"[{entry_name(data) or step + 1}]"
                 entries = schema.get("prefixItems") or [schema.get("items", {})]
                 schema = {"description": schema.get("description", "")} | self._resolve(entries[0])
             else:
@@ -85,12 +85,19 @@ def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def _item(data: Any, step: int | str) -> Any:
+    """What stands in a mapping, a list or a part."""
+    if isinstance(data, BaseModel):
+        return getattr(data, str(step), None)
     try:
         return data[step]
     except (TypeError, LookupError):
         return None
 
 
-def _name(data: Any) -> str:
-    name = _item(data, "name")
-    return shorten(name) if isinstance(name, str) else ""
+def entry_name(data: Any) -> str:
+    """What an entry of a list is called by: its name, or that of the pulley it carries; empty without one."""
+    for key in ("name", "pulley"):
+        name = _item(data, key)
+        if isinstance(name, str):
+            return shorten(name)
+    return ""

@@ -85,7 +85,7 @@ def _sentence(detail: ErrorDetails, locations: ErrorLocation) -> str:
     if kind == "missing":
         return f"{path} is missing. {_remedy(schema)}".strip()
     if kind == "extra_forbidden":
-        return f"{path} is not a known key. {_suggest(str(location[-1]), locations.keys(location[:-1]))}"
+        return f"{path} is not a known key. {suggest(str(location[-1]), locations.keys(location[:-1]))}"
     if kind == "value_error":
         return _own_sentence(path, value, str(context["error"]), detail["input"], schema)
     if kind in ("literal_error", "union_tag_invalid"):
@@ -112,10 +112,11 @@ def _choice_sentence(path: str, detail: ErrorDetails) -> str:
     choices = [choice.strip(" '\"") for choice in expected.replace(" or ", ",").split(",")]
     if detail["type"] == "union_tag_invalid":
         path, given = f"{path}.kind", context["tag"]
-    return f"{path} = {show(given)} is not a choice here. {_suggest(str(given), choices)}"
+    return f"{path} = {show(given)} is not a choice here. {suggest(str(given), choices)}"
 
 
-def _suggest(given: str, known: list[str]) -> str:
+def suggest(given: str, known: list[str]) -> str:
+    """Name what was probably meant, or all that is known."""
     near = _nearest(given, known)
     return f'Did you mean "{near}"?' if near else f"Known here: {', '.join(known)}"
 

@@ -28,6 +28,11 @@ class Part(BaseModel):
             raise ModelError(explain(error, type(self), data)) from None
 
     @classmethod
+    def keys(cls) -> list[str]:
+        """Names of all arguments that the constructor takes."""
+        return [*(field.alias or name for name, field in cls.model_fields.items()), *cls.alternatives()]
+
+    @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
         """Arguments that the constructor takes in place of fields, by their names."""
         return {}
@@ -94,8 +99,12 @@ class Part(BaseModel):
         >>> drive.belt.replace(elements=30).elements
         30
         """
+        return type(self)(**self.merged(changes))
+
+    def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """The constructor's arguments with some values changed, as for `replace`."""
         arguments = self.arguments
         for new, old in permutations(self.either or (), 2):
             if changes.get(new) is not None and new not in arguments:
                 arguments.pop(old, None)
-        return type(self)(**arguments | changes)
+        return arguments | dict(changes)

@@ -13,7 +13,7 @@ DATA: dict[str, Any] = {
         {"name": "driven", "load": [{"kind": "motor"}]},
         {"radius": 1.0},
     ],
-    "tensioner": "none",
+    "tensioner": [{"pulley": "idler"}],
 }
 
 
@@ -26,6 +26,7 @@ def locations() -> ErrorLocation:
     ("location", "path"),
     [
         ((), ""),
+        (("tensioner", 0, "preload"), "tensioner[idler].preload"),
         (("belt", "width"), "belt.width"),
         (("pulley", 1, "radius"), "pulley[driven].radius"),
         (("pulley", 2, "radius"), "pulley[3].radius"),

@@ -1,0 +1,111 @@
+"""Numbers deep inside a drive are changed by their paths."""
+
+from typing import Any
+
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, loads, read_catalogue
+
+MOTOR = """
+[[pulley.load]]
+kind = "resistance"
+constant = 1.0
+[[pulley.load]]
+kind = "resistance"
+constant = 2.0
+
+[[tensioner]]
+kind = "sliding"
+pulley = "driven"
+direction = [1.0, 0.0]
+mass = 0.1
+preload = 60.0
+"""
+
+
+@pytest.fixture
+def loaded(drive_text: str) -> Drive:
+    """The two-pulley drive with two loads on a driven pulley that a tensioner carries."""
+    before, contact, after = drive_text.partition("[contact]")
+    return loads(f"{before}{MOTOR}{contact}{after}")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "found"),
+    [
+        ("belt.width", "12 mm", lambda drive: drive.belt.width == 0.012),
+        ("pulley[driven].inertia", 0.2, lambda drive: drive.pulleys[1].inertia == 0.2),
+        ("pulley[2].inertia", 0.2, lambda drive: drive.pulleys[1].inertia == 0.2),
+        ("pulley.driven.inertia", 0.2, lambda drive: drive.pulleys[1].inertia == 0.2),
+        ("pulley[driven].load[2].constant", "5 N*m", lambda drive: drive.pulleys[1].load[1].constant == 5.0),
+        (
+            "pulley[driver].speed.value",
+            "120 rpm",
+            lambda drive: drive.pulleys[0].speed.value == pytest.approx(12.566, 1e-4),
+        ),
+        ("pulley[driver].center[2]", "1 mm", lambda drive: drive.pulleys[0].center[1] == 0.001),
+        ("tensioner[driven].preload", "0.07 kN", lambda drive: drive.tensioners[0].preload == 70.0),
+        ("contact.friction", 0.9, lambda drive: drive.contact.friction == 0.9),
+        ("simulation", {"duration": 2.0, "output_interval": 0.1}, lambda drive: drive.simulation.duration == 2.0),
+        ("pulley[driven].torque", None, lambda drive: drive.pulleys[1].torque is None),
+    ],
+)
+def test_one_number_changes_and_all_else_stays(loaded: Drive, path: str, value: Any, found: Any) -> None:
+    changed = loaded.with_({path: value})
+    assert found(changed)
+    assert not found(loaded) or value is None
+    assert loaded.with_({}) == loaded
+    assert changed.with_({"gravity": (0.0, -9.81)}) != changed
+
+
+def test_changes_are_made_all_at_once(drive: Drive) -> None:
+    """Pulleys of twice the radius overlap until they are moved apart, and need another belt."""
+    wider = {"pulley[driver].radius": 0.2, "pulley[driver].center": (-0.4, 0.0)}
+    changed = drive.with_(wider | {"belt.installed_tension": "40 N", "pulley[driven].center[1]": 0.3})
+    assert (changed.pulleys[0].radius, changed.pulleys[1].center) == (0.2, (0.3, 0.0))
+    assert (changed.belt.length, changed.belt.installed_tension) == (None, 40.0)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "said"),
+    [
+        ("belt.lenght", 1.0, 'belt.lenght is not a known key. Did you mean "length"?'),
+        ("bolt.length", 1.0, 'bolt is not a known key. Did you mean "belt"?'),
+        ("pulley[drvien].inertia", 1.0, 'pulley[drvien] is not there. Did you mean "driven"?'),
+        ("pulley[0].inertia", 1.0, "pulley[0] is not there; entries count from 1. Known here: driver, driven."),
+        ("pulley[driven].load[3].constant", 1.0, "pulley[driven].load[3] is not there; entries count from 1."),
+        ("pulley[driven].inertia", -1.0, "pulley[driven].inertia = -1.0 must be at least 0."),
+        ("pulley[driven].load[2].constant", "5 N", 'pulley[driven].load[2].constant = "5 N" must be in units of N*m'),
+        ("tensioner[driven].preload", "5 m", 'tensioner[driven].preload = "5 m" must be in units of N'),
+        ("pulley[driven].speed.value", 1.0, "pulley[driven].speed is not given, so that there is nothing in it"),
+        ("belt.length.unit", 1.0, "belt.length = 1.2727 holds nothing to change by .unit."),
+        ("belt.", 1.0, '"belt." is no path. Write for example "belt.length"'),
+        ("", 1.0, '"" is no path.'),
+    ],
+)
+def test_a_path_that_leads_nowhere_is_said(loaded: Drive, path: str, value: Any, said: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        loaded.with_({path: value})
+    assert str(caught.value).startswith(said)
+
+
+def test_a_part_is_not_changed_twice(drive: Drive) -> None:
+    with pytest.raises(ModelError, match="belt is replaced as a whole, and in parts"):
+        drive.with_({"belt": drive.belt, "belt.length": 1.27})
+
+
+def test_a_belt_takes_the_form_of_the_change(drive: Drive) -> None:
+    """Its stiffnesses stay but for the one that changes; a profile brings a section of its own."""
+    belt = drive.belt
+    stiffer = drive.with_({"belt.axial_stiffness": "20 kN"}).belt
+    assert stiffer.axial_stiffness == pytest.approx(2e4)
+    assert stiffer.bending_stiffness == pytest.approx(belt.bending_stiffness)
+    assert stiffer.mass_per_length == pytest.approx(belt.mass_per_length)
+    assert (stiffer.width, stiffer.thickness, stiffer.length) == (belt.width, belt.thickness, belt.length)
+    sold = drive.with_({"belt.profile": "PK", "belt.ribs": 6, "belt.installed_tension": "300 N"}).belt
+    entry = read_catalogue()["PK"]
+    assert (sold.thickness, sold.mass_per_length) == pytest.approx((entry.thickness, 6 * entry.mass_per_length))
+    assert sold.axial_stiffness == pytest.approx(6 * entry.axial_stiffness)
+    with pytest.raises(ModelError, match=r"belt\.profile is missing"):
+        drive.with_({"belt.ribs": 6})
