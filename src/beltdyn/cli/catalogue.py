@@ -1,46 +1,122 @@
 """`beltdyn catalogue`."""
 
+from collections.abc import Iterable, Iterator
+from itertools import groupby
+from math import degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beltdyn.cli.console import show, show_table
+from beltdyn.cli.console import show, show_facts, show_table
 
 if TYPE_CHECKING:
     from beltdyn.model import Entry
 
+_LENGTHS = {"datum": "datum length", "effective": "effective length", "outside": "inside length"}
 
-def catalogue(*, file: Path | None = None) -> None:
-    """List the belts of the catalogue, and where their values come from.
+
+def catalogue(profile: str | None = None, /, *, file: Path | None = None) -> None:
+    """List the belts of the catalogue, or show one with all its values and where they come from.
 
     Parameters
     ----------
+    profile
+        The name of a profile, such as SPB; without it, all are listed.
     file
         A catalogue of your own, TOML, over that of the package.
     """
     from beltdyn.errors import ModelError
-    from beltdyn.model import read_catalogue
+    from beltdyn.model.catalogue import find_entry, read_catalogue
 
     try:
         entries = read_catalogue(file)
+        entry = None if profile is None else find_entry(entries, profile)
+    except LookupError as error:
+        raise ModelError(f"{error.args[0]}.") from None
     except ValueError as error:
         raise ModelError(f"{str(error).rstrip('.')}.") from None
-    headings = ("profile", "width mm", "thickness mm", "EA N", "EI N·m²", "kg/m", "groove")
-    show_table("Catalogue", headings, [_row(name, entry) for name, entry in entries.items()])
-    for name, entry in entries.items():
-        generic = " Generic values." if entry.generic else ""
-        show(f"\n{name}: {entry.title}.{generic}\n  {entry.source}")
+    if profile is None or entry is None:
+        _list(entries)
+    else:
+        _show(profile, entry)
 
 
-def _row(name: str, entry: "Entry") -> tuple[str, ...]:
-    from math import degrees
+def _list(entries: "dict[str, Entry]") -> None:
+    """List profiles, grouped by their kind."""
+    headings = ("profile", "values of", "thick mm", "EA kN", "EI N·m²", "g/m", "friction", "groove", "min. pulley mm")
+    kinds = {entry.kind: position for position, entry in reversed(list(enumerate(entries.values())))}
+    ordered = sorted(entries.items(), key=lambda item: kinds[item[1].kind])
+    show_table("Catalogue", headings, _rows(ordered))
+    show("\nThe values of the package are generic, typical of a profile. `beltdyn catalogue SPB` shows one, with sources.")
 
-    of = " each" if entry.sold_by == "ribs" else ""
-    return (
-        name,
-        f"{1e3 * entry.width:.3g}{of}",
-        f"{1e3 * entry.thickness:.3g}",
-        f"{entry.axial_stiffness:.6g}",
-        f"{entry.bending_stiffness:.3g}",
-        f"{entry.mass_per_length:.3g}",
-        "flat" if entry.wedge_angle is None else f"{degrees(entry.wedge_angle):.3g}°",
-    )
+
+def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
+    for kind, group in groupby(entries, key=lambda item: item[1].kind):
+        yield (kind,)
+        for name, entry in group:
+            yield (
+                f"  {name}",
+                _size(entry),
+                f"{1e3 * entry.thickness:.3g}",
+                f"{entry.axial_stiffness / 1e3:.3g}",
+                f"{entry.bending_stiffness:.2g}",
+                f"{1e3 * entry.mass_per_length:.3g}",
+                "" if entry.friction is None else f"{entry.friction:.2g}",
+                "flat" if entry.wedge_angle is None else f"{degrees(entry.wedge_angle):.3g}°",
+                "" if entry.smallest_diameter is None else f"{1e3 * entry.smallest_diameter:.3g}",
+            )
+
+
+def _size(entry: "Entry") -> str:
+    """What the values belong to."""
+    if entry.sold_by == "ribs":
+        return "1 belt" if entry.pulley_diameter == "datum" else "1 rib"
+    return f"{1e3 * entry.width:.3g} mm {entry.sold_by}"
+
+
+def _show(profile: str, entry: "Entry") -> None:
+    """Show a profile: its values, what follows from them, how a drive file names it, and the sources."""
+    show(f"{profile}: {entry.title}.{' Generic values.' if entry.generic else ''}\n")
+    show(f"Values of {_size(entry)}")
+    show_facts((f"  {name}", fact) for name, fact in _values(entry))
+    show("\nWhat follows")
+    show_facts((f"  {name}", fact) for name, fact in _consequences(entry))
+    size = {"ribs": "ribs = 1", "width": 'width = "50 mm"', "diameter": 'diameter = "8 mm"'}[entry.sold_by]
+    show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n\nSources')
+    show_facts(("  ", line) for line in entry.source.strip().splitlines())
+
+
+def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
+    """What the catalogue says of a profile."""
+    from beltdyn.model.belt_form import DAMPING_TIMES, LOSS_FACTORS
+
+    yield "width", f"{1e3 * entry.width:.4g} mm{', the pitch or datum width' * (entry.pulley_diameter == 'datum')}"
+    yield "thickness", f"{1e3 * entry.thickness:.4g} mm"
+    yield "pitch_offset", f"{1e3 * entry.pitch_offset:.3g} mm from the inside surface to the tension line"
+    yield "back_offset", f"{1e3 * entry.back_offset:.3g} mm from the back to the tension line"
+    if entry.wedge_angle is not None:
+        yield "wedge_angle", f"{degrees(entry.wedge_angle):.3g}°"
+    yield "axial_stiffness", f"{entry.axial_stiffness / 1e3:.4g} kN"
+    yield "bending_stiffness", f"{entry.bending_stiffness:.3g} N·m²"
+    yield "mass_per_length", f"{1e3 * entry.mass_per_length:.3g} g/m"
+    if entry.friction is not None:
+        yield "friction", f"{entry.friction:.3g}, before the factor of the groove"
+    if entry.contact_stiffness is not None:
+        yield "contact_stiffness", f"{entry.contact_stiffness / 1e6:.3g} MN/m²"
+    for name in (*DAMPING_TIMES, *LOSS_FACTORS):
+        if getattr(entry, name) > 0:
+            yield name, f"{getattr(entry, name):.3g}{' s' if name in DAMPING_TIMES else ''}"
+
+
+def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
+    """Numbers that help with a profile."""
+    offset, length = 1e3 * entry.pitch_offset, _LENGTHS[entry.pulley_diameter]
+    line = f"{offset:.3g} mm outside it" if offset else "there"
+    more = f"{2 * pi * offset:.3g} mm longer (2π × {offset:.3g} mm)" if offset else "as long"
+    yield "pulleys", f"diameter = {entry.pulley_diameter} diameter; the tension line runs {line}"
+    yield "belts", f"nominal_length = {length}; the tension line is {more}"
+    if entry.smallest_diameter is not None:
+        yield "smallest pulley", f"{1e3 * entry.smallest_diameter:.3g} mm of {entry.pulley_diameter} diameter"
+    if entry.friction is not None and entry.wedge_angle is not None:
+        yield "friction in grooves", f"{entry.friction / sin(entry.wedge_angle / 2):.3g}"
+    yield "stretch", f"{entry.axial_stiffness / 100:.4g} N for 1 %"
+    yield "speed of stretch waves", f"{sqrt(entry.axial_stiffness / entry.mass_per_length):.0f} m/s"

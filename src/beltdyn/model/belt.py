@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from math import pi, sin
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
@@ -36,11 +37,13 @@ class Belt(Part):
 
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
-    number of `ribs`; they are turned into density, modulus and factors when the belt is made.
+    number of `ribs`; they are turned into density, modulus and factors when the belt is made. In place of `length`, that of
+    the line that carries the tension, it takes the `nominal_length` by which it is sold.
     """
 
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
     either = ("length", "installed_tension")
+    in_place_of = MappingProxyType({"nominal_length": "length"})
 
     length: Length | None = Field(None, gt=0, description="the unstretched length of the belt, in m")
     installed_tension: Force | None = Field(
@@ -154,7 +157,7 @@ class Belt(Part):
     @model_validator(mode="after")
     def _has_length_or_tension(self) -> Self:
         if self.length is None and self.installed_tension is None:
-            raise ValueError("length is missing. Give the unstretched length, or installed_tension in its place")
+            raise ValueError("length is missing. Give the unstretched length, or nominal_length or installed_tension in its place")
         return self
 
     @property

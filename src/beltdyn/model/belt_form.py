@@ -1,23 +1,37 @@
-"""The forms in which a belt's section is given, and the one into which they are turned.
+"""The forms in which a belt's section and length are given, and the one into which they are turned.
 
 A belt is made of a material: density, Young's modulus, and the factors on axial and bending stiffness. What a user
-knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue.
+knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue. Its length is that of
+the line that carries the tension; what a user knows is the length by which it is sold.
 """
 
 from collections.abc import Mapping
+from math import pi
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from pydantic import Field
 
-from beltdyn.model.catalogue import Entry, read_catalogue
+from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 
 _POISSONS_RATIO = 0.3
 _MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
-_EXTENSIVE = ("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness")
+_BESIDE = {
+    key: 1 for key in ("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness")
+}
+_POWERS: dict[str, dict[str, int]] = {
+    "ribs": _BESIDE,
+    "width": _BESIDE,
+    "diameter": {
+        **{key: 1 for key in ("width", "thickness", "pitch_offset", "back_offset")},
+        **{"axial_stiffness": 2, "mass_per_length": 2, "bending_stiffness": 4},
+    },
+}
+"""Powers of a belt's size with which the values of a profile grow, by what it is sold by; others do not grow."""
+
 DAMPING_TIMES = ("stretch_damping_time", "bending_damping_time")
 LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 """In the order of `DAMPING_TIMES`: of each strain a belt has the one or the other."""
@@ -40,19 +54,32 @@ class Sold(Part):
 
     profile: str = Field(description="the name of the belt's profile in the catalogue, as text")
     ribs: Count | None = Field(
-        None, ge=1, le=1000, description="the number of ribs of the profile, or of V-belts or cords side by side"
+        None, ge=1, le=1000, description="the number of ribs of the profile, or of V-belts side by side"
     )
+    diameter: Length | None = Field(None, gt=0, description="the diameter of a round belt, in m")
     catalogue: str | None = Field(None, description="the path of a catalogue of your own, a TOML file, as text")
+
+
+class Nominal(Part):
+    """A belt's length as it is sold."""
+
+    nominal_length: Length = Field(
+        gt=0,
+        description="the length by which a closed belt is sold, in place of length: datum length of a V-belt, effective "
+        "length of a V-ribbed belt, inside length of another, in m",
+    )
 
 
 _OWN = [key for key in Stiffnesses.model_fields if key not in ("width", "thickness")]
 
-FORMS = MappingProxyType({**Sold.model_fields, **{key: Stiffnesses.model_fields[key] for key in _OWN}})
+FORMS = MappingProxyType(
+    {**Sold.model_fields, **{key: Stiffnesses.model_fields[key] for key in _OWN}, **Nominal.model_fields}
+)
 """Keys of the other forms."""
 
 
 def to_material(data: Any, base: Path | None) -> Any:
-    """Turn a belt given by a profile or by stiffnesses into one given by its material.
+    """Turn a belt given by a profile, by stiffnesses or by its nominal length into one given by material and length.
 
     Parameters
     ----------
@@ -65,15 +92,38 @@ def to_material(data: Any, base: Path | None) -> Any:
     -------
     Any
         Keys that are fields of `Belt`: E = EA / bh, alpha2 = EI / (E b h^3 / 12), rho = m / bh, and what the catalogue
-        says of the profile and the user does not.
+        says of the profile and the user does not; the length of the line that carries the tension.
 
     Raises
     ------
     ValueError
         If two forms are mixed, or a profile and its size do not give a belt.
     """
-    if not isinstance(data, Mapping):
-        return data
+    return _with_length(_by_material(data, base)) if isinstance(data, Mapping) else data
+
+
+def _with_length(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Turn a nominal length, if there is one, into that of the line that carries the tension.
+
+    That line lies outside the one of the nominal length by the pitch offset, all around.
+    """
+    values = dict(data)
+    nominal = values.pop("nominal_length", None)
+    if nominal is None:
+        return values
+    if values.get("length") is not None:
+        raise ValueError("length and nominal_length exclude each other: one follows from the other. Keep one of them")
+    length = Nominal.model_validate({"nominal_length": nominal}).nominal_length
+    offset = _Offset.model_validate({key: data[key] for key in _Offset.model_fields if key in data}).pitch_offset
+    return values | {"length": length + 2 * pi * offset}
+
+
+class _Offset(Part):
+    pitch_offset: Length = Field(0.0, ge=0)
+
+
+def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any]:
+    """Turn a profile or stiffnesses into material."""
     given = [key for key in (*Sold.model_fields, *_OWN) if key in data]
     if not given:
         return data
@@ -137,35 +187,33 @@ def _material(section: Stiffnesses) -> dict[str, float]:
 
 def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
     """Look up a profile, and give the keys of a belt of its size."""
-    catalogue = read_catalogue(sold.catalogue, base)
-    entry = catalogue.get(sold.profile)
-    if entry is None:
-        raise ValueError(
-            f'profile = "{sold.profile}" is not in the catalogue. Known are {", ".join(catalogue)}; a catalogue of '
-            'your own extends them: catalogue = "file.toml"'
-        )
-    size = _size(sold, entry, width)
-    section = {key: size * value for key in _EXTENSIVE if (value := getattr(entry, key)) is not None}
-    return section | {key: getattr(entry, key) for key in ("thickness", *_TAKEN_OVER)}
+    try:
+        entry = find_entry(read_catalogue(sold.catalogue, base), sold.profile)
+    except LookupError as error:
+        raise ValueError(f'{error.args[0]}; a catalogue of your own extends it: catalogue = "file.toml"') from None
+    size, powers = _size(sold, entry, width), _POWERS[entry.sold_by]
+    values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *_TAKEN_OVER)}
+    return {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
 
 
 def _size(sold: Sold, entry: Entry, width: object) -> float:
     """How many times the entry's own size a belt is."""
-    if entry.sold_by == "ribs":
-        if sold.ribs is None:
+    given = {"ribs": sold.ribs, "width": width, "diameter": sold.diameter}
+    for key in ("ribs", "diameter"):
+        if given[key] is not None and key != entry.sold_by:
             raise ValueError(
-                f'ribs is missing: profile "{sold.profile}" is sold by ribs, each {1e3 * entry.width:.3g} mm wide. '
-                "Give their number"
+                f'{key} = {given[key]:g} does not fit profile "{sold.profile}", which is sold by {entry.sold_by}. '
+                f"Give {entry.sold_by} in its place"
             )
-        return sold.ribs
-    if sold.ribs is not None:
+    if given[entry.sold_by] is None:
+        each = f", each {1e3 * entry.width:.3g} mm wide" if entry.sold_by == "ribs" else ""
         raise ValueError(
-            f'ribs = {sold.ribs} does not fit profile "{sold.profile}", which is flat and sold by width. '
-            "Give width in its place"
+            f'{entry.sold_by} is missing: profile "{sold.profile}" is sold by {entry.sold_by}{each}. '
+            f"Give {'their number' if each else 'it'}"
         )
-    if width is None:
-        raise ValueError(f'width is missing: profile "{sold.profile}" is flat and sold by width. Give width')
-    return _Width.model_validate({"width": width}).width / entry.width
+    if sold.ribs is not None:
+        return sold.ribs
+    return _Width.model_validate({"width": given[entry.sold_by]}).width / entry.width
 
 
 class _Width(Part):
@@ -174,7 +222,7 @@ class _Width(Part):
 
 def describe_forms(schema: dict[str, Any]) -> None:
     """Add the keys of the other forms, which are replaced by those of the material on reading, to the JSON schema."""
-    forms = (Sold.model_json_schema(), Stiffnesses.model_json_schema())
+    forms = (Sold.model_json_schema(), Stiffnesses.model_json_schema(), Nominal.model_json_schema())
     for form in forms:
         schema["properties"] = form["properties"] | schema["properties"]
     required = schema.pop("required")

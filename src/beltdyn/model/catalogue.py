@@ -1,6 +1,7 @@
 """The catalogue: belts as they are sold, by the name of their profile."""
 
 from collections.abc import Mapping
+from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from math import pi
@@ -26,15 +27,19 @@ from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
 
 
 class Entry(Part):
-    """A profile of the catalogue: a belt of one rib, or of a certain width.
+    """A profile of the catalogue: a belt of one rib, or of a certain width or diameter.
 
-    A profile sold by ribs gives the values of one rib, one V-belt or one cord; one that is sold by width gives those
-    of a belt that is `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses (that of contact
-    too) and the mass.
+    A profile sold by ribs gives the values of one rib or one V-belt, and one sold by width those of a belt that is
+    `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses (that of contact too) and the mass.
+    A profile sold by diameter is a round belt; its `width` and `thickness` are the diameter. A belt n times as thick has
+    n² times the axial stiffness and the mass, n⁴ times the bending stiffness, and the same contact stiffness.
     """
 
     title: str = Field(description="the name of the profile in words, as text")
-    sold_by: Literal["ribs", "width"] = Field("ribs", description="the measure of a belt's size: ribs or width")
+    kind: str = Field("Other belts", description="the kind of belt, by which a list is grouped, as text")
+    sold_by: Literal["ribs", "width", "diameter"] = Field(
+        "ribs", description="the measure of a belt's size: ribs, width or diameter"
+    )
     width: Length = Field(gt=0, description="the width of a rib, or of the belt that the values belong to, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in m")
     axial_stiffness: AxialStiffness = Field(gt=0, description="the axial stiffness E A, in N")
@@ -57,6 +62,12 @@ class Entry(Part):
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")
     stretch_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of stretch")
     bending_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of bending")
+    pulley_diameter: Literal["datum", "effective", "outside"] = Field(
+        "outside", description="which diameter is twice the radius of a pulley: datum, effective or outside"
+    )
+    smallest_diameter: Length | None = Field(
+        None, gt=0, description="the smallest recommended diameter of a pulley, in m"
+    )
     generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
 
@@ -100,6 +111,34 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
             "the drive file"
         ) from error
     return _shipped() | _entries(text, str(name))
+
+
+def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
+    """Look up a profile.
+
+    Parameters
+    ----------
+    catalogue : mapping
+        Entries by the name of their profile.
+    profile : str
+        The name that a user wrote.
+
+    Returns
+    -------
+    Entry
+
+    Raises
+    ------
+    LookupError
+        If there is none of that name; it tells names like it, or all of them.
+    """
+    entry = catalogue.get(profile)
+    if entry is None:
+        like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=5, cutoff=0.5)
+        near = [name for name in catalogue if name.lower() in like]
+        known = f"Near it are {', '.join(near)}" if near else f"Known are {', '.join(catalogue)}"
+        raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {known}')
+    return entry
 
 
 @cache

@@ -1,8 +1,11 @@
 """A pulley: driven with a prescribed speed, or turning freely, with what is behind its rim and on its shaft."""
 
-from typing import Self
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
+from pydantic.fields import FieldInfo
 
 from beltdyn.machines.links.registry import AnyHubLink
 from beltdyn.machines.loads.registry import AnyLoad
@@ -16,6 +19,23 @@ from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio
 
 
+class Diameter(Part):
+    """A pulley's size as it is sold."""
+
+    diameter: Length = Field(
+        gt=0,
+        description="the diameter by which the pulley is sold, in place of radius, its half: datum diameter for V-belts, "
+        "effective diameter for V-ribbed belts, outside diameter for others and for the back, in m",
+    )
+
+
+def _describe_diameter(schema: dict[str, Any]) -> None:
+    """Add the diameter, which is replaced by the radius on reading, to the JSON schema."""
+    schema["properties"] |= Diameter.model_json_schema()["properties"]
+    schema["required"].remove("radius")
+    schema["anyOf"] = [{"required": ["radius"]}, {"required": ["diameter"]}]
+
+
 class Pulley(Part):
     """A round pulley, whose center stays where it is unless a tensioner carries it.
 
@@ -24,6 +44,9 @@ class Pulley(Part):
     torques are positive counter-clockwise, and `torque` is what is applied to the shaft: a load that opposes a
     counter-clockwise motion is negative.
     """
+
+    model_config = ConfigDict(json_schema_extra=lambda schema: _describe_diameter(schema))
+    in_place_of = MappingProxyType({"diameter": "radius"})
 
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
@@ -48,6 +71,24 @@ class Pulley(Part):
     hub: tuple[AnyHubLink, ...] = Field(
         (), description="the links of the hub chain, from the rim to the shaft, groups [[pulley.hub]]"
     )
+
+    @classmethod
+    def alternatives(cls) -> Mapping[str, FieldInfo]:
+        """The diameter in place of the radius."""
+        return Diameter.model_fields
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_a_diameter(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping) or "diameter" not in data:
+            return data
+        values = dict(data)
+        diameter = values.pop("diameter")
+        if diameter is None:
+            return values
+        if values.get("radius") is not None:
+            raise ValueError("radius and diameter exclude each other: one is twice the other. Keep one of them")
+        return values | {"radius": Diameter.model_validate({"diameter": diameter}).diameter / 2}
 
     @model_validator(mode="after")
     def _is_prescribed_or_free(self) -> Self:

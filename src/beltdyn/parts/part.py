@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from itertools import permutations
+from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError, model_validator
@@ -20,6 +21,8 @@ class Part(BaseModel):
     )
     either: ClassVar[tuple[str, str] | None] = None
     """Two arguments, of which one determines the other."""
+    in_place_of: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    """Arguments that are turned into another one, by their names."""
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -104,7 +107,7 @@ class Part(BaseModel):
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """The constructor's arguments with some values changed, as for `replace`."""
         arguments = self.arguments
-        for new, old in permutations(self.either or (), 2):
+        for new, old in (*permutations(self.either or (), 2), *self.in_place_of.items()):
             if changes.get(new) is not None and new not in arguments:
                 arguments.pop(old, None)
         return arguments | dict(changes)

@@ -51,7 +51,18 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
         'profile = "flat-aramid"\nribs = 6\nwidth = 0.02',
         ('ribs = 6 does not fit profile "flat-aramid"', "sold by width", "Give width"),
     ),
-    "flat belt without width": ('profile = "flat-aramid"', ("width is missing", "flat and sold by width")),
+    "flat belt without width": ('profile = "flat-aramid"', ("width is missing", "is sold by width", "Give it")),
+    "round belt without diameter": ('profile = "round-85A"', ("diameter is missing", "is sold by diameter")),
+    "round belt of ribs": ('profile = "round-85A"\nribs = 2', ("ribs = 2 does not fit", "Give diameter in its place")),
+    "V-belt by diameter": ('profile = "SPB"\ndiameter = 0.1', ("diameter = 0.1 does not fit", "Give ribs in its place")),
+    "round belt of no diameter": (
+        'profile = "round-85A"\ndiameter = 0',
+        ("belt.diameter = 0 must be greater than 0", "Give the diameter of a round belt"),
+    ),
+    "two lengths": (
+        'profile = "PJ"\nribs = 2\nnominal_length = 1.1',
+        ("belt: length and nominal_length exclude each other", "Keep one of them"),
+    ),
     "flat belt of no width": (
         'profile = "flat-aramid"\nwidth = 0',
         ("belt.width = 0 must be greater than 0", "Give the width of the belt"),
@@ -59,7 +70,7 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     "ribs of nothing": ("ribs = 6", ("belt.profile is missing", "the name of the belt's profile")),
     "unknown profile": (
         'profile = "PX"\nribs = 6',
-        ('profile = "PX" is not in the catalogue', "PK, PJ", "flat-aramid"),
+        ('profile = "PX" is not in the catalogue', "Near it are PJ, PK, PL, PM, ZX", 'catalogue = "file.toml"'),
     ),
     "profile by number": ("profile = 6\nribs = 6", ("belt.profile = 6 must be text in quotation marks",)),
     # the user's catalogue

@@ -104,6 +104,13 @@ CASES = (
     ),
     Case("number too large", "density = 1036.0", f"density = 1{'0' * 400}", ("belt.density = 1000", "too large")),
     Case("length of the sky", BELT, "length = 1e20", ("belt.length = 1e+20", "too large", "1e+15")),
+    Case("radius and diameter", DRIVER, f"{DRIVER}\ndiameter = 0.16", ("pulley[driver]: radius and diameter exclude",)),
+    Case(
+        "negative diameter",
+        DRIVER,
+        DRIVER.replace("radius = ", "diameter = -"),
+        ("pulley[driver].diameter = -0.08125 must be greater than 0",),
+    ),
     Case("radius of an atom", DRIVER, DRIVER.replace("0.08125", "1e-20"), ("radius = 1e-20", "too small")),
     Case(
         "Poisson's ratio",

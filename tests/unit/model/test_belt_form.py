@@ -51,6 +51,40 @@ def test_the_flat_belt_is_sold_by_width() -> None:
     assert belt.wedge_angle is None
 
 
+def test_the_round_belt_is_sold_by_diameter() -> None:
+    """Twice as thick: four times the section, sixteen times its second moment, and the same stiffness of contact."""
+    one, belt = read_catalogue()["round-85A"], make(length=1.0, profile="round-85A", diameter="12 mm")
+    assert belt.width == belt.thickness == pytest.approx(2 * one.width)
+    assert belt.pitch_offset == belt.back_offset == pytest.approx(belt.thickness / 2)
+    assert belt.axial_stiffness == pytest.approx(4 * one.axial_stiffness)
+    assert belt.mass_per_length == pytest.approx(4 * one.mass_per_length)
+    assert belt.bending_stiffness == pytest.approx(16 * one.bending_stiffness)
+    assert belt.contact_stiffness == one.contact_stiffness
+    assert belt.bending_stiffness == pytest.approx(belt.axial_stiffness * belt.thickness**2 / 16, rel=5e-3)
+
+
+@pytest.mark.parametrize("size", [{"profile": "PJ", "ribs": 5}, {"profile": "SPB", "ribs": 2}, {**STIFF, **FORM}])
+def test_nominal_length(size: dict[str, Any]) -> None:
+    """It is measured around the pulleys' own diameters, and the tension line lies outside by its offset all around."""
+    sizes = {key: value for key, value in size.items() if key != "length"}
+    belt = make(nominal_length="1194 mm", **sizes)
+    assert belt.length == pytest.approx(1.194 + 2 * pi * belt.pitch_offset, rel=1e-14)
+    assert belt.replace(nominal_length=1.2).length == pytest.approx(1.2 + 2 * pi * belt.pitch_offset, rel=1e-14)
+    assert make(nominal_length=1.0, pitch_offset="2 mm", **sizes).length == pytest.approx(1.0 + 0.004 * pi, rel=1e-14)
+
+
+def test_a_belt_of_nominal_length_fits_its_pulleys() -> None:
+    """Two equal pulleys of effective diameter D at the distance C take the effective length 2 C + pi D."""
+    pulley = {"diameter": "60 mm", "inertia": 1.0}
+    drive = Drive(
+        belt={"profile": "PJ", "ribs": 4, "nominal_length": 0.6 + 0.06 * pi - 0.0015},
+        pulley=[{"name": "a", "center": (0, 0), **pulley}, {"name": "b", "center": (0.3, 0), **pulley}],
+        contact={"stiffness": 1e8, "damping": 10.0, "creep_rate_factor": 1e5},
+        simulation={"duration": 1.0, "output_interval": 0.01},
+    )
+    assert drive.path.length - drive.belt_length == pytest.approx(0.0015, rel=1e-9)
+
+
 def test_what_the_user_gives_goes_before_the_catalogue() -> None:
     belt = make(length=1.0, profile="PK", ribs=6, axial_stiffness=1e5, pitch_offset=0.0, wedge_angle="36 deg")
     assert belt.axial_stiffness == pytest.approx(1e5)
@@ -108,7 +142,8 @@ def test_the_text_does_without_ones_own_catalogue(sold: str, tmp_path: Path) -> 
 
 def test_schema_knows_the_forms() -> None:
     belt = json_schema()["$defs"]["Belt"]
-    assert {"profile", "ribs", "catalogue", "axial_stiffness", "youngs_modulus"} <= set(belt["properties"])
+    known = {"profile", "ribs", "diameter", "catalogue", "nominal_length", "axial_stiffness", "youngs_modulus"}
+    assert known <= set(belt["properties"])
     assert "youngs_modulus" not in belt["required"]
     material, stiffnesses, profile = (form["required"] for form in belt["anyOf"])
     assert set(material) == {"width", "thickness", "density", "youngs_modulus", "poissons_ratio"}

@@ -67,3 +67,18 @@ def test_everything_prescribed_over_time_is_listed() -> None:
     )
     assert [profile.breakpoints() for profile in pulley.profiles] == [(0.1, 0.2), (0.3,), (0.4,)]
     assert [item is None for item in pulley.schedules] == [True, False, True, False]
+
+
+def test_a_pulley_may_be_given_by_its_diameter() -> None:
+    place = {key: value for key, value in PLACE.items() if key != "radius"}
+    pulley = Pulley(**place, diameter="224 mm", inertia=1.0)
+    assert pulley == Pulley(**place, radius=0.112, inertia=1.0)
+    assert pulley.replace(diameter=0.3).radius == 0.15
+    assert pulley.replace(diameter=None) == pulley
+
+
+def test_schema_knows_the_diameter() -> None:
+    schema = Pulley.model_json_schema()
+    assert {"radius", "diameter"} <= set(schema["properties"])
+    assert schema["anyOf"] == [{"required": ["radius"]}, {"required": ["diameter"]}]
+    assert "radius" not in schema["required"]
