@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from importlib.metadata import version as installed_version
 
+from beltdyn.model import Entry, read_catalogue
 from beltdyn.results import COORDINATES, VARIABLES, Variable
 
 project = "beltdyn"
@@ -32,7 +33,39 @@ def table(variables: Mapping[str, Variable]) -> str:
     return "\n".join(["| name | meaning | unit | dimensions |", "|---|---|---|---|", *rows])
 
 
-myst_substitutions = {"variables": table(VARIABLES), "coordinates": table(COORDINATES)}
+def profiles(catalogue: Mapping[str, Entry]) -> str:
+    """Give the profiles of the catalogue as a table in Markdown, below their kinds."""
+    rows, kind = [], ""
+    for name, entry in catalogue.items():
+        if entry.kind != kind:
+            kind = entry.kind
+            rows.append(f"| **{kind}** | | | | | | | |")
+        smallest = f"{1e3 * entry.smallest_diameter:.3g}" if entry.smallest_diameter else ""
+        rows.append(
+            f"| `{name}` | {1e3 * entry.width:.3g} | {1e3 * entry.thickness:.3g} | {entry.axial_stiffness / 1e3:.3g} "
+            f"| {entry.bending_stiffness:.2g} | {1e3 * entry.mass_per_length:.3g} "
+            f"| {1e3 * entry.pitch_offset:.3g}, {1e3 * entry.back_offset:.3g} | {smallest} |"
+        )
+    headings = (
+        "profile",
+        "width",
+        "thickness",
+        "$EA$",
+        "$EI$",
+        "mass",
+        "`pitch_offset`, `back_offset`",
+        "smallest pulley",
+    )
+    units = ("", "mm", "mm", "kN", "N m²", "g/m", "mm", "mm")
+    titles = [f"{heading}{', ' * bool(unit)}{unit}" for heading, unit in zip(headings, units, strict=True)]
+    return "\n".join([f"| {' | '.join(titles)} |", "|---" * len(titles) + "|", *rows])
+
+
+myst_substitutions = {
+    "variables": table(VARIABLES),
+    "coordinates": table(COORDINATES),
+    "catalogue": profiles(read_catalogue()),
+}
 napoleon_google_docstring = False
 autodoc_typehints = "description"
 templates_path = ["_templates"]

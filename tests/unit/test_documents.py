@@ -17,8 +17,9 @@ from beltdyn.machines.loads import kinds as loads_
 from beltdyn.machines.profiles import kinds as profiles
 from beltdyn.machines.tensioners import kinds as tensioners
 from beltdyn.model import Belt, Contact, Drive, Harmonic, Pulley, Simulation, dumps, loads
-from beltdyn.model.belt_form import Sold, Stiffnesses
+from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.catalogue import Entry
+from beltdyn.model.pulley import Diameter
 from beltdyn.parts.part import Part
 from beltdyn.plot import FIGURES
 from beltdyn.plot.registry import on_request
@@ -27,6 +28,7 @@ ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
 MACHINES = ROOT / "docs" / "machines.md"
 DRIVE_FILE = ROOT / "docs" / "drive_file.md"
+CATALOGUE = ROOT / "docs" / "catalogue.md"
 RESULTS = ROOT / "docs" / "results.md"
 
 
@@ -91,20 +93,24 @@ def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
     assert all(f"{key} = " in rows[0] for key in profile.model_fields)
 
 
-@pytest.mark.parametrize("key", [*Sold.model_fields, *Stiffnesses.model_fields])
+@pytest.mark.parametrize(
+    "key", [*Sold.model_fields, *Stiffnesses.model_fields, *Nominal.model_fields, *Diameter.model_fields]
+)
 def test_every_key_of_a_belt_as_sold_is_documented(key: str) -> None:
     assert f"| `{key}` |" in DRIVE_FILE.read_text(encoding="utf-8")
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
-    stiffnesses, profile, catalogue = blocks(DRIVE_FILE, "toml")[:3]
+    machine, own, catalogue = blocks(CATALOGUE, "toml")
     (entry,) = tomllib.loads(catalogue).values()
     assert entry.keys() == Entry.model_fields.keys()
     (tmp_path / "belts.toml").write_text(catalogue, encoding="utf-8")
     data = tomllib.loads(new_drive)
-    own = {"profile": "my-belt", "ribs": 4, "catalogue": "belts.toml"}
-    for form in (tomllib.loads(stiffnesses)["belt"], tomllib.loads(profile)["belt"], own):
-        drive = loads(tomli_w.dumps(data | {"belt": form | {"length": data["belt"]["length"]}}), base=tmp_path)
+    for form in (*blocks(DRIVE_FILE, "toml")[:2], machine, own):
+        belt = {
+            key: value for key, value in tomllib.loads(form)["belt"].items() if key not in ("length", "nominal_length")
+        }
+        drive = loads(tomli_w.dumps(data | {"belt": belt | {"length": data["belt"]["length"]}}), base=tmp_path)
         assert loads(dumps(drive)) == drive
 
 

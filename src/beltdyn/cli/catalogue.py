@@ -46,7 +46,7 @@ def _list(entries: "dict[str, Entry]") -> None:
     kinds = {entry.kind: position for position, entry in reversed(list(enumerate(entries.values())))}
     ordered = sorted(entries.items(), key=lambda item: kinds[item[1].kind])
     show_table("Catalogue", headings, _rows(ordered))
-    show("\nThe values of the package are generic, typical of a profile. `beltdyn catalogue SPB` shows one, with sources.")
+    show("\nThe values are generic, typical of a profile. `beltdyn catalogue SPB` shows one, with sources.")
 
 
 def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:

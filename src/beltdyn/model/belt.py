@@ -37,8 +37,8 @@ class Belt(Part):
 
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
-    number of `ribs`; they are turned into density, modulus and factors when the belt is made. In place of `length`, that of
-    the line that carries the tension, it takes the `nominal_length` by which it is sold.
+    number of `ribs`; they are turned into density, modulus and factors when the belt is made. In place of `length`,
+    that of the line that carries the tension, it takes the `nominal_length` by which it is sold.
     """
 
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
@@ -157,7 +157,9 @@ class Belt(Part):
     @model_validator(mode="after")
     def _has_length_or_tension(self) -> Self:
         if self.length is None and self.installed_tension is None:
-            raise ValueError("length is missing. Give the unstretched length, or nominal_length or installed_tension in its place")
+            raise ValueError(
+                "length is missing. Give the unstretched length, or nominal_length or installed_tension in its place"
+            )
         return self
 
     @property

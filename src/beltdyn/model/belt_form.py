@@ -1,8 +1,8 @@
 """The forms in which a belt's section and length are given, and the one into which they are turned.
 
 A belt is made of a material: density, Young's modulus, and the factors on axial and bending stiffness. What a user
-knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue. Its length is that of
-the line that carries the tension; what a user knows is the length by which it is sold.
+knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue. Its length is that
+of the line that carries the tension; what a user knows is the length by which it is sold.
 """
 
 from collections.abc import Mapping
@@ -19,15 +19,15 @@ from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Leng
 
 _POISSONS_RATIO = 0.3
 _MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
-_BESIDE = {
-    key: 1 for key in ("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness")
-}
+_BESIDE = dict.fromkeys(("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness"), 1)
 _POWERS: dict[str, dict[str, int]] = {
     "ribs": _BESIDE,
     "width": _BESIDE,
     "diameter": {
-        **{key: 1 for key in ("width", "thickness", "pitch_offset", "back_offset")},
-        **{"axial_stiffness": 2, "mass_per_length": 2, "bending_stiffness": 4},
+        **dict.fromkeys(("width", "thickness", "pitch_offset", "back_offset"), 1),
+        "axial_stiffness": 2,
+        "mass_per_length": 2,
+        "bending_stiffness": 4,
     },
 }
 """Powers of a belt's size with which the values of a profile grow, by what it is sold by; others do not grow."""
@@ -65,8 +65,8 @@ class Nominal(Part):
 
     nominal_length: Length = Field(
         gt=0,
-        description="the length by which a closed belt is sold, in place of length: datum length of a V-belt, effective "
-        "length of a V-ribbed belt, inside length of another, in m",
+        description="the length by which a closed belt is sold, in place of length: datum length of a V-belt, "
+        "effective length of a V-ribbed belt, inside length of another, in m",
     )
 
 

@@ -31,8 +31,8 @@ class Entry(Part):
 
     A profile sold by ribs gives the values of one rib or one V-belt, and one sold by width those of a belt that is
     `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses (that of contact too) and the mass.
-    A profile sold by diameter is a round belt; its `width` and `thickness` are the diameter. A belt n times as thick has
-    n² times the axial stiffness and the mass, n⁴ times the bending stiffness, and the same contact stiffness.
+    A profile sold by diameter is a round belt; its `width` and `thickness` are the diameter. A belt n times as thick
+    has n² times the axial stiffness and the mass, n⁴ times the bending stiffness, and the same contact stiffness.
     """
 
     title: str = Field(description="the name of the profile in words, as text")
@@ -134,9 +134,9 @@ def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
     """
     entry = catalogue.get(profile)
     if entry is None:
-        like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=5, cutoff=0.5)
+        like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=4, cutoff=0.5)
         near = [name for name in catalogue if name.lower() in like]
-        known = f"Near it are {', '.join(near)}" if near else f"Known are {', '.join(catalogue)}"
+        known = f"Near it: {', '.join(near)}" if near else f"Known are {', '.join(catalogue)}"
         raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {known}')
     return entry
 

@@ -24,8 +24,8 @@ class Diameter(Part):
 
     diameter: Length = Field(
         gt=0,
-        description="the diameter by which the pulley is sold, in place of radius, its half: datum diameter for V-belts, "
-        "effective diameter for V-ribbed belts, outside diameter for others and for the back, in m",
+        description="the diameter by which the pulley is sold, in place of radius, its half: datum diameter for "
+        "V-belts, effective diameter for V-ribbed belts, outside diameter for others and for the back, in m",
     )
 
 

@@ -54,7 +54,10 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     "flat belt without width": ('profile = "flat-aramid"', ("width is missing", "is sold by width", "Give it")),
     "round belt without diameter": ('profile = "round-85A"', ("diameter is missing", "is sold by diameter")),
     "round belt of ribs": ('profile = "round-85A"\nribs = 2', ("ribs = 2 does not fit", "Give diameter in its place")),
-    "V-belt by diameter": ('profile = "SPB"\ndiameter = 0.1', ("diameter = 0.1 does not fit", "Give ribs in its place")),
+    "V-belt by diameter": (
+        'profile = "SPB"\ndiameter = 0.1',
+        ("diameter = 0.1 does not fit", "Give ribs in its place"),
+    ),
     "round belt of no diameter": (
         'profile = "round-85A"\ndiameter = 0',
         ("belt.diameter = 0 must be greater than 0", "Give the diameter of a round belt"),
@@ -70,7 +73,7 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     "ribs of nothing": ("ribs = 6", ("belt.profile is missing", "the name of the belt's profile")),
     "unknown profile": (
         'profile = "PX"\nribs = 6',
-        ('profile = "PX" is not in the catalogue', "Near it are PJ, PK, PL, PM, ZX", 'catalogue = "file.toml"'),
+        ('profile = "PX" is not in the catalogue', "Near it: PK, PL, PM, ZX", 'catalogue = "file.toml"'),
     ),
     "profile by number": ("profile = 6\nribs = 6", ("belt.profile = 6 must be text in quotation marks",)),
     # the user's catalogue

@@ -68,7 +68,10 @@ def test_shows_one(run_main: RunMain) -> None:
 @pytest.mark.parametrize(
     ("profile", "facts"),
     [
-        ("SPB", ("14 mm, the pitch or datum width", "diameter = datum diameter; the tension line runs there", "as long")),
+        (
+            "SPB",
+            ("14 mm, the pitch or datum width", "diameter = datum diameter; the tension line runs there", "as long"),
+        ),
         ("flat-aramid", ("Values of 10 mm width", "diameter = outside diameter", "inside length", 'width = "50 mm"')),
         ("round-85A", ("Values of 6 mm diameter", 'diameter = "8 mm"')),
     ],
@@ -92,7 +95,7 @@ def test_shows_ones_own(run_main: RunMain, tmp_path: Path) -> None:
 def test_a_wrong_name_tells_near_ones(run_main: RunMain) -> None:
     code, output, error = run_main(["catalogue", "SPD"])
     assert (code, output) == (2, "")
-    assert error == 'error: profile = "SPD" is not in the catalogue. Near it are SPZ, SPA, SPB, SPC.\n'
+    assert error == 'error: profile = "SPD" is not in the catalogue. Near it: SPZ, SPA, SPB, SPC.\n'
 
 
 def test_a_bad_file_is_bad_input(run_main: RunMain, tmp_path: Path) -> None:

@@ -71,7 +71,7 @@ def test_everything_prescribed_over_time_is_listed() -> None:
 
 def test_a_pulley_may_be_given_by_its_diameter() -> None:
     place = {key: value for key, value in PLACE.items() if key != "radius"}
-    pulley = Pulley(**place, diameter="224 mm", inertia=1.0)
+    pulley = Pulley.model_validate({**place, "diameter": "224 mm", "inertia": 1.0})
     assert pulley == Pulley(**place, radius=0.112, inertia=1.0)
     assert pulley.replace(diameter=0.3).radius == 0.15
     assert pulley.replace(diameter=None) == pulley
