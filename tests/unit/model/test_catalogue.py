@@ -53,7 +53,7 @@ def test_each_value_says_where_it_comes_from(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_values_belong_to_elastomer_and_cord(name: str) -> None:
-    """Density of rubber with cords, of polyurethane or leather; bending below that of a homogeneous belt of the same EA.
+    """Density of rubber with cords, polyurethane or leather; bending below that of a homogeneous belt of the same EA.
 
     Waves of stretch are faster than in bare rubber, which has about 100 m/s, and slower than in aramid, with 9 km/s.
     On the smallest pulley the fibre farthest from the tension line is strained by less than rubber bears for long.
