@@ -6,11 +6,24 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beltdyn.cli.console import show, show_facts, show_table, show_warnings
+from beltdyn.cli.console import aligned, show, show_facts, show_table, show_warnings
 from beltdyn.cli.progress import progress_bar
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive, Installation
+
+
+_PULLEY_HEADINGS = (
+    "",
+    "speed",
+    "turns",
+    "wrap",
+    "effective\nradius mm",
+    "speed\nratio",
+    "belt sinks\nin by mm",
+    "hub load\nN",
+    "its\ndirection",
+)
 
 
 def check(
@@ -51,13 +64,8 @@ def check(
         failure, installation = error, estimate
         show("No static equilibrium was found. These are estimates by hand, without bending and weight.\n")
     show_facts(_facts(drive, installation, given.belt.installed_tension is not None))
-    show_table(
-        "\nPulleys",
-        ("", "motion", "turns", "wrap angle", "effective radius", "speed ratio"),
-        _pulleys(drive, installation),
-    )
-    show_table("\nPulleys at rest", ("", "penetration", "hub load", "direction"), _loads(drive, installation))
-    show_table("\nSpans at rest", ("", "length", "tension", "first frequency"), _spans(drive, installation))
+    show_table("\nPulleys at rest", _PULLEY_HEADINGS, _pulleys(drive, installation))
+    show_table("\nSpans at rest", ("", "length\nm", "tension\nN", "first frequency\nHz"), _spans(drive, installation))
     if installation.tensioner_positions.size:
         show_table(
             "\nTensioners at rest",
@@ -80,14 +88,12 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
     from beltdyn.model import describe_time
     from beltdyn.results import describe_size
 
+    length, path = drive.belt_length, installation.path.length
     return [
-        ("path length", f"{installation.path.length:.5g} m"),
-        ("belt length", f"{drive.belt_length:.5g} m unstretched, {drive.belt.elements} elements"),
-        ("installed strain", f"{installation.strain:.4%}"),
-        ("tension as laid", f"{installation.laid_tension:.4g} N"),
-        ("element length", f"{drive.belt_length / drive.belt.elements:.3g} m{_layers(drive, installation)}"),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
+        ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
+        ("elements", f"{drive.belt.elements} of {1e3 * length / drive.belt.elements:.3g} mm"),
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
@@ -107,56 +113,33 @@ def _origin(drive: "Drive", installation: "Installation", asked_for: bool) -> st
     if any(not end.held for end in drive.ends):
         return ", which the pulled end sets"
     gained = installation.tension / installation.laid_tension - 1
-    change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than laid"
-    return f"{asked}: {change}, by penetration into the pulleys and bending stiffness"
-
-
-def _layers(drive: "Drive", installation: "Installation") -> str:
-    """Where contact forces may have peaks, which only elements as short can show."""
-    if not installation.tension > 0.0:
-        return ""
-    from beltdyn.model import layer_lengths
-
-    bending, sinking = layer_lengths(drive, installation.tension)
-    return f"; transition lengths at the ends of arcs: {bending:.2g} m of bending, {sinking:.2g} m of penetration"
+    change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than the {installation.laid_tension:.4g} N"
+    return f"{asked}: {change} of a limp belt on hard pulleys"
 
 
 def _pulleys(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
     """The ratio of speeds is that of a belt that does not creep; a negative one means the other sense."""
-    path = installation.path
-    return [
-        (
-            pulley.name,
-            "prescribed" if pulley.prescribed else "free",
-            "ccw" if pulley.turning > 0 else "cw",
-            f"{math.degrees(wrap):.1f}°",
-            f"{abs(radius):.5g} m",
-            f"{path.radii[0] / radius:.4f}",
+    path, loads = installation.path, installation.hub_loads.tolist()
+    return list(
+        zip(
+            (pulley.name for pulley in drive.pulleys),
+            ("prescribed" if pulley.prescribed else "free" for pulley in drive.pulleys),
+            ("ccw" if pulley.turning > 0 else "cw" for pulley in drive.pulleys),
+            (f"{math.degrees(wrap):.1f}°" for wrap in path.wrap_angles),
+            aligned([1e3 * abs(radius) for radius in path.radii], 5),
+            (f"{path.radii[0] / radius:.4f}" for radius in path.radii),
+            aligned([1e3 * depth for depth in installation.penetrations], 2),
+            aligned([math.hypot(*load) for load in loads]),
+            (f"{math.degrees(math.atan2(load[1], load[0])):.1f}°" for load in loads),
+            strict=True,
         )
-        for pulley, wrap, radius in zip(drive.pulleys, path.wrap_angles, path.radii, strict=True)
-    ]
-
-
-def _loads(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
-    return [
-        (
-            pulley.name,
-            f"{depth:.2e} m ({depth / radius:.2%} of the radius)",
-            f"{math.hypot(*load):.4g} N",
-            f"{math.degrees(math.atan2(load[1], load[0])):.1f}°",
-        )
-        for pulley, depth, radius, load in zip(
-            drive.pulleys, installation.penetrations, drive.radii, installation.hub_loads.tolist(), strict=True
-        )
-    ]
+    )
 
 
 def _spans(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:
     columns = installation.path.span_lengths, installation.span_tensions, installation.span_frequencies
-    return [
-        (f"{start} to {end}", f"{length:.5g} m", f"{tension:.4g} N", f"{frequency:.4g} Hz")
-        for (start, end), length, tension, frequency in zip(drive.spans, *columns, strict=True)
-    ]
+    names = (f"{start} to {end}" for start, end in drive.spans)
+    return list(zip(names, *(aligned(column.tolist()) for column in columns), strict=True))
 
 
 def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:

@@ -1,18 +1,21 @@
 """The summary of a run on the screen: 100 columns, and as few lines as a drive of seven pulleys needs to fit."""
 
 import math
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from beltdyn.cli.console import show, show_facts, show_table, show_warnings
+from beltdyn.cli.console import aligned, show, show_facts, show_table, show_warnings
 
 if TYPE_CHECKING:
-    from beltdyn.results import PulleySummary, Resolution, Run, SpanSummary, Summary
+    from beltdyn.results import Resolution, Run, Summary
 
 _LARGEST_MARGIN = 100.0
 _LEAST_SHARE = 0.01
 """Part of the power put in from which a shaft is named."""
 _NOTHING = 1e-9
-"""Newtons, watts, metres a second and revolutions a minute that are rounding."""
+"""Watts that are rounding."""
+_KILOWATTS = 1e4
+"""Power, W, from which on powers are written in kW."""
 
 
 def show_summary(run: "Run") -> None:
@@ -24,36 +27,37 @@ def show_summary(run: "Run") -> None:
         return
     summary = summarize(run)
     over = _window(summary)
-    show_table(
-        f"\nPulleys{over}",
-        ("", "rad/s", "rpm", "torque\nN m", "power\nW", "slip", "elastic", "wrap", "sliding", "margin", "hub load\nN"),
-        [_pulley(pulley) for pulley in summary.pulleys],
-    )
+    show_table(f"\nPulleys{over}", *_pulleys(summary))
     show_table(
         f"\nSpans{over}",
         ("", "tension N", "least N", "largest N", "belt speed m/s"),
-        [_span(span) for span in summary.spans],
+        _spans(summary),
     )
     show()
     show_facts([*_power(summary), *_tensioners(summary), *_solver(summary)])
     show_warnings(summary.warnings)
 
 
-def _pulley(pulley: "PulleySummary") -> tuple[str, ...]:
+def _pulleys(summary: "Summary") -> tuple[tuple[str, ...], Iterable[tuple[str, ...]]]:
+    """Headings and rows of the table of pulleys; powers in kW where they are large."""
     from beltdyn.parts.quantity import RPM
 
-    return (
-        pulley.name,
-        f"{pulley.speed:z.2f}",
-        _number(RPM * pulley.speed, 5),
-        _number(pulley.shaft_torque),
-        _number(pulley.power),
-        _share(pulley.slip),
-        _share(pulley.elastic_creep),
-        f"{math.degrees(pulley.wrap_angle):.1f}°",
-        f"{math.degrees(pulley.sliding_arc):.1f}°",
-        _margin(pulley.margin),
-        _number(pulley.hub_load),
+    pulleys = summary.pulleys
+    unit, watts = ("kW", 1e3) if max(abs(one.power) for one in pulleys) >= _KILOWATTS else ("W", 1.0)
+    headings = ("", "rpm", "rad/s", "torque\nN m", f"power\n{unit}", "slip", "elastic", "wrap", "sliding", "margin")
+    return (*headings, "hub load\nN"), zip(
+        (one.name for one in pulleys),
+        aligned([RPM * one.speed for one in pulleys], 5),
+        aligned([one.speed for one in pulleys], 5),
+        aligned([one.shaft_torque for one in pulleys]),
+        aligned([one.power / watts for one in pulleys]),
+        (_share(one.slip) for one in pulleys),
+        (_share(one.elastic_creep) for one in pulleys),
+        (f"{math.degrees(one.wrap_angle):.1f}°" for one in pulleys),
+        (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
+        (_margin(one.margin) for one in pulleys),
+        aligned([one.hub_load for one in pulleys]),
+        strict=True,
     )
 
 
@@ -77,20 +81,24 @@ def _margin(margin: float) -> str:
     return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
 
 
-def _span(span: "SpanSummary") -> tuple[str, ...]:
-    return (span.name, *map(_number, (span.tension, span.lowest, span.highest, span.belt_speed)))
-
-
-def _number(value: float, digits: int = 4) -> str:
-    """So many digits, or those before the point where they are more; nothing of what is next to nothing.
+def _spans(summary: "Summary") -> Iterable[tuple[str, ...]]:
+    """Tensions with as many decimals in all columns.
 
     A span has no tension and no speed while the belt has left one of its pulleys, of which a warning tells.
     """
-    if not math.isfinite(value):
-        return "none"
-    if abs(value) < _NOTHING:
-        return "0"
-    return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
+    spans = summary.spans
+    tensions = iter(aligned([tension for one in spans for tension in (one.tension, one.lowest, one.highest)]))
+    speeds = aligned([one.belt_speed for one in spans])
+    for one, speed in zip(spans, speeds, strict=True):
+        yield one.name, next(tensions), next(tensions), next(tensions), speed
+
+
+def _watts(power: float, digits: int = 4) -> str:
+    """A power in W or kW with so many digits, or those before the point where they are more."""
+    if abs(power) < _NOTHING:
+        return "0 W"
+    value, unit = (power / 1e3, "kW") if abs(power) >= _KILOWATTS else (power, "W")
+    return f"{value:.{digits}g} {unit}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f} {unit}"
 
 
 def _power(summary: "Summary") -> list[tuple[str, str]]:
@@ -98,20 +106,20 @@ def _power(summary: "Summary") -> list[tuple[str, str]]:
     balance = summary.balance
     if not balance.power_in > 0.0:
         return []
-    losses = ", ".join(f"{cause} {_number(power, 3)} W" for cause, power in balance.losses.items() if power != 0.0)
+    losses = ", ".join(f"{cause} {_watts(power, 3)}" for cause, power in balance.losses.items() if power != 0.0)
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
-    flows = f"{_number(balance.power_in)} W in{_givers(summary)}, {_number(balance.power_out)} W out"
+    flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out"
     return [
-        ("power", f"{flows}, {_number(balance.stored, 3)} W being stored"),
+        ("power", f"{flows}, {_watts(balance.stored, 3)} being stored"),
         ("efficiency", efficiency),
-        ("losses", f"{_number(balance.lost, 3)} W: {losses}" if losses else "none"),
+        ("losses", f"{_watts(balance.lost, 3)}: {losses}" if losses else "none"),
     ]
 
 
 def _givers(summary: "Summary") -> str:
     """Which shafts put power in, where they are several."""
     givers = [pulley for pulley in summary.pulleys if pulley.power > _LEAST_SHARE * summary.balance.power_in]
-    parts = ", ".join(f"{pulley.name} {_number(pulley.power)} W" for pulley in givers)
+    parts = ", ".join(f"{pulley.name} {_watts(pulley.power)}" for pulley in givers)
     return f" ({parts})" if len(givers) > 1 else ""
 
 

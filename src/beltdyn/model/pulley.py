@@ -1,10 +1,10 @@
 """A pulley: driven with a prescribed speed, or turning freely, with what is behind its rim and on its shaft."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Self
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.machines.links.registry import AnyHubLink
@@ -17,6 +17,9 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.surface import AnySurface
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Coordinate, Inertia, Length, Mass, Name, Ratio
+
+_SPATIAL = 3
+"""Coordinates of a point in space."""
 
 
 class Diameter(Part):
@@ -89,6 +92,16 @@ class Pulley(Part):
         if values.get("radius") is not None:
             raise ValueError("radius and diameter exclude each other: one is twice the other. Keep one of them")
         return values | {"radius": Diameter.model_validate({"diameter": diameter}).diameter / 2}
+
+    @field_validator("center", mode="before")
+    @classmethod
+    def _lies_in_the_plane(cls, center: Any) -> Any:
+        if isinstance(center, Sequence) and len(center) == _SPATIAL:
+            raise ValueError(
+                "has three coordinates, but drives are planar: shafts are parallel, and pulleys in line. Layouts in "
+                "space, such as quarter-turn drives, cannot be computed"
+            )
+        return center
 
     @model_validator(mode="after")
     def _is_prescribed_or_free(self) -> Self:

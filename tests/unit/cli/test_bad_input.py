@@ -146,7 +146,7 @@ CASES = (
         "center of three",
         "center = [-0.191441, 0.0]",
         "center = [0, 0, 0]",
-        ("pulley[driver].center", "[0, 0, 0]", "more than 2"),
+        ("pulley[driver].center", "[0, 0, 0]", "three coordinates, but drives are planar"),
     ),
     Case("center as a number", "center = [-0.191441, 0.0]", "center = 1.0", ("pulley[driver].center = 1.0", "list")),
     Case(
@@ -399,7 +399,7 @@ def test_message(case: Case, drive_text: str, folder: Path, refuse: Refuse) -> N
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["plot", "a.nc", "layout"], 'beltdyn plot takes no argument "layout". See beltdyn plot --help.'),
+        (["demo", "folder", "layout"], 'beltdyn demo takes no argument "layout". See beltdyn demo --help.'),
         (["run", "--nosuch", "a.toml"], "--nosuch"),
         (["check"], "FILE requires an argument"),
         (["simulate"], 'Unknown command "simulate"'),

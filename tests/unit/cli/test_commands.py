@@ -67,7 +67,7 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     code, output, _ = run_main(["check", str(drive_file)])
     assert code == 0
     tension = float(equilibrium(load(drive_file)).dataset.span_tension.mean())
-    for part in ("1.2763 m", "0.2807%", "28.19 N", f"{tension:.4g} N: ", "5.8%", "180.0°", "0.38288 m"):
+    for part in ("1.2763 m", "0.281%", "28.19 N", f"{tension:.4g} N: ", "5.8%", "180.0°", "0.3829"):
         assert part in output
     assert "warning: the belt has too few elements for peak pressure" in output
     assert "warning: the contact of belt and pulleys is so soft that it takes 5.8%" in output
@@ -104,8 +104,8 @@ def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path,
     for part in (
         *("cw", "-2.7083", "driver to idler", "-0.02 m to 0.02 m"),
         f"{installation.tension:.4g} N, which tensioners set",
-        f"{installation.span_frequencies[0]:.4g} Hz",
-        f"{hypot(*installation.hub_loads[1]):.4g} N",
+        f" {installation.span_frequencies[0]:.2f}\n",
+        f" {hypot(*installation.hub_loads[1]):.2f} ",
         f"{installation.tensioner_positions[0]:.4g} m",
         f"Layout: {picture}",
     ):

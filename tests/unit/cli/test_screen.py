@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from beltdyn.cli.app import app
-from beltdyn.cli.console import show_table
+from beltdyn.cli.console import aligned, show_table
 from beltdyn.cli.progress import progress_bar, runs_bar
 from beltdyn.cli.summary import show_summary
 from beltdyn.model import Drive
@@ -23,13 +23,13 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     show_summary(run)
     output = " ".join(capsys.readouterr().out.split())
     for part in (
-        "driver 12.00 114.59 2.438 29.25 0.000% 0.000% 180.0° 0.0° 2.86 90",
+        "driver 114.59 12.000 2.438 29.25 0.000% 0.000% 180.0° 0.0° 2.86 90.00",
         "0.500%",
         "180.0°",
         "29.25 W in, 29.1 W out",
         "96.04%",
         "1.2 W: friction 1.08 W, contact damping 0.12 W",
-        "driven-driver 60 60 60 0.975",
+        "driven-driver 60.00 60.00 60.00 0.9750",
         "1.0e-04 of the energy",
         "1200, 14 rejected, 4900 Newton iterations; 101 outputs",
     ):
@@ -67,6 +67,29 @@ def test_several_shafts_that_put_power_in_are_named(
 ) -> None:
     show_summary(make_run(shaft_torque=np.tile([1.0, 2.0], (101, 1))))
     assert "35.88 W in (driver 12 W, driven 23.88 W), 0 W out" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("values", "written"),
+    [
+        ([0.5004, -0.5], ["0.5004", "-0.5000"]),
+        ([12345.6, 1.0], ["12346", "1"]),
+        ([99.0, float("nan"), -1e-12], ["99.00", "–", "0.00"]),
+        ([0.0, 0.0], ["0", "0"]),
+        ([], []),
+    ],
+)
+def test_a_column_has_as_many_decimals_in_all_rows(values: list[float], written: list[str]) -> None:
+    assert aligned(values) == written
+
+
+def test_large_powers_are_in_kilowatts(
+    run: Run, make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]
+) -> None:
+    show_summary(make_run(shaft_torque=1000.0 * run.dataset["shaft_torque"].values))
+    output = " ".join(capsys.readouterr().out.split())
+    assert "power kW slip" in output.replace("N m kW", "power kW")
+    assert "29.25 kW in, 29.1 kW out" in output
 
 
 def test_nothing_in_a_table_is_cut_off(

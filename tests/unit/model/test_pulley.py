@@ -82,3 +82,10 @@ def test_schema_knows_the_diameter() -> None:
     assert {"radius", "diameter"} <= set(schema["properties"])
     assert schema["anyOf"] == [{"required": ["radius"]}, {"required": ["diameter"]}]
     assert "radius" not in schema["required"]
+
+
+def test_a_pulley_lies_in_the_plane() -> None:
+    with pytest.raises(ModelError) as caught:
+        Pulley(name="turned", center=(0.0, 0.0, 0.1), radius=0.1, inertia=1.0)
+    assert "three coordinates, but drives are planar: shafts are parallel" in str(caught.value)
+    assert "quarter-turn" in str(caught.value)
