@@ -7,7 +7,19 @@ knows the kinds is made from it.
 
 from beltdyn.machines.links.kinds import FrictionClutch, Isolator, OneWayClutch
 from beltdyn.machines.links.link import HubLink
-from beltdyn.machines.loads.kinds import LoadTable, Motor, Resistance
+from beltdyn.machines.loads.kinds import (
+    AngleSpeedTable,
+    AngleTable,
+    BandBrake,
+    Brake,
+    Fan,
+    Generator,
+    InductionMotor,
+    LoadTable,
+    Motor,
+    Pump,
+    Resistance,
+)
 from beltdyn.machines.loads.load import Load
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.kinds import Constant, CosineRamp, CosineRampPublished, Ramp, Step, Table
@@ -16,13 +28,20 @@ from beltdyn.machines.tensioners.kinds import FixedTensioner, RotaryTensioner, S
 from beltdyn.machines.tensioners.tensioner import MovingTensioner, Tensioner
 
 __all__ = [
+    "AngleSpeedTable",
+    "AngleTable",
+    "BandBrake",
+    "Brake",
     "Constant",
     "CosineRamp",
     "CosineRampPublished",
+    "Fan",
     "FixedTensioner",
     "FrictionClutch",
+    "Generator",
     "Harmonic",
     "HubLink",
+    "InductionMotor",
     "Isolator",
     "Load",
     "LoadTable",
@@ -30,6 +49,7 @@ __all__ = [
     "MovingTensioner",
     "OneWayClutch",
     "Profile",
+    "Pump",
     "Ramp",
     "Resistance",
     "RotaryTensioner",

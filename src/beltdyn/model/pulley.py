@@ -9,7 +9,7 @@ from pydantic.fields import FieldInfo
 
 from beltdyn.machines.links.registry import AnyHubLink
 from beltdyn.machines.loads.registry import AnyLoad
-from beltdyn.machines.profiles.harmonic import Harmonic
+from beltdyn.machines.profiles.crank import SpeedHarmonics
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import SpeedProfile, TorqueProfile
 from beltdyn.model.belt import Belt, Side
@@ -64,8 +64,9 @@ class Pulley(Part):
         description="the coefficient of friction on this pulley, without the wedge; by default that of the contact",
     )
     speed: SpeedProfile | None = Field(None, description="the prescribed speed of the shaft over time, in rad/s")
-    harmonics: tuple[Harmonic, ...] = Field(
-        (), description="the harmonics of the prescribed speed, over the angle of its mean"
+    harmonics: SpeedHarmonics = Field(
+        (),
+        description="the harmonics of the prescribed speed, over the angle of its mean, or a table of a measured speed",
     )
     mass: Mass = Field(0.0, ge=0, description="the mass of the pulley, which moves with a tensioner, in kg")
     inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia about the shaft, of the rim, in kg*m^2")
@@ -158,13 +159,14 @@ class Pulley(Part):
     @property
     def profiles(self) -> tuple[Profile, ...]:
         """Everything about the pulley that is prescribed over time."""
-        given = (self.speed, self.torque, *self.schedules)
+        given = (self.speed, self.torque, *self.switching)
         return tuple(profile for profile in given if profile is not None)
 
     @property
-    def schedules(self) -> tuple[Profile | None, ...]:
-        """The schedules of the loads, then of the links of the hub chain; None where there is none."""
-        return (*(item.schedule for item in self.load), *(link.factor for link in self.hub))
+    def switching(self) -> tuple[Profile | None, ...]:
+        """Factor and command of each load, then the factors of the links of the hub chain; None where there is none."""
+        of_loads = (profile for item in self.load for profile in (item.factor, item.command))
+        return (*of_loads, *(link.factor for link in self.hub))
 
 
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:

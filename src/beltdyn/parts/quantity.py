@@ -70,6 +70,8 @@ def _convert(number: float, given: str, unit: str) -> float:
         raise ValueError(f'has an unknown unit "{given}". Write for example "{number:g} {unit}"') from error
     if not same:
         raise ValueError(f'must be in units of {unit}, not "{given}"')
+    if unit == "Hz" and "hertz" not in str(parsed):
+        raise ValueError(f'must be a frequency in Hz, not "{given}"')
     if unit == "rad/s" and "hertz" in str(parsed):
         raise ValueError(f'is ambiguous, as Hz could mean turns or radians. Write "{60 * value:g} rpm" or rad/s')
     return value
@@ -126,7 +128,10 @@ Speed = Annotated[float, quantity("m/s")]
 AngularSpeed = Annotated[float, quantity("rad/s", smallest=0)]
 Acceleration = Annotated[float, quantity("m/s^2", smallest=0)]
 Angle = Annotated[float, quantity("rad", smallest=0)]
+Frequency = Annotated[float, quantity("Hz", smallest=0)]
 Torque = Annotated[float, quantity("N*m", smallest=0)]
+Power = Annotated[float, quantity("W", smallest=0)]
+Pressure = Annotated[float, quantity("Pa", smallest=0)]
 TorsionalStiffness = Annotated[float, quantity("N*m/rad")]
 TorsionalDamping = Annotated[float, quantity("N*m*s/rad")]
 QuadraticDamping = Annotated[float, quantity("N*m*s^2/rad^2")]

@@ -28,23 +28,87 @@ def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
     Returns
     -------
     object
-        The same table with its columns.
+        The same table with its columns, as text with units where the key ``units`` gives those of the columns.
 
     Raises
     ------
     ValueError
         If there are columns beside the file, or the file cannot be read.
     """
-    if not isinstance(data, Mapping) or "file" not in data:
+    if not names_file(data, (first, second)):
         return data
-    if first in data or second in data:
-        raise ValueError(f"file excludes {first} and {second}: keep one of the two forms")
-    columns = read_table(data["file"], (info.context or {}).get("base"))
-    others = {key: value for key, value in data.items() if key != "file"}
-    return others | dict(zip((first, second), columns, strict=True))
+    columns = zip(*read_table(data["file"], _base(info), 2), strict=True)
+    units = data.get("units", ("", ""))
+    if not (isinstance(units, Sequence) and len(units) == 2 and all(isinstance(unit, str) for unit in units)):
+        raise ValueError(f'units = {shorten(units)} must be the units of both columns, such as ["rpm", "N m"]')
+    read = [with_unit(column, unit) for column, unit in zip(columns, units, strict=True)]
+    return without_file(data) | dict(zip((first, second), read, strict=True))
 
 
-def check_points(first: str, arguments: Sequence[float], second: str, values: Sequence[float]) -> None:
+def take_grid(data: Any, info: ValidationInfo, rows: str, columns: str, values: str) -> Any:
+    """Replace the key ``file`` of a table over two quantities by what that CSV file holds.
+
+    Its first line has the columns' arguments behind a first cell of any content; each other line has the argument of a
+    row, and then its values.
+
+    Parameters
+    ----------
+    data, info
+        As for `take_file`; ``units`` are those of rows, columns and values.
+    rows, columns, values : str
+        The keys of both arguments, and of the values.
+
+    Returns
+    -------
+    object
+        The same table with these keys; the values are a list of rows.
+
+    Raises
+    ------
+    ValueError
+        If one of these keys is there beside the file, or the file cannot be read.
+    """
+    if not names_file(data, (rows, columns, values)):
+        return data
+    head, *body = read_table(data["file"], _base(info), None)
+    units = data.get("units", ("", "", ""))
+    if not (isinstance(units, Sequence) and len(units) == 3 and all(isinstance(unit, str) for unit in units)):
+        raise ValueError(
+            f'units = {shorten(units)} must be those of {rows}, {columns} and {values}, such as ["deg", "rpm", "N m"]'
+        )
+    return without_file(data) | {
+        rows: with_unit([line[0] for line in body], units[0]),
+        columns: with_unit(head[1:], units[1]),
+        values: [with_unit(line[1:], units[2]) for line in body],
+    }
+
+
+def names_file(data: Any, keys: Sequence[str]) -> bool:
+    """Whether what a user gave for a table names a file; an error if it has one of some keys beside it."""
+    if not isinstance(data, Mapping) or "file" not in data:
+        if isinstance(data, Mapping) and "units" in data:
+            raise ValueError("units belong to the columns of a file. Write units into the numbers, or give file")
+        return False
+    if any(key in data for key in keys):
+        raise ValueError(f"file excludes {' and '.join(keys)}: keep one of the two forms")
+    return True
+
+
+def without_file(data: Mapping[str, Any]) -> dict[str, Any]:
+    """The other keys of a table that names a file."""
+    return {key: value for key, value in data.items() if key not in ("file", "units")}
+
+
+def with_unit(numbers: Sequence[float], unit: str) -> list[float | str]:
+    """Numbers as a user would write them in a unit; without a unit as they are."""
+    return [f"{number!r} {unit}" if unit else number for number in numbers]
+
+
+def _base(info: ValidationInfo) -> Path | None:
+    return (info.context or {}).get("base")
+
+
+def check_points(first: str, arguments: Sequence[float], second: str, values: Sequence[object]) -> None:
     """Check that the points of a table are a function.
 
     Parameters
@@ -71,27 +135,32 @@ def check_points(first: str, arguments: Sequence[float], second: str, values: Se
             )
 
 
-def describe_file(schema: dict[str, Any], first: str, second: str, content: str) -> None:
-    """Add the key ``file``, which is replaced by two columns on reading, to the JSON schema of a table.
+def describe_file(schema: dict[str, Any], keys: Sequence[str], content: str) -> None:
+    """Add the keys ``file`` and ``units``, which are replaced by others on reading, to the JSON schema of a table.
 
     Parameters
     ----------
     schema : dict
         Changed in place.
-    first, second : str
-        The keys of the columns.
+    keys : sequence of str
+        The keys that the file replaces.
     content : str
-        What the columns of the file hold.
+        What the file holds.
     """
-    schema["properties"]["file"] = {"type": "string", "description": f"a CSV file of two columns, {content}"}
-    others = [key for key in schema.pop("required", []) if key not in (first, second)]
+    schema["properties"]["file"] = {"type": "string", "description": f"a CSV file of {content}"}
+    schema["properties"]["units"] = {
+        "type": "array",
+        "items": {"type": "string"},
+        "description": f"the units in the file of {', '.join(keys)}; by default SI",
+    }
+    others = [key for key in schema.pop("required", []) if key not in keys]
     if others:
         schema["required"] = others
-    schema["oneOf"] = [{"required": ["file"]}, {"required": [first, second]}]
+    schema["oneOf"] = [{"required": ["file"]}, {"required": list(keys)}]
 
 
-def read_table(name: object, base: Path | None) -> tuple[list[float], list[float]]:
-    """Read the two columns of a CSV file.
+def read_table(name: object, base: Path | None, width: int | None) -> list[list[float]]:
+    """Read the rows of a CSV file.
 
     Lines that are empty or start with ``#`` are skipped, and so is one header line.
 
@@ -101,33 +170,39 @@ def read_table(name: object, base: Path | None) -> tuple[list[float], list[float
         Path of the file, as the user wrote it.
     base : Path or None
         Folder that a relative path starts from; None for the working directory.
+    width : int or None
+        Numbers in a row.  None for a grid, whose rows are as long as its first line; the first cell of that is read as
+        zero.
 
     Returns
     -------
-    first, second : list of float
-        The columns.
+    list of list of float
+        The rows.
 
     Raises
     ------
     ValueError
-        If the file cannot be read, or is not a table of two columns of numbers.
+        If the file cannot be read, or is not a table of such rows.
     """
     if not isinstance(name, str | Path):
         raise ValueError(f"file = {shorten(name)} must be the path of a CSV file, as text")
-    rows = _rows(name, base)
-    if rows and _numbers(rows[0][1]) is None:
-        rows = rows[1:]
-    points: list[tuple[float, float]] = []
-    for line, cells in rows:
-        numbers = _numbers(cells)
+    lines = _rows(name, base)
+    if width is None and lines:
+        lines[0][1][0] = "0"
+        width = max(len(lines[0][1]), 2)
+    elif lines and _numbers(lines[0][1], width) is None:
+        lines = lines[1:]
+    rows: list[list[float]] = []
+    for line, cells in lines:
+        numbers = _numbers(cells, width)
         if numbers is None:
-            what = f'"{shorten(",".join(cells), 40)}" ' if points else ""  # what is no table may be anything
-            raise ValueError(
-                f'file = "{shorten(name)}", line {line}: {what}is not two numbers with a comma between. '
-                "Correct this line"
-            )
-        points.append(numbers)
-    return [first for first, _ in points], [second for _, second in points]
+            what = f'"{shorten(",".join(cells), 40)}" ' if rows else ""  # what is no table may be anything
+            many = "two numbers with a comma between" if width == 2 else f"{width} numbers with commas between"
+            raise ValueError(f'file = "{shorten(name)}", line {line}: {what}is not {many}. Correct this line')
+        rows.append(numbers)
+    if not rows:
+        raise ValueError(f'file = "{shorten(name)}" has no numbers. Give one line for each point')
+    return rows
 
 
 def _rows(name: str | Path, base: Path | None) -> list[tuple[int, list[str]]]:
@@ -154,9 +229,10 @@ def _text(name: str | Path, base: Path | None) -> str:
         ) from error
 
 
-def _numbers(cells: list[str]) -> tuple[float, float] | None:
+def _numbers(cells: list[str], width: int | None) -> list[float] | None:
+    """Numbers of a line; None if there are others than so many."""
     try:
-        first, second = (float(cell) for cell in cells)
+        numbers = [float(cell) for cell in cells]
     except ValueError:
         return None
-    return first, second
+    return numbers if len(numbers) == width else None

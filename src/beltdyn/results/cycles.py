@@ -8,7 +8,7 @@ from math import floor, gcd, lcm
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.machines import Harmonic, Profile, Table
+from beltdyn.machines import Profile, Table
 from beltdyn.model import Drive
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.window import Cycle, Window, plain_window
@@ -96,11 +96,11 @@ def _waves(recorded: Recorded, drive: Drive, turn: Cycle) -> Iterator[Cycle]:
     """Whole waves of harmonics over the angles of shafts, and periods of tables."""
     time = np.asarray(recorded["time"], dtype=float)
     for number, pulley in enumerate(drive.pulleys):
-        harmonics = [*pulley.harmonics, *(wave for load in pulley.load for wave in load.harmonics)]
-        if harmonics:
+        orders = [wave.order for wave in pulley.harmonics] + [one for load in pulley.load for one in load.orders]
+        if orders:
             angle = np.asarray(recorded["shaft_angle"][:, number])
             forward = np.sign(angle[-1] - angle[0])
-            phase = forward * angle * _common_order(harmonics) / (2.0 * np.pi)
+            phase = forward * angle * _common_order(orders) / (2.0 * np.pi)
             yield Cycle(_without_rest(phase, turn.phase), 1)
     periods = {_repeats(profile, time) for profile in _profiles(drive)}
     for period in sorted(periods - {0.0}):
@@ -116,11 +116,11 @@ def _without_rest(phase: FloatArray, turns: FloatArray) -> FloatArray:
     return np.concatenate([phase[:1], phase[0] + np.cumsum(going)])
 
 
-def _common_order(harmonics: Sequence[Harmonic]) -> float:
+def _common_order(orders: Sequence[float]) -> float:
     """The largest order of which all orders are multiples."""
-    orders = [Fraction(wave.order).limit_denominator(_FINEST) for wave in harmonics]
-    top = reduce(gcd, (order.numerator for order in orders))
-    return top / reduce(lcm, (order.denominator for order in orders))
+    fractions = [Fraction(order).limit_denominator(_FINEST) for order in orders]
+    top = reduce(gcd, (one.numerator for one in fractions))
+    return top / reduce(lcm, (one.denominator for one in fractions))
 
 
 def _profiles(drive: Drive) -> list[Profile]:

@@ -10,7 +10,7 @@ from math import isnan
 from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import torque_of_kind
 from beltdyn.machines.loads.shaft import load_torque
-from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, profile_value
+from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, profile_value, schedule_value
 from beltdyn.solve.alpha_method import Method
 from beltdyn.solve.integrator_state import IntegratorState, motion_of
 from beltdyn.system.arrays import System
@@ -87,10 +87,15 @@ def _lag_of_shaft(system: System, method: Method, state: IntegratorState, pulley
     i = system.first_body + system.pulleys[pulley].shaft
     impulse = lag_of(system, method, state, pulley, length)
     for load in range(loads.first[pulley], loads.first[pulley + 1]):
-        schedule = loads.table[load].schedule
-        if schedule != NO_SCHEDULE:
-            torque = load_torque(loads, load, state.position[i], state.velocity[i]).torque
-            impulse += torque * lag_of(system, method, state, schedule, length)
+        schedule, command = loads.table[load].schedule, loads.table[load].command
+        if schedule != NO_SCHEDULE or command != NO_SCHEDULE:
+            time = after_jump(state.clock.time)
+            full = load_torque(system.profiles, loads, load, time, state.position[i], state.velocity[i])
+            if schedule != NO_SCHEDULE:
+                impulse += full.torque * lag_of(system, method, state, schedule, length)
+            if command != NO_SCHEDULE:
+                scale = schedule_value(system.profiles, schedule, time)
+                impulse += scale * full.by_command * lag_of(system, method, state, command, length)
     return impulse
 
 

@@ -49,7 +49,7 @@ def machine_arrays(
     Returns
     -------
     Machines
-        Profile p is that of pulley p; schedules follow, those of a pulley's loads before those of its hub chain.
+        Profile p is that of pulley p; factors and commands of its loads, then of its hub chain, follow.
 
     Raises
     ------
@@ -57,10 +57,10 @@ def machine_arrays(
         If there are tensioners but no path.
     """
     own = [pulley.speed if pulley.prescribed else pulley.torque for pulley in pulleys]
-    schedules = [item for pulley in pulleys for item in pulley.schedules if item is not None]
-    of_loads, of_links = _schedule_numbers(pulleys)
+    switching = [item for pulley in pulleys for item in pulley.switching if item is not None]
+    of_loads, of_links = _switching_numbers(pulleys)
     return Machines(
-        profile_rows([*own, *schedules], [*(pulley.harmonics for pulley in pulleys), *([()] * len(schedules))]),
+        profile_rows([*own, *switching], [*(pulley.harmonics for pulley in pulleys), *([()] * len(switching))]),
         shaft_loads([pulley.load for pulley in pulleys], of_loads),
         link_rows(_placed(pulleys, of_links)),
         _tensioners(pulleys, tensioners, path, gravity),
@@ -148,17 +148,18 @@ def _placed(pulleys: Sequence[Pulley], schedules: Sequence[int]) -> list[PlacedL
     return placed
 
 
-def _schedule_numbers(pulleys: Sequence[Pulley]) -> tuple[list[int], list[int]]:
-    """Numbers of the profiles that are the schedules of loads and of links, or `NO_SCHEDULE`."""
-    loads, links = list[int](), list[int]()
+def _switching_numbers(pulleys: Sequence[Pulley]) -> tuple[list[tuple[int, int]], list[int]]:
+    """Numbers of the profiles that are factor and command of loads, and factors of links, or `NO_SCHEDULE`."""
+    loads, links = list[tuple[int, int]](), list[int]()
     following = len(pulleys)
     for pulley in pulleys:
         numbers = []
-        for schedule in pulley.schedules:
-            numbers.append(NO_SCHEDULE if schedule is None else following)
-            following += schedule is not None
-        loads += numbers[: len(pulley.load)]
-        links += numbers[len(pulley.load) :]
+        for profile in pulley.switching:
+            numbers.append(NO_SCHEDULE if profile is None else following)
+            following += profile is not None
+        of_loads = numbers[: 2 * len(pulley.load)]
+        loads += zip(of_loads[::2], of_loads[1::2], strict=True)
+        links += numbers[len(of_loads) :]
     return loads, links
 
 

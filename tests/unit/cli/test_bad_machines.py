@@ -57,7 +57,11 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     ),
     "motor and speed": ("driver", MOTOR, ("pulley[driver]: speed and load exclude each other",)),
     # loads
-    "load without kind": ("driven", "load = [{ linear = 1 }]", ("load[1]", "has no kind", "motor, resistance, table")),
+    "load without kind": (
+        "driven",
+        "load = [{ linear = 1 }]",
+        ("load[1]", "has no kind", "motor, pump, resistance, table"),
+    ),
     "load without list": ("driven", 'load = { kind = "resistance" }', ("must be a list", "[[pulley.load]]")),
     "misspelled load": ("driven", 'load = [{ kind = "resistence" }]', ("load[1].kind", 'Did you mean "resistance"?')),
     "no resistance": ("driven", 'load = [{ kind = "resistance" }]', ("load[1] has no resistance", "Give constant")),

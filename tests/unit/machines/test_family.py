@@ -16,13 +16,17 @@ from beltdyn.machines.tensioners import kinds as tensioners
 from beltdyn.machines.tensioners.registry import TENSIONER
 from beltdyn.model import Pulley
 
+LOADS = {
+    *("angle_speed_table", "angle_table", "band_brake", "brake", "fan", "generator"),
+    *("induction_motor", "motor", "pump", "resistance", "table"),
+}
 FREE: dict[str, Any] = {"name": "free", "center": (0, 0), "radius": 1, "inertia": 1}
 
 
 @pytest.mark.parametrize(
     ("module", "kinds"),
     [
-        (loads, {"motor", "resistance", "table"}),
+        (loads, LOADS),
         (links, {"friction_clutch", "isolator", "one_way_clutch"}),
         (tensioners, {"fixed", "rotary", "sliding"}),
         (profiles, {"constant", "cosine_ramp", "cosine_ramp_published", "ramp", "step", "table"}),
@@ -48,5 +52,5 @@ def test_a_fixed_tensioner_has_no_row() -> None:
 
 
 def test_a_wrong_kind_is_told_of_with_those_that_there_are() -> None:
-    with pytest.raises(ModelError, match="Known here: motor, resistance, table"):
+    with pytest.raises(ModelError, match="Known here: angle_speed_table, angle_table, band_brake"):
         Pulley(**FREE, load=[{"kind": "nothing"}])

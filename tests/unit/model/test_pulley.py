@@ -25,7 +25,7 @@ PLACE = {"name": "one", "center": (0, 0), "radius": 0.1}
         ({"inertia": 1.0, "hub": [{"kind": "isolator"}]}, "pulley.hub[1].stiffness is missing. Give the torque over"),
         ({"inertia": 1.0, "hub": [{"stiffness": 1.0}]}, "has no kind"),
         ({"inertia": 1.0, "hub": [{"kind": "isolater"}]}, 'pulley.hub[1].kind = "isolater" is not a choice here'),
-        ({"inertia": 1.0, "load": [{"linear": 1.0}]}, "with one of motor, resistance, table"),
+        ({"inertia": 1.0, "load": [{"linear": 1.0}]}, "with one of angle_speed_table, angle_table, band_brake"),
         ({"inertia": 1.0, "load": LOAD}, "pulley.load = "),
         (
             {"speed": SPEED, "harmonics": [{"order": 0, "amplitude": 1}]},
@@ -66,7 +66,7 @@ def test_everything_prescribed_over_time_is_listed() -> None:
         hub=[LINK, clutch | {"schedule": schedule | {"time": 0.4}}],
     )
     assert [profile.breakpoints() for profile in pulley.profiles] == [(0.1, 0.2), (0.3,), (0.4,)]
-    assert [item is None for item in pulley.schedules] == [True, False, True, False]
+    assert [item is None for item in pulley.switching] == [True, True, False, True, True, False]
 
 
 def test_a_pulley_may_be_given_by_its_diameter() -> None:

@@ -49,7 +49,7 @@ def test_the_schema_is_that_of_the_key(locations: ErrorLocation) -> None:
 def test_known_keys_and_kinds_are_those_of_the_place(locations: ErrorLocation) -> None:
     assert {"width", "density"} <= set(locations.keys(("belt",)))
     assert "breakdown_torque" in locations.keys(("pulley", 1, "load", 0, "motor"))
-    assert set(locations.kinds(("pulley", 1, "load", 0))) == {"motor", "resistance", "table"}
+    assert set(locations.kinds(("pulley", 1, "load", 0))) >= {"motor", "resistance", "table"}
     assert locations.keys(("belt", "width", "deeper")) == []
 
 

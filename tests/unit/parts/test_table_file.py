@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from beltdyn.parts.table_file import check_points, describe_file, read_table, take_file
+from beltdyn.parts.table_file import check_points, describe_file, read_table, take_file, take_grid
 
 
 @pytest.fixture
@@ -30,14 +30,14 @@ def write(tmp_path: Path) -> Any:
     ],
 )
 def test_two_columns_with_comments_empty_lines_and_a_header(write: Any, text: str) -> None:
-    assert read_table(write(text), None) == ([0.0, 2.0], [1.0, -3.0])
+    assert read_table(write(text), None, 2) == [[0.0, 1.0], [2.0, -3.0]]
 
 
 def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
     path = write("0,1\n2,3\n")
-    assert read_table(path.name, path.parent) == read_table(str(path), None) == ([0.0, 2.0], [1.0, 3.0])
+    assert read_table(path.name, path.parent, 2) == read_table(str(path), None, 2) == [[0.0, 1.0], [2.0, 3.0]]
     with pytest.raises(ValueError, match=r'file = "points\.csv" cannot be read: .* starts at the folder of the drive'):
-        read_table("points.csv", path.parent / "elsewhere")
+        read_table("points.csv", path.parent / "elsewhere", 2)
 
 
 @pytest.mark.parametrize(
@@ -52,13 +52,13 @@ def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
 )
 def test_the_line_that_is_wrong_is_named(write: Any, text: str | bytes, message: str) -> None:
     with pytest.raises(ValueError, match=r'^file = "points\.csv"') as caught:
-        read_table("points.csv", write(text).parent)
+        read_table("points.csv", write(text).parent, 2)
     assert message in str(caught.value)
 
 
 def test_a_path_is_text() -> None:
     with pytest.raises(ValueError, match="file = 3 must be the path of a CSV file, as text"):
-        read_table(3, None)
+        read_table(3, None, 2)
 
 
 def test_a_file_takes_the_place_of_both_columns(write: Any) -> None:
@@ -72,6 +72,40 @@ def test_a_file_takes_the_place_of_both_columns(write: Any) -> None:
         take_file({"file": "points.csv", "values": [1]}, info, "times", "values")
 
 
+def test_columns_of_a_file_may_have_units(write: Any) -> None:
+    info: Any = SimpleNamespace(context={"base": write("deg,Nm\n0,1\n90,-3e-7\n").parent})
+    table = {"file": "points.csv", "units": ["deg", "N m"]}
+    assert take_file(table, info, "angles", "torques") == {
+        "angles": ["0.0 deg", "90.0 deg"],
+        "torques": ["1.0 N m", "-3e-07 N m"],
+    }
+    with pytest.raises(ValueError, match="units = deg must be the units of both columns, such as"):
+        take_file(table | {"units": "deg"}, info, "angles", "torques")
+    with pytest.raises(ValueError, match="units belong to the columns of a file"):
+        take_file({"angles": [0.0], "units": ["deg", "N m"]}, info, "angles", "torques")
+
+
+def test_a_grid_has_the_second_argument_in_its_first_line(write: Any) -> None:
+    info: Any = SimpleNamespace(context={"base": write("deg/rpm,100,200\n0,1,2\n90,3,4\n").parent})
+    grid = {"file": "points.csv", "units": ["deg", "rpm", ""]}
+    assert take_grid(grid, info, "angles", "speeds", "torques") == {
+        "angles": ["0.0 deg", "90.0 deg"],
+        "speeds": ["100.0 rpm", "200.0 rpm"],
+        "torques": [[1.0, 2.0], [3.0, 4.0]],
+    }
+    with pytest.raises(ValueError, match=r"units = .* must be those of angles, speeds and torques"):
+        take_grid(grid | {"units": ["deg"]}, info, "angles", "speeds", "torques")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [("x,1,2\n0,1\n", 'line 2: "0,1" is not 3 numbers with commas between'), ("", "has no numbers")],
+)
+def test_a_grid_with_a_wrong_line(write: Any, text: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        read_table(write(text), None, None)
+
+
 def test_points_are_a_function() -> None:
     check_points("times", [0.0, 1e-9, 2.0], "values", [1.0, 1.0, 1.0])
     with pytest.raises(ValueError, match="times has 2 numbers and values has 1: each time needs one value"):
@@ -83,7 +117,7 @@ def test_points_are_a_function() -> None:
 
 def test_the_schema_asks_for_the_file_or_for_both_columns() -> None:
     schema: dict[str, Any] = {"properties": {}, "required": ["kind", "times", "values"]}
-    describe_file(schema, "times", "values", "time in s and value in SI units")
+    describe_file(schema, ("times", "values"), "two columns, times and values")
     assert schema["required"] == ["kind"]
     assert schema["oneOf"] == [{"required": ["file"]}, {"required": ["times", "values"]}]
-    assert schema["properties"]["file"]["description"].endswith("time in s and value in SI units")
+    assert schema["properties"]["file"]["description"].endswith("two columns, times and values")

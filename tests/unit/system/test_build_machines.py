@@ -73,8 +73,8 @@ def test_loads_are_sorted_by_pulley() -> None:
     loads = machine_arrays(PULLEYS).shaft_loads
     np.testing.assert_array_equal(loads.first, [0, 0, 2, 3])
     assert [list(LOADS)[kind] for kind in loads.table.kind[:-1]] == ["table", "resistance", "motor"]
-    np.testing.assert_array_equal(loads.table.point, [0, 2, 2, 2])
-    np.testing.assert_array_equal(loads.point, [[0.0, 0.0], [10.0, -1.0]])
+    np.testing.assert_array_equal(loads.table.number, [0, 4, 4, 4])
+    np.testing.assert_array_equal(loads.numbers, [0.0, 10.0, 0.0, -1.0])
     np.testing.assert_array_equal(loads.table.harmonic, [0, 1, 1, 1])
     np.testing.assert_array_equal(loads.harmonic.tolist(), [(3.0, 0.1, 0.0)])
 

@@ -1,18 +1,23 @@
 """Small drives on which the verification tests run, and how to change them."""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model import Drive
+from beltdyn.model import Belt, Drive, Pulley
+from beltdyn.model.instants import Instants
 from beltdyn.solve.alpha_advance import REACHED
 from beltdyn.solve.engine import advance, restart
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrator_state import Settings, empty_steps, new_state
+from beltdyn.solve.trajectory import Chunk, Statistics, Task
 from beltdyn.system.arrays import System
+from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations
+from beltdyn.system.state import State, straight
 
 Change = Callable[..., Drive]
 
@@ -87,3 +92,41 @@ def fixed_steps() -> Callable[[System, FloatArray, float, int, FloatArray], tupl
         return taken.position[wanted], taken.velocity[wanted]
 
     return integrate
+
+
+INERTIA, RADIUS, VELOCITY, RTOL = 0.4, 0.1, 10.0, 1e-3
+"""Of a pulley far from the belt, and of its integration."""
+
+
+class End(NamedTuple):
+    """How a run ended."""
+
+    speeds: Any
+    angles: Any
+    work: Any
+    steps: int
+
+
+@pytest.fixture(scope="session")
+def follow(drive: Drive) -> Callable[..., End]:
+    """Follow a far pulley for two seconds, or until another end, from given speeds of its bodies."""
+
+    def run(speeds: tuple[float, ...] = (0.0,), integrator: Any = None, until: float = 2.0, **keys: Any) -> End:
+        belt = Belt(**drive.belt.model_dump() | {"elements": 3})
+        pulley = Pulley(**{"name": "far", "center": (0.0, 50.0), "radius": RADIUS, "inertia": INERTIA} | keys)
+        system = belt_system(belt, [pulley], drive.contact)
+        count, rest = len(speeds), straight(system)
+        velocity = rest.velocity.copy()
+        velocity[-count:] = speeds
+        task = Task(
+            system,
+            State(rest.position, velocity, rest.acceleration),
+            Instants(0.01, until),
+            [t for profile in pulley.profiles for t in profile.breakpoints()],
+            VELOCITY,
+            Statistics(),
+        )
+        chunk = Chunk.join(list((integrator or GeneralizedAlpha(0.6, RTOL))(task)))
+        return End(chunk.velocity[-1, -count:], chunk.position[-1, -count:], chunk.work[-1], task.statistics.steps)
+
+    return run

@@ -1,5 +1,13 @@
 """All kinds of loads and motors, one a line."""
 
+from beltdyn.machines.loads.angle_table import AngleSpeedTable as AngleSpeedTable
+from beltdyn.machines.loads.angle_table import AngleTable as AngleTable
+from beltdyn.machines.loads.brake import BandBrake as BandBrake
+from beltdyn.machines.loads.brake import Brake as Brake
+from beltdyn.machines.loads.fan import Fan as Fan
+from beltdyn.machines.loads.generator import Generator as Generator
+from beltdyn.machines.loads.induction_motor import InductionMotor as InductionMotor
 from beltdyn.machines.loads.motor import Motor as Motor
+from beltdyn.machines.loads.pump import Pump as Pump
 from beltdyn.machines.loads.resistance import Resistance as Resistance
 from beltdyn.machines.loads.table import LoadTable as LoadTable

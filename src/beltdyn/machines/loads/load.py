@@ -9,8 +9,22 @@ from pydantic import Field
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.machines.profiles.harmonic import Harmonic
+from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import Schedule
 from beltdyn.parts.part import Part
+
+
+class ShaftState(NamedTuple):
+    """What a shaft does at an instant, counter-clockwise positive, and what the load on it is told to do."""
+
+    time: float
+    """s."""
+    angle: float
+    """rad."""
+    speed: float
+    """rad/s."""
+    command: float
+    """Value of the load's profile `command`, in its unit; zero without."""
 
 
 class LoadTorque(NamedTuple):
@@ -22,12 +36,33 @@ class LoadTorque(NamedTuple):
     """N m/rad."""
     by_speed: float
     """N m s/rad."""
+    by_command: float
+    """N m over the unit of the command; zero without."""
 
 
 @kernel
-def no_kink(_constants: np.record, _points: FloatArray, _speed: float, _rising: bool) -> float:
+def no_kink(_constants: np.record, _numbers: FloatArray, _shaft: ShaftState, _rising: bool) -> float:
     """Next kink of a torque that is smooth over the speed: none."""
     return np.inf
+
+
+@kernel(inline=True)
+def nearer_kink(kink: float, nearest: float, speed: float, rising: bool) -> float:
+    """Nearer of two kinks ahead of a speed, rad/s.
+
+    Parameters
+    ----------
+    kink
+        Any kink.
+    nearest
+        The nearest of others ahead, infinite without any.
+    speed
+        rad/s.
+    rising
+        Whether the speed rises.
+    """
+    ahead = kink > speed if rising else kink < speed
+    return kink if ahead and abs(kink - speed) < abs(nearest - speed) else nearest
 
 
 class Load(Part):
@@ -38,11 +73,11 @@ class Load(Part):
 
     constants: ClassVar[np.dtype[np.void]]
     """Record of its constants; by default these are the fields of the same names."""
-    torque_at: ClassVar[Callable[[np.record, FloatArray, float, float], LoadTorque]]
-    """Kernel: the torque from constants, points, angle (rad) and speed (rad/s), without schedule and harmonics."""
-    next_kink: ClassVar[Callable[[np.record, FloatArray, float, bool], float]] = no_kink
-    """Kernel: the next speed at which the torque has a kink, rad/s, infinite without any, from constants, points,
-    speed and whether the speed rises."""
+    torque_at: ClassVar[Callable[[np.record, FloatArray, ShaftState], LoadTorque]]
+    """Kernel: the torque from constants, numbers and the state of the shaft, without schedule and harmonics."""
+    next_kink: ClassVar[Callable[[np.record, FloatArray, ShaftState, bool], float]] = no_kink
+    """Kernel: the next speed at which the torque has a kink, rad/s, infinite without any, from constants, numbers, the
+    state of the shaft and whether its speed rises."""
 
     if TYPE_CHECKING:
         kind: str
@@ -55,9 +90,27 @@ class Load(Part):
         return {name: getattr(self, name) for name in self.constants.names or ()}
 
     @property
-    def points(self) -> Sequence[tuple[float, float]]:
-        """Points that its kernels get beside the constants, as many as it likes, as an array of shape (n, 2)."""
+    def numbers(self) -> Sequence[float] | FloatArray:
+        """Numbers that its kernels get beside the constants, as many as it likes, as an array of shape (n,)."""
         return ()
+
+    @property
+    def factor(self) -> Profile | None:
+        """The profile that multiplies its torque: its schedule, unless a kind makes another one."""
+        return self.schedule
+
+    @property
+    def command(self) -> Profile | None:
+        """The profile whose value its kernels get, such as a set speed; None without."""
+        return None
+
+    @property
+    def orders(self) -> Sequence[float]:
+        """Orders of its torque over the angle: waves in a turn of the shaft.
+
+        The torque repeats itself with their largest common measure, and time steps resolve the highest.
+        """
+        return [wave.order for wave in self.harmonics]
 
     @property
     def driven_speed(self) -> float:

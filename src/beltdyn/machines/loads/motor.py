@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.parts.quantity import AngularSpeed, Ratio, Torque
 from beltdyn.records import record
 
@@ -22,23 +22,28 @@ MOTOR = record(
 
 
 @kernel
-def kloss(constants: np.record, _points: FloatArray, _angle: float, speed: float) -> LoadTorque:
+def kloss_over_slip(breakdown_torque: float, breakdown_slip: float, slip: float) -> tuple[float, float]:
+    """Kloss's torque at a slip, and its derivative with respect to the slip, N m."""
+    square = slip * slip + breakdown_slip * breakdown_slip
+    top = 2.0 * breakdown_torque * breakdown_slip
+    return top * slip / square, top * (breakdown_slip * breakdown_slip - slip * slip) / (square * square)
+
+
+@kernel
+def kloss(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
     """Torque in the sense of the synchronous speed: it drives below that speed, and brakes above.
 
     Parameters
     ----------
     constants
         A row of `MOTOR`.
-    speed
-        omega, rad/s.
+    shaft
+        Its speed counts.
     """
-    breakdown = constants.breakdown_slip
     sense = 1.0 if constants.synchronous_speed > 0.0 else -1.0
-    slip = 1.0 - speed / constants.synchronous_speed
-    square = slip * slip + breakdown * breakdown
-    top = 2.0 * sense * constants.breakdown_torque * breakdown
-    by_slip = top * (breakdown * breakdown - slip * slip) / (square * square)
-    return LoadTorque(top * slip / square, 0.0, -by_slip / constants.synchronous_speed)
+    slip = 1.0 - shaft.speed / constants.synchronous_speed
+    torque, by_slip = kloss_over_slip(sense * constants.breakdown_torque, constants.breakdown_slip, slip)
+    return LoadTorque(torque, 0.0, -by_slip / constants.synchronous_speed, 0.0)
 
 
 class Motor(Load):

@@ -17,12 +17,14 @@ else:
 
 SHAFT_LOAD = record(
     schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`
-    point="i8",  # its first point; the last is that before the first of the next row
+    command="i8",  # number of the profile whose value it gets, or `NO_SCHEDULE`
+    number="i8",  # place of its first number; the last is that before the first of the next row
     harmonic="i8",  # its first harmonic over the shaft angle, alike
+    order="f8",  # the highest order over the shaft angle
     kind="i8",  # place among `KINDS`
     **constants_of(KINDS),
 )
 """A load on a shaft, with the constants of its kind; those of the others are zero."""
 
-torque_of_kind = choice("torque_of_kind", {k: v.torque_at for k, v in KINDS.items()}, ["points", "angle", "speed"])
-kink_of_kind = choice("kink_of_kind", {k: v.next_kink for k, v in KINDS.items()}, ["points", "speed", "rising"])
+torque_of_kind = choice("torque_of_kind", {k: v.torque_at for k, v in KINDS.items()}, ["numbers", "shaft"])
+kink_of_kind = choice("kink_of_kind", {k: v.next_kink for k, v in KINDS.items()}, ["numbers", "shaft", "rising"])

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.parts.quantity import AngularSpeed, QuadraticDamping, Torque, TorsionalDamping
 from beltdyn.records import record
 
@@ -21,20 +21,21 @@ RESISTANCE = record(
 
 
 @kernel
-def resistance(constants: np.record, _points: FloatArray, _angle: float, speed: float) -> LoadTorque:
+def resistance(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
     """Torque -(c tanh(omega / omega_c) + l omega + q omega |omega|).
 
     Parameters
     ----------
     constants
         A row of `RESISTANCE`.
-    speed
-        omega, rad/s.
+    shaft
+        Its speed omega counts.
     """
+    speed = shaft.speed
     rise, size = tanh(speed / constants.creep_speed), abs(speed)
     torque = constants.constant * rise + (constants.linear + constants.quadratic * size) * speed
     dry = constants.constant * (1.0 - rise * rise) / constants.creep_speed
-    return LoadTorque(-torque, 0.0, -(dry + constants.linear + 2.0 * constants.quadratic * size))
+    return LoadTorque(-torque, 0.0, -(dry + constants.linear + 2.0 * constants.quadratic * size), 0.0)
 
 
 class Resistance(Load):

@@ -7,9 +7,9 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
 from beltdyn.machines.loads.registry import KINDS, SHAFT_LOAD, kink_of_kind, torque_of_kind
-from beltdyn.machines.profiles.functions import Profiles, profile_bend, profile_value, schedule_value
+from beltdyn.machines.profiles.functions import Profiles, command_value, profile_bend, profile_value, schedule_value
 from beltdyn.machines.profiles.harmonic import harmonic_factor, harmonic_rows
 from beltdyn.records import Records, fill, offsets, records
 
@@ -21,31 +21,32 @@ class ShaftLoads(NamedTuple):
     """First load of each pulley, shape (P + 1,)."""
     table: Records
     """Rows of `SHAFT_LOAD`, one more than there are loads."""
-    point: FloatArray
-    """Points of all loads, shape (n, 2)."""
+    numbers: FloatArray
+    """Numbers of all loads, shape (n,)."""
     harmonic: Records
     """Rows of `HARMONIC`."""
 
 
-def shaft_loads(loads: Sequence[Sequence[Load]], schedules: Sequence[int]) -> ShaftLoads:
+def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, int]]) -> ShaftLoads:
     """Loads of all pulleys laid end to end.
 
     Parameters
     ----------
     loads
         Those of each pulley.
-    schedules
-        Numbers of the profiles that are their schedules, or `NO_SCHEDULE`.
+    profiles
+        Numbers of the profiles that are the factor and the command of each load, or `NO_SCHEDULE`.
     """
     found = [load for group in loads for load in group]
     first, harmonic = harmonic_rows([load.harmonics for load in found])
-    table = records(SHAFT_LOAD, harmonic=first, point=offsets(len(load.points) for load in found))
+    own = [np.asarray(load.numbers, dtype=float) for load in found]
+    table = records(SHAFT_LOAD, harmonic=first, number=offsets(map(len, own)))
     names = list(KINDS)
-    for row, load, schedule in zip(table[:-1], found, schedules, strict=True):
-        row.kind, row.schedule = names.index(load.kind), schedule
+    for row, load, (factor, command) in zip(table[:-1], found, profiles, strict=True):
+        row.kind, row.schedule, row.command = names.index(load.kind), factor, command
+        row.order = max(load.orders, default=0.0)
         fill(row[load.kind], load.values())
-    point = np.array([point for load in found for point in load.points], dtype=float).reshape(-1, 2)
-    return ShaftLoads(offsets(map(len, loads)), table, point, harmonic)
+    return ShaftLoads(offsets(map(len, loads)), table, np.concatenate([np.zeros(0), *own]), harmonic)
 
 
 @kernel
@@ -54,7 +55,7 @@ def shaft_torque(
 ) -> LoadTorque:
     """Torque on the shaft of a free pulley: its profile over time, and its loads.
 
-    A load is schedule(t) f(theta, omega) (1 + sum a_k cos(k theta + phi_k)), with f of its kind.
+    A load is schedule(t) f(t, theta, omega) (1 + sum a_k cos(k theta + phi_k)), with f of its kind.
 
     Parameters
     ----------
@@ -70,28 +71,31 @@ def shaft_torque(
     total, by_angle, by_speed = profile_value(profiles, pulley, time)[0], 0.0, 0.0
     for number in range(loads.first[pulley], loads.first[pulley + 1]):
         scale = schedule_value(profiles, loads.table[number].schedule, time)
-        load = load_torque(loads, number, angle, speed)
+        load = load_torque(profiles, loads, number, time, angle, speed)
         total += scale * load.torque
         by_angle += scale * load.by_angle
         by_speed += scale * load.by_speed
-    return LoadTorque(total, by_angle, by_speed)
+    return LoadTorque(total, by_angle, by_speed, 0.0)
 
 
 @kernel
-def load_torque(loads: ShaftLoads, number: int, angle: float, speed: float) -> LoadTorque:
+def load_torque(
+    profiles: Profiles, loads: ShaftLoads, number: int, time: float, angle: float, speed: float
+) -> LoadTorque:
     """Torque of a load without its schedule; arguments as for `shaft_torque`."""
     item, following = loads.table[number], loads.table[number + 1]
-    plain = torque_of_kind(item, loads.point[item.point : following.point], angle, speed)
+    shaft = ShaftState(time, angle, speed, command_value(profiles, item.command, time))
+    plain = torque_of_kind(item, loads.numbers[item.number : following.number], shaft)
     factor, change = harmonic_factor(loads.harmonic, item.harmonic, following.harmonic, angle)
     by_angle = plain.by_angle * factor + plain.torque * change
-    return LoadTorque(plain.torque * factor, by_angle, plain.by_speed * factor)
+    return LoadTorque(plain.torque * factor, by_angle, plain.by_speed * factor, plain.by_command * factor)
 
 
 @kernel
 def load_bend(
     profiles: Profiles, loads: ShaftLoads, number: int, time: float, speed: float, rate: float
 ) -> tuple[float, float]:
-    """Where a load bends, with a speed that changes evenly.
+    """Where a load bends, with a speed that changes evenly and what commands it now.
 
     Parameters
     ----------
@@ -110,13 +114,14 @@ def load_bend(
         Next instant of a kink, s, infinite without any; the highest angular frequency of its waves, rad/s.
     """
     item, following = loads.table[number], loads.table[number + 1]
-    kink, frequency = np.inf, 0.0
-    if item.schedule >= 0:
-        kink, frequency = profile_bend(profiles, item.schedule, time)
-    for h in range(item.harmonic, following.harmonic):
-        frequency = max(frequency, loads.harmonic[h].order * abs(speed))
+    kink, frequency = np.inf, item.order * abs(speed)
+    for profile in (item.schedule, item.command):
+        if profile >= 0:
+            at, wave = profile_bend(profiles, profile, time)
+            kink, frequency = min(kink, at), max(frequency, wave)
     if rate != 0.0:
-        ahead = kink_of_kind(item, loads.point[item.point : following.point], speed, rate > 0.0)
+        shaft = ShaftState(time, 0.0, speed, command_value(profiles, item.command, time))
+        ahead = kink_of_kind(item, loads.numbers[item.number : following.number], shaft, rate > 0.0)
         if ahead < np.inf:
             kink = min(kink, time + (ahead - speed) / rate)
     return kink, frequency

@@ -8,7 +8,8 @@ from pydantic import ConfigDict, Field, ValidationInfo, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
+from beltdyn.machines.loads.search import first_above
 from beltdyn.parts.quantity import AngularSpeed, Torque
 from beltdyn.parts.table_file import check_points, describe_file, take_file
 from beltdyn.records import record
@@ -19,59 +20,45 @@ LOAD_TABLE = record(
 
 
 @kernel
-def interpolated(constants: np.record, points: FloatArray, _angle: float, speed: float) -> LoadTorque:
+def interpolated(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
     """Linear between points, constant outside.
 
     Parameters
     ----------
     constants
         A row of `LOAD_TABLE`.
-    points : ndarray, shape (n, 2)
-        Speeds, rad/s, ascending, and torques, N m.
-    speed
-        rad/s.
+    numbers : ndarray, shape (2 n,)
+        Speeds, rad/s, ascending, then torques, N m.
+    shaft
+        Its speed counts.
     """
-    first, last = 0, constants.count - 1
-    if speed <= points[first, 0]:
-        return LoadTorque(points[first, 1], 0.0, 0.0)
-    if speed >= points[last, 0]:
-        return LoadTorque(points[last, 1], 0.0, 0.0)
-    while last - first > 1:
-        middle = (first + last) // 2
-        if points[middle, 0] <= speed:
-            first = middle
-        else:
-            last = middle
-    slope = (points[last, 1] - points[first, 1]) / (points[last, 0] - points[first, 0])
-    return LoadTorque(points[first, 1] + slope * (speed - points[first, 0]), 0.0, slope)
+    count, speed = constants.count, shaft.speed
+    above = first_above(numbers, 0, count, speed)
+    if above == 0 or above == count:
+        return LoadTorque(numbers[count if above == 0 else 2 * count - 1], 0.0, 0.0, 0.0)
+    below = above - 1
+    slope = (numbers[count + above] - numbers[count + below]) / (numbers[above] - numbers[below])
+    return LoadTorque(numbers[count + below] + slope * (speed - numbers[below]), 0.0, slope, 0.0)
 
 
 @kernel
-def next_point(constants: np.record, points: FloatArray, speed: float, rising: bool) -> float:
+def next_point(constants: np.record, numbers: FloatArray, shaft: ShaftState, rising: bool) -> float:
     """Speed of the nearest point above a speed, or below it if the speed falls, rad/s; infinite without any.
 
     Parameters
     ----------
-    constants, points
+    constants, numbers, shaft
         As for `interpolated`.
-    speed
-        rad/s.
     rising
         Whether the speed rises.
     """
-    above, end = 0, constants.count
-    while above < end:  # the first point above the speed
-        middle = (above + end) // 2
-        if points[middle, 0] > speed:
-            end = middle
-        else:
-            above = middle + 1
+    above = first_above(numbers, 0, constants.count, shaft.speed)
     if rising:
-        return points[above, 0] if above < constants.count else np.inf
+        return numbers[above] if above < constants.count else np.inf
     below = above - 1
-    if below >= 0 and points[below, 0] >= speed:
+    if below >= 0 and numbers[below] >= shaft.speed:
         below -= 1
-    return points[below, 0] if below >= 0 else np.inf
+    return numbers[below] if below >= 0 else np.inf
 
 
 class LoadTable(Load):
@@ -86,7 +73,7 @@ class LoadTable(Load):
     next_kink = next_point
 
     model_config = ConfigDict(
-        json_schema_extra=lambda schema: describe_file(schema, "speeds", "torques", "speed in rad/s and torque in N*m")
+        json_schema_extra=lambda schema: describe_file(schema, ("speeds", "torques"), "two columns, speeds and torques")
     )
 
     kind: Literal["table"] = Field(description="the kind of load")
@@ -108,6 +95,6 @@ class LoadTable(Load):
         return {"count": len(self.speeds)}
 
     @property
-    def points(self) -> Sequence[tuple[float, float]]:
-        """Speeds, rad/s, and torques, N m."""
-        return tuple(zip(self.speeds, self.torques, strict=True))
+    def numbers(self) -> Sequence[float]:
+        """Speeds, rad/s, then torques, N m."""
+        return (*self.speeds, *self.torques)

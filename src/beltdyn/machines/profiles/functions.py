@@ -97,6 +97,12 @@ def schedule_value(profiles: Profiles, number: int, time: float) -> float:
     return profile_value(profiles, number, time)[0] if number >= 0 else 1.0
 
 
+@kernel(inline=True)
+def command_value(profiles: Profiles, number: int, time: float) -> float:
+    """Value of a command at an instant (s), or 0 for `NO_SCHEDULE`."""
+    return profile_value(profiles, number, time)[0] if number >= 0 else 0.0
+
+
 @kernel
 def after_jump(time: float) -> float:
     """The next number after an instant (s): there a profile that jumps at the instant has jumped."""

@@ -70,15 +70,17 @@ class Profile(Part, Generic[Value]):
         since = np.where(k == 0, 0.0, t - segments.start[k])
         return np.asarray(interpreted(segment_value)(segments[k], since, t))
 
-    def largest(self, duration: float) -> float:
+    def largest(self, duration: float = np.inf) -> float:
         """Largest absolute value from time zero to a time, s.
 
-        It is at an end, or at the start of a piece, before or after a jump: within a piece all kinds are monotonic.
+        It is at an end, or at the start of a piece, before or after a jump: within a piece all kinds are monotonic,
+        and the last piece is constant.
         """
         starts = self.segments().start
-        ends = np.concatenate([[0.0, duration], starts[(starts > 0.0) & (starts < duration)]])
+        end = min(duration, max(2.0 * starts[-1], 1.0))
+        ends = np.concatenate([[0.0, end], starts[(starts > 0.0) & (starts < end)]])
         after = np.nextafter(ends, np.inf)
-        return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= duration]])))))
+        return float(np.max(np.abs(self.at(np.concatenate([ends, after[after <= end]])))))
 
 
 @kernel(inline=True)

@@ -7,7 +7,7 @@ from pydantic import Field
 from beltdyn.machines.family import any_of, kinds_in
 from beltdyn.machines.profiles import kinds
 from beltdyn.machines.profiles.profile import Profile
-from beltdyn.parts.quantity import AngularSpeed, Torque, quantity
+from beltdyn.parts.quantity import AngularSpeed, Force, Frequency, Power, Pressure, Torque, quantity
 
 Factor = Annotated[float, quantity(""), Field(ge=0, le=1)]
 
@@ -15,8 +15,23 @@ if TYPE_CHECKING:
     Schedule = Profile[float]
     SpeedProfile = Profile[float]
     TorqueProfile = Profile[float]
+    FrequencyProfile = Profile[float]
+    BrakingProfile = Profile[float]
+    ForceProfile = Profile[float]
+    PowerProfile = Profile[float]
+    PressureProfile = Profile[float]
 else:
     KINDS = kinds_in(kinds)
+
+    def _of(value):
+        """Type of a field that takes a profile of a quantity."""
+        return any_of({name: kind[value] for name, kind in KINDS.items()})
+
     Schedule = any_of({name: kind[Factor] for name, kind in KINDS.items() if kind.multiplies})
-    SpeedProfile = any_of({name: kind[AngularSpeed] for name, kind in KINDS.items()})
-    TorqueProfile = any_of({name: kind[Torque] for name, kind in KINDS.items()})
+    SpeedProfile = _of(AngularSpeed)
+    TorqueProfile = _of(Torque)
+    FrequencyProfile = _of(Frequency)
+    BrakingProfile = _of(Annotated[Torque, Field(ge=0)])
+    ForceProfile = _of(Annotated[Force, Field(ge=0)])
+    PowerProfile = _of(Annotated[Power, Field(ge=0)])
+    PressureProfile = _of(Annotated[Pressure, Field(ge=0)])

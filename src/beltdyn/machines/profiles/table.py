@@ -19,7 +19,7 @@ class Table(Profile[Value], Generic[Value]):
     """
 
     model_config = ConfigDict(
-        json_schema_extra=lambda schema: describe_file(schema, "times", "values", "time in s and value in SI units")
+        json_schema_extra=lambda schema: describe_file(schema, ("times", "values"), "two columns, times and values")
     )
 
     kind: Literal["table"] = Field("table", description="the kind of profile")

@@ -66,4 +66,4 @@ def test_a_motor_drives_up_to_its_synchronous_speed_and_a_resistance_drives_noth
 
 def test_the_least_table_is_a_line() -> None:
     table = LoadTable(kind="table", speeds=(0.0, 10.0), torques=(1.0, -1.0))
-    assert table.points == ((0.0, 1.0), (10.0, -1.0))
+    assert table.numbers == (0.0, 10.0, 1.0, -1.0)

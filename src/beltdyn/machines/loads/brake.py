@@ -1,0 +1,105 @@
+"""Brakes: the torque of their clamping, which may differ in both senses, against the motion, smoothed at standstill.
+
+M = -M_+ tanh(omega / omega_c) for omega > 0, -M_- tanh(omega / omega_c) else.  Of a band that a force F pulls, wrapped
+by phi (Euler-Eytelwein), M is F r (exp(mu phi) - 1) where the drum turns away from the force, F r (1 - exp(-mu phi))
+else.
+"""
+
+from collections.abc import Mapping
+from math import expm1, tanh
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.registry import BrakingProfile, ForceProfile
+from beltdyn.parts.quantity import Angle, AngularSpeed, Length, Ratio
+from beltdyn.records import record
+
+BRAKE = record(
+    forward="f8",  # torque over the command against a counter-clockwise motion, N m over the unit of the command
+    backward="f8",  # the same against a clockwise motion
+    creep_speed="f8",  # omega_c, rad/s
+)
+
+
+@kernel
+def braking_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
+    """Torque against the motion.
+
+    Parameters
+    ----------
+    constants
+        A row of `BRAKE`.
+    shaft
+        Its speed counts, and its command, what clamps the brake.
+    """
+    rise = tanh(shaft.speed / constants.creep_speed)
+    arm = constants.forward if shaft.speed > 0.0 else constants.backward
+    by_speed = -arm * shaft.command * (1.0 - rise * rise) / constants.creep_speed
+    return LoadTorque(-arm * shaft.command * rise, 0.0, by_speed, -arm * rise)
+
+
+@kernel
+def standstill(constants: np.record, _numbers: FloatArray, shaft: ShaftState, rising: bool) -> float:
+    """Zero ahead, where the slope of a brake changes that differs in both senses; infinite behind."""
+    ahead = (shaft.speed < 0.0) == rising and shaft.speed != 0.0
+    return 0.0 if ahead and constants.forward != constants.backward else np.inf
+
+
+class Brake(Load):
+    """A brake with disc, shoes or plates, clamped over time: its torque opposes any motion."""
+
+    constants = BRAKE
+    torque_at = braking_torque
+    next_kink = standstill
+
+    kind: Literal["brake"] = Field(description="the kind of load")
+    torque: BrakingProfile = Field(description="the torque of the sliding brake over time, in N*m")
+    backward_ratio: Ratio = Field(
+        1.0, ge=0, description="the torque against a clockwise motion, over that against a counter-clockwise one"
+    )
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque has reached 76 %, in rad/s")
+
+    def values(self) -> Mapping[str, Any]:
+        """Torques over the command, and the creep speed."""
+        return {"forward": 1.0, "backward": self.backward_ratio, "creep_speed": self.creep_speed}
+
+    @property
+    def command(self) -> Profile:
+        """The torque over time."""
+        return self.torque
+
+
+class BandBrake(Load):
+    """A brake with a band around a drum on the shaft, one end of it fixed, the other pulled over time."""
+
+    constants = BRAKE
+    torque_at = braking_torque
+    next_kink = standstill
+
+    kind: Literal["band_brake"] = Field(description="the kind of load")
+    force: ForceProfile = Field(description="the force on the pulled end over time, in N")
+    radius: Length = Field(gt=0, description="the radius of the drum, in m")
+    friction: Ratio = Field(gt=0, description="the coefficient of friction between band and drum")
+    wrap: Angle = Field(gt=0, description="the angle of wrap, in rad")
+    self_energising: Literal["counter-clockwise", "clockwise"] = Field(
+        "counter-clockwise", description="the sense of turning away from the pulled end, in which the brake is strong"
+    )
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque has reached 76 %, in rad/s")
+
+    def values(self) -> Mapping[str, Any]:
+        """Torques over the force, and the creep speed."""
+        strong = self.radius * expm1(self.friction * self.wrap)
+        weak = -self.radius * expm1(-self.friction * self.wrap)
+        forward, backward = (strong, weak) if self.self_energising == "counter-clockwise" else (weak, strong)
+        return {"forward": forward, "backward": backward, "creep_speed": self.creep_speed}
+
+    @property
+    def command(self) -> Profile:
+        """The force over time."""
+        return self.force

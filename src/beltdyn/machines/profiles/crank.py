@@ -1,0 +1,103 @@
+"""Harmonics of a speed that was measured over the angle of a crank.
+
+With the measured speed w(theta) and its mean over time m, the angle of the mean speed is u = m t, dt = dtheta / w, and
+the harmonics are those of w(theta(u)) / m over u.
+"""
+
+from collections.abc import Mapping
+from math import tau
+from typing import Annotated, Any, Self
+
+import numpy as np
+from pydantic import BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
+
+from beltdyn.arrays import FloatArray
+from beltdyn.machines.profiles.harmonic import Harmonic
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Angle, AngularSpeed
+from beltdyn.parts.table_file import check_points, describe_file, take_file
+
+_FINE = 16
+"""Places in the mean distance between measured points at which the speed is integrated."""
+_LEAST = 1e-3
+"""Harmonics below this part of the largest are noise."""
+
+
+class CrankSpeed(Part):
+    """A speed over the angle of a crank, periodic, as it was measured: only its ratio to the mean counts.
+
+    The points are `angles` and `speeds`, or the two columns of the CSV file `file`.
+    """
+
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: describe_file(schema, ("angles", "speeds"), "two columns, angles and speeds")
+    )
+
+    angles: tuple[Angle, ...] = Field(min_length=4, description="the angles of the points, in rad, within one cycle")
+    speeds: tuple[AngularSpeed, ...] = Field(min_length=4, description="the speeds at these angles, in rad/s")
+    cycle: Angle = Field(
+        tau, gt=0, description="the angle after which the speed repeats itself, in rad; 4 pi of a four-stroke engine"
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
+        return take_file(data, info, "angles", "speeds")
+
+    @model_validator(mode="after")
+    def _turns_one_way(self) -> Self:
+        check_points("angles", self.angles, "speeds", self.speeds)
+        if min(self.speeds) * max(self.speeds) <= 0.0:
+            raise ValueError(
+                f"speeds go from {min(self.speeds):g} to {max(self.speeds):g} rad/s: a crank that stands still or "
+                "turns back has no speed over its angle. Give the speed over time, as a profile"
+            )
+        whole = self.angles[-1] - self.angles[0]
+        if whole >= self.cycle * (1.0 + _SAME):
+            raise ValueError(f"angles span {whole:g} rad, more than cycle = {self.cycle:g} rad. Give one cycle")
+        return self
+
+    def harmonics(self) -> tuple[Harmonic, ...]:
+        """Harmonics over the angle of the mean speed, from the longest wave on, down to a thousandth of the largest."""
+        ratio = self._over_mean_angle()
+        spectrum = 2.0 * np.fft.rfft(ratio)[1 : (ratio.size + 1) // 2] / ratio.size
+        amplitudes, phases = np.abs(spectrum), np.angle(spectrum)
+        return tuple(
+            Harmonic(order=number * tau / self.cycle, amplitude=float(amplitude), phase=float(phase))
+            for number, (amplitude, phase) in enumerate(zip(amplitudes, phases, strict=True), 1)
+            if amplitude > max(_LEAST * amplitudes.max(), _NOISE)
+        )
+
+    def _over_mean_angle(self) -> FloatArray:
+        """Speed over its mean at equal steps of the angle of the mean speed, as many as there are points."""
+        from scipy.interpolate import CubicSpline  # takes 0.3 s, and most drives have no such table
+
+        angles, speeds = np.array(self.angles), np.array(self.speeds)
+        if angles[-1] - angles[0] > self.cycle * (1.0 - _SAME):
+            angles, speeds = angles[:-1], speeds[:-1]
+        closed = CubicSpline(
+            np.append(angles, angles[0] + self.cycle), np.append(speeds, speeds[0]), bc_type="periodic"
+        )
+        fine = np.linspace(0.0, self.cycle, _FINE * angles.size + 1)
+        time = CubicSpline(fine, 1.0 / closed(fine), bc_type="periodic").antiderivative()(fine)
+        equal = np.linspace(0.0, time[-1], angles.size, endpoint=False)
+        return np.asarray(closed(CubicSpline(time, fine)(equal)) * time[-1] / self.cycle)
+
+
+_SAME = 1e-6
+"""What differs by this part or less is the same."""
+_NOISE = 1e-9
+"""Rounding."""
+
+
+def _measured(value: Any, info: ValidationInfo) -> Any:
+    """Harmonics of a measured speed; what is no such table as it is."""
+    if not isinstance(value, Mapping | CrankSpeed):
+        return value
+    return CrankSpeed.model_validate(value, context=info.context).harmonics()
+
+
+SpeedHarmonics = Annotated[
+    tuple[Harmonic, ...], BeforeValidator(_measured, json_schema_input_type=tuple[Harmonic, ...] | CrankSpeed)
+]
+"""Harmonics of a speed, or the table of a measured one."""
