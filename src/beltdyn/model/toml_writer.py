@@ -2,6 +2,8 @@
 
 import tomli_w
 
+from beltdyn.errors import ModelError
+from beltdyn.machines import FunctionLoad
 from beltdyn.model.drive import Drive
 
 
@@ -18,9 +20,20 @@ def dumps(drive: Drive) -> str:
     str
         A text from which `loads` makes the same drive.
 
+    Raises
+    ------
+    ModelError
+        If a load is a function of Python.
+
     Examples
     --------
     >>> bd.loads(bd.dumps(drive)) == drive
     True
     """
+    for pulley in drive.pulleys:
+        if any(isinstance(load, FunctionLoad) for load in pulley.load):
+            raise ModelError(
+                f'pulley "{pulley.name}" has a load of kind "function": a drive file cannot hold a function of Python. '
+                "Give the load as a table, or keep the drive in a script"
+            )
     return tomli_w.dumps(drive.data, multiline_strings=False)

@@ -5,6 +5,7 @@ from beltdyn.machines.loads.angle_table import AngleTable as AngleTable
 from beltdyn.machines.loads.brake import BandBrake as BandBrake
 from beltdyn.machines.loads.brake import Brake as Brake
 from beltdyn.machines.loads.fan import Fan as Fan
+from beltdyn.machines.loads.function import FunctionLoad as FunctionLoad
 from beltdyn.machines.loads.generator import Generator as Generator
 from beltdyn.machines.loads.induction_motor import InductionMotor as InductionMotor
 from beltdyn.machines.loads.motor import Motor as Motor

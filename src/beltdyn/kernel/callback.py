@@ -1,0 +1,113 @@
+"""Functions of a user, called by kernels through their addresses, which kernels take as numbers."""
+
+import ctypes
+import time
+import warnings
+from collections.abc import Callable
+from functools import cache, cached_property
+from typing import Any
+
+_C_FUNCTION = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_double)
+_TRIALS = 200
+_kept: list[Any] = []
+"""Machine code stays where it is as long as the process runs."""
+
+
+class SlowFunctionWarning(UserWarning):
+    """A function that Numba does not compile."""
+
+
+@cache
+def address_of(function: Callable[[float, float, float], float]) -> int:
+    """Make a function of three numbers callable for kernels.
+
+    Parameters
+    ----------
+    function
+        Takes three numbers and returns one.  Numba compiles it; where it cannot, Python runs it, and a warning says
+        what that costs.
+
+    Returns
+    -------
+    int
+        The address of its machine code.
+    """
+    from numba import cfunc
+
+    try:
+        compiled = cfunc("float64(float64, float64, float64)", error_model="numpy")(function)
+    except Exception as error:  # what Numba does not compile makes it raise many types
+        return _address_of_python(function, _reason(error))
+    _kept.append(compiled)
+    return int(compiled.address)
+
+
+def _address_of_python(function: Callable[[float, float, float], float], reason: str) -> int:
+    """Address of code by which Python runs a function."""
+
+    def run(first: float, second: float, third: float) -> float:
+        try:
+            return float(function(first, second, third))
+        except Exception as error:  # it cannot pass through machine code: the solver stops at what is no number
+            warnings.warn(f"{_name(function)} failed: {error!r}", RuntimeWarning, stacklevel=2)
+            return float("nan")
+
+    callback = _C_FUNCTION(run)
+    begin = time.perf_counter()
+    for _ in range(_TRIALS):
+        callback(0.0, 0.0, 0.0)
+    cost = (time.perf_counter() - begin) / _TRIALS
+    warnings.warn(
+        f"{_name(function)} is run by Python, {1e6 * cost:.2g} microseconds a call and some calls a time step, as "
+        f"Numba does not compile it ({reason}). Use numbers and functions of math only to make it fast.",
+        SlowFunctionWarning,
+        stacklevel=4,
+    )
+    _kept.append(callback)
+    return int(ctypes.cast(callback, ctypes.c_void_p).value or 0)
+
+
+def _reason(error: Exception) -> str:
+    """The line of Numba's message that says what is wrong: the first one names a step of the compiler."""
+    lines = [line for line in str(error).splitlines() if line.strip()]
+    return lines[min(1, len(lines) - 1)].strip() if lines else type(error).__name__
+
+
+def _name(function: Callable[..., Any]) -> str:
+    return f'the function "{getattr(function, "__name__", function)}"'
+
+
+class CallAt:
+    """What kernels and Python call with an address and three numbers."""
+
+    def __call__(self, address: int, first: float, second: float, third: float) -> float:
+        """Call the function at an address."""
+        return float(_C_FUNCTION(int(address))(first, second, third))
+
+    @property
+    def _numba_type_(self) -> Any:
+        """Type by which kernels know it."""
+        return self._type
+
+    @cached_property
+    def _type(self) -> Any:
+        from llvmlite import ir
+        from numba import types
+        from numba.core.registry import cpu_target
+        from numba.extending import intrinsic
+
+        def call(_context: Any, address: Any, first: Any, second: Any, third: Any) -> Any:
+            def generate(_target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+                number = ir.DoubleType()
+                pointer = ir.FunctionType(number, [number] * 3).as_pointer()
+                return builder.call(builder.inttoptr(arguments[0], pointer), arguments[1:])
+
+            return types.float64(types.int64, types.float64, types.float64, types.float64), generate
+
+        known = intrinsic(call)
+        cpu_target.typing_context.refresh()
+        return cpu_target.typing_context.resolve_value_type(known)
+
+
+call_at = CallAt()
+"""The value of a function at an address, from `address_of`, for three numbers."""

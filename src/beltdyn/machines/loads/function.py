@@ -1,0 +1,129 @@
+"""A torque of time, angle and speed by a function of Python; its derivatives by it too, or by central differences."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field, field_serializer, field_validator
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.kernel import kernel
+from beltdyn.kernel.callback import address_of, call_at
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
+from beltdyn.parts.quantity import AngularSpeed, Ratio
+from beltdyn.records import record
+
+FUNCTION = record(
+    torque="i8",  # address of the torque
+    by_angle="i8",  # of its derivatives, zero without
+    by_speed="i8",
+)
+
+_STEP = 1e-5
+"""Half the distance of differences, rad, and rad/s or the part of a speed above 1 rad/s: a third of the digits."""
+
+
+@kernel
+def torque_of_function(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
+    """Torque of a function of time, angle and speed.
+
+    Parameters
+    ----------
+    constants
+        A row of `FUNCTION`.
+    shaft
+        Its time, angle and speed count.
+    """
+    time, angle, speed = shaft.time, shaft.angle, shaft.speed
+    torque = call_at(constants.torque, time, angle, speed)
+    if constants.by_angle != 0:
+        by_angle = call_at(constants.by_angle, time, angle, speed)
+        return LoadTorque(torque, by_angle, call_at(constants.by_speed, time, angle, speed), 0.0)
+    rise = _STEP * max(1.0, abs(speed))
+    more, less = (
+        call_at(constants.torque, time, angle + _STEP, speed),
+        call_at(constants.torque, time, angle - _STEP, speed),
+    )
+    faster, slower = (
+        call_at(constants.torque, time, angle, speed + rise),
+        call_at(constants.torque, time, angle, speed - rise),
+    )
+    return LoadTorque(torque, (more - less) / (2.0 * _STEP), (faster - slower) / (2.0 * rise), 0.0)
+
+
+class FunctionLoad(Load):
+    """A torque of time (s), angle (rad) and speed (rad/s) of the shaft, by a function of Python; not in drive files.
+
+    Numba compiles functions of numbers and `math`. Others are run by Python, and a warning says what that costs.
+
+    Examples
+    --------
+    >>> fan = bd.FunctionLoad(function=lambda time, angle, speed: -2e-3 * speed * abs(speed))
+    >>> drive = drive.replace(pulley=[driver, driven.replace(load=[fan])])
+    """
+
+    constants = FUNCTION
+    torque_at = torque_of_function
+
+    kind: Literal["function"] = Field("function", description="the kind of load")
+    function: Any = Field(description="the torque, in N*m, as a function of time, angle and speed")
+    derivatives: Any = Field(
+        None,
+        description="two functions of the same arguments, the derivatives of the torque with respect to angle and "
+        "speed; by default these are differences",
+    )
+    highest_order: Ratio = Field(
+        0.0, ge=0, description="the highest order over the angle that it contains, which time steps then resolve"
+    )
+    drives_to: AngularSpeed = Field(
+        0.0, description="the speed up to which it drives the shaft, in rad/s; 0 of what takes power"
+    )
+
+    @field_validator("function")
+    @classmethod
+    def _is_a_function(cls, value: Any) -> Any:
+        """A function, or the name of one, as a result file keeps it."""
+        if not callable(value) and not isinstance(value, str):
+            raise ValueError(f"must be a function of time, angle and speed, not {value!r}")
+        return value
+
+    @field_validator("derivatives")
+    @classmethod
+    def _are_two_functions(cls, value: Any) -> Any:
+        two = isinstance(value, Sequence) and len(value) == 2
+        if value is not None and not (two and all(callable(one) or isinstance(one, str) for one in value)):
+            raise ValueError(f"must be two functions, the derivatives by angle and by speed, not {value!r}")
+        return value
+
+    @field_serializer("function", "derivatives", when_used="json")
+    def _name(self, value: Any) -> Any:
+        if isinstance(value, Sequence) and not isinstance(value, str):
+            return [self._name(one) for one in value]
+        return getattr(value, "__name__", value)
+
+    @property
+    def only_named(self) -> bool:
+        """Whether it comes from a file, which keeps no more than the name of the function."""
+        return isinstance(self.function, str)
+
+    def values(self) -> Mapping[str, Any]:
+        """Addresses of the functions."""
+        if self.only_named:
+            raise ModelError(
+                f'the function "{self.function}" of a load is not in the file, which has its name alone. In Python, '
+                "replace the load by FunctionLoad(function=...)"
+            )
+        functions: list[Callable[[float, float, float], float]] = [self.function, *(self.derivatives or ())]
+        addresses = [address_of(one) for one in functions]
+        return dict(zip(self.constants.names or (), addresses, strict=False))
+
+    @property
+    def orders(self) -> Sequence[float]:
+        """Those of its harmonics, and the highest that is given."""
+        return [*super().orders, *([self.highest_order] if self.highest_order else [])]
+
+    @property
+    def driven_speed(self) -> float:
+        """The speed up to which it drives, rad/s."""
+        return self.drives_to
