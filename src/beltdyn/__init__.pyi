@@ -85,6 +85,7 @@ from .solve import (
     find_equilibrium,
     simulate,
     simulate_all,
+    steady_state,
     sweep,
 )
 
@@ -172,6 +173,7 @@ __all__ = [
     "results",
     "simulate",
     "simulate_all",
+    "steady_state",
     "summarize",
     "sweep",
     "tensioner_balances",

@@ -96,6 +96,7 @@ _ALL = (
     Analysis(RUN, "beltdyn.solve.simulate:simulate", "Simulate drives over time."),
     Analysis("sweep", "beltdyn.solve.sweep:sweep", "Run a drive up through a range of speeds."),
     Analysis(STATIC, "beltdyn.solve.equilibrium:equilibrium", "Find the static equilibrium of a drive at rest."),
+    Analysis("steady", "beltdyn.solve.steady:steady_state", "Find the steady running of a drive."),
     # one line for each
 )
 

@@ -127,6 +127,10 @@ class Path:
         pieces = np.stack([self.span_lengths, np.roll(arcs, -1)], axis=1)[self.order].ravel()
         return np.concatenate([[0.0], np.cumsum(pieces)])
 
+    def span_start(self, span: int) -> float:
+        """Arc length at which a span begins, m."""
+        return float(self._starts[2 * int(np.flatnonzero(self.order == span)[0])])
+
     def position(self, s: ArrayLike) -> FloatArray:
         """Points on the path.
 

@@ -10,6 +10,9 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, layer_lengths, mesh_errors
 from beltdyn.results.recorded import Recorded
 
+MESH_ERROR = "mesh_error_"
+"""Begins the names of attributes of results that tell errors which an analysis has found."""
+
 _WINDOW = 0.2
 _MOVING = frozenset({"slip", "losses"})
 """What a belt at rest has none of."""
@@ -58,9 +61,19 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
     Resolution
         Validated against converged meshes in the documentation.
     """
+    found = found_errors(recorded)
+    if found:
+        return Resolution(found, {}, layer_lengths(drive, float(np.mean(_last(recorded, "span_tension", "time")))))
     speeds = _last(recorded, "belt_speed", "time")
     square = float(np.mean(speeds[np.isfinite(speeds)] ** 2)) if np.any(np.isfinite(speeds)) else 0.0
     return mesh_resolution(drive, float(np.mean(_last(recorded, "belt_tension", "field_time"))), square)
+
+
+def found_errors(recorded: Recorded) -> dict[str, float]:
+    """Errors that an analysis has found by a finer mesh; empty without them."""
+    marked = {name: MESH_ERROR + name.replace(" ", "_") for name in ERROR_LIMITS}
+    known = {name: float(recorded.attrs[mark]) for name, mark in marked.items() if mark in recorded.attrs}
+    return dict.fromkeys(ERROR_LIMITS, math.nan) | known if known else {}
 
 
 def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:

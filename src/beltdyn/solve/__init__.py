@@ -1,4 +1,4 @@
-"""Analyses: a simulation over time, of one drive or many, a run-up, and static equilibrium; and their solvers."""
+"""Analyses: a simulation over time, of one drive or many, a run-up, steady running, and rest; and their solvers."""
 
 from beltdyn.solve.batch import simulate_all
 from beltdyn.solve.equilibrium import equilibrium
@@ -8,6 +8,7 @@ from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import simulate
 from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.static import Equilibrium, find_equilibrium
+from beltdyn.solve.steady import steady_state
 from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 from beltdyn.solve.sweep import sweep
 from beltdyn.solve.worker import Ending
@@ -29,5 +30,6 @@ __all__ = [
     "find_equilibrium",
     "simulate",
     "simulate_all",
+    "steady_state",
     "sweep",
 ]

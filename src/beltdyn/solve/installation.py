@@ -4,7 +4,8 @@ The tension at rest is the mean of the span tensions in static equilibrium, on t
 bending, weight and spring-loaded tensioners, without friction.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -66,6 +67,21 @@ class Rest(NamedTuple):
         return describe(drive, seen.span_tension[0], depths, seen.hub_force[0], positions)
 
 
+class Tightened(Protocol):
+    """A drive at rest, of whatever mesh."""
+
+    @property
+    def drive(self) -> Drive:
+        """The drive."""
+
+    @property
+    def tension(self) -> float:
+        """Mean of the span tensions, N."""
+
+
+At = TypeVar("At", bound=Tightened)
+
+
 def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     """Find the static equilibrium of a drive, with the installed tension that was asked for if one was.
 
@@ -96,7 +112,7 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     _tell(drive, progress, "equilibrium")
     rest = _at_rest(drive)
     if drive.belt.installed_tension is not None:
-        rest = _tighten(rest, drive.belt.installed_tension)
+        rest = tighten(rest, drive.belt.installed_tension, _at_rest)
     return rest._replace(unstable=_unstable(rest))
 
 
@@ -116,8 +132,23 @@ def _unstable(rest: Rest) -> tuple[str, ...]:
     return tuple(rest.drive.pulleys[rest.system.tensioners.pulley[number]].name for number in sorted(set(most)))
 
 
-def _tighten(first: Rest, wanted: float) -> Rest:
-    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted."""
+def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
+    """Shorten the belt, or move its fixed tensioner, until the mean tension at rest is the one that is wanted.
+
+    Parameters
+    ----------
+    first
+        The drive at rest with the length that is estimated.
+    wanted
+        N.
+    at_rest
+        Brings a drive to rest.
+
+    Raises
+    ------
+    ConvergenceError
+        If the tension is not reached.
+    """
     length = first.drive.belt_length
     rest, done = first, 0.0
     slope = first.drive.belt.axial_stiffness / length
@@ -126,7 +157,7 @@ def _tighten(first: Rest, wanted: float) -> Rest:
         if abs(missing) <= _ACCURACY * wanted:
             return rest
         change = float(np.clip(missing / slope, -_LONGEST_CHANGE * length, _LONGEST_CHANGE * length))
-        ahead, change = _shortened(first.drive, done, change)
+        ahead, change = _shortened(first.drive, done, change, at_rest)
         gained = ahead.tension - rest.tension
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
     raise _out_of_reach(
@@ -136,11 +167,11 @@ def _tighten(first: Rest, wanted: float) -> Rest:
     )
 
 
-def _shortened(drive: Drive, done: float, change: float) -> tuple[Rest, float]:
+def _shortened(drive: Drive, done: float, change: float, at_rest: Callable[[Drive], At]) -> tuple[At, float]:
     """Shorten a belt some more, or by a part of it where all of it leads to no equilibrium; with what was done, m."""
     while True:
         try:
-            return _at_rest(drive.tightened(done + change)), change
+            return at_rest(drive.tightened(done + change)), change
         except (ConvergenceError, ModelError) as error:
             change *= 0.5
             if abs(change) < _LEAST_CHANGE * drive.belt_length:
@@ -168,7 +199,7 @@ def _at_rest(drive: Drive) -> Rest:
                 normal = system.law.normal
                 law = system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness))
                 state = find_equilibrium(system._replace(law=law), state).state
-            return _looked_at(drive, system, state)
+            return looked_at(drive, system, state)
         except ConvergenceError as error:
             failures.append(error)
     raise ConvergenceError(f"{failures[0]}{_cause(drive, installation)}")
@@ -186,7 +217,7 @@ def _lying(drive: Drive, system: System, installation: Installation, factor: flo
     return laid(system, drawn_in, installation.tensioner_positions)
 
 
-def _looked_at(drive: Drive, system: System, state: State) -> Rest:
+def looked_at(drive: Drive, system: System, state: State) -> Rest:
     """An equilibrium in which the belt touches every pulley.
 
     Raises

@@ -168,6 +168,10 @@ class Recording:
             pace = self._pace.at(elapsed, reached)
             self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound, pace))
 
+    def note(self, **facts: float | str) -> None:
+        """Add global attributes to the dataset."""
+        self._findings |= facts
+
     def check(self) -> None:
         """Look, when all is done, whether the belt may have fluttered."""
         self._write()

@@ -5,7 +5,7 @@ import numpy as np
 from beltdyn.model import Drive
 from beltdyn.results import Layout
 from beltdyn.system.arrays import System
-from beltdyn.system.discretization import curve_lengths, point_coordinates
+from beltdyn.system.discretization import curve_lengths, element_kind, point_coordinates
 
 
 def result_layout(drive: Drive, system: System) -> Layout:
@@ -31,6 +31,6 @@ def result_layout(drive: Drive, system: System) -> Layout:
         node_coordinate=point_coordinates(system),
         element_coordinate=starts + 0.5 * lengths,
         belt_coordinate=(starts[:, None] + lengths[:, None] * system.contact.points).ravel(),
-        coordinate_names=drive.belt.element_kind.coordinates,
+        coordinate_names=element_kind(system).coordinates,
         tensioners=tuple(names[pulley] for pulley in system.tensioners.pulley),
     )

@@ -7,7 +7,7 @@ node with the next one only, and the centreline of an element is made of one or 
 does not ask how a belt is discretised.
 """
 
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -92,6 +92,8 @@ class System(NamedTuple):
     tensioners: Records
     """Rows of `TENSIONER`, shape (K,)."""
     supports: Supports
+    frame: Any
+    """How the mesh stands to the belt: `frame.Travelling` or `frame.Staying`."""
 
 
 class Motion(NamedTuple):

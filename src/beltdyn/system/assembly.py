@@ -15,7 +15,7 @@ from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import BodyForces, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces, differentiates_forces
-from beltdyn.system.element_state import add_material_damping, centreline, gather
+from beltdyn.system.element_state import add_material_damping, centreline, gather, gather_motion
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import clear
@@ -52,15 +52,14 @@ def assemble(
     clear(matrix, wanted)
     clear_body_forces(forces)
     for element in range(system.length.size):
-        gather(system, element, motion.position, work.coordinates[0])
-        gather(system, element, motion.velocity, work.coordinates[1])
+        gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         gather(system, element, motion.acceleration, work.coordinates[2])
         _elastic_and_inertia(system, element, factors, wanted, work)
         add_material_damping(system, element, factors, work, forces)
         for curve in range(system.control.shape[1]):
             piece = centreline(system, element, curve, work)
             _contact(system, motion, factors, element, piece, equations)
-        _scatter(system, element, wanted, work, matrix)
+        scatter(system, element, wanted, work, matrix)
     add_machines(system, motion, factors, matrix.corner, forces)
     _bodies(system, motion.acceleration, factors.by_acceleration, matrix, forces)
     if system.joint:
@@ -114,18 +113,18 @@ def _contact(
             )
             if last == 0:
                 keep_drift(system, center, work.contact, work.drift)
-        _take_contact(system, wanted, work)
+        take_contact(system, wanted, work)
         add_contact(equations.forces, p, totals)
         if center.rim >= 0 and wanted:
             matrix.corner[center.rim, center.rim] -= work.contact.moment_by_turn
-            _couple(system, element, center.rim, work.contact, matrix)
+            couple_rim(system, element, center.rim, work.contact, matrix)
         if center.unknown >= 0 and wanted:
             factor = factors.by_position if drifting else 0.0
             couple_center(system, element, center, factor, work.contact, work.drift, matrix)
 
 
 @kernel(inline=True)
-def _take_contact(system: System, wanted: bool, work: np.record) -> None:
+def take_contact(system: System, wanted: bool, work: np.record) -> None:
     """Take contact force and tangent off the residual and tangent of the element."""
     contact, gradient, tangent = work.contact, work.element.gradient, work.element.tangent
     for a in range(len(system.vectors)):
@@ -143,7 +142,7 @@ def _take_contact(system: System, wanted: bool, work: np.record) -> None:
 
 
 @kernel(inline=True)
-def _couple(system: System, element: int, unknown: int, contact: np.record, matrix: RingMatrix) -> None:
+def couple_rim(system: System, element: int, unknown: int, contact: np.record, matrix: RingMatrix) -> None:
     """Coupling of the element with angle and speed of a free pulley."""
     dof, node_j = len(system.scale), (element + 1) % system.nodes
     for a in range(len(system.vectors)):
@@ -155,7 +154,7 @@ def _couple(system: System, element: int, unknown: int, contact: np.record, matr
 
 
 @kernel(inline=True)
-def _scatter(system: System, element: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
+def scatter(system: System, element: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
     """Add residual and tangent of the element to those of its nodes i and j."""
     i, j = element, (element + 1) % system.nodes
     dof, gradient, tangent = len(matrix.unknowns), work.element.gradient, work.element.tangent

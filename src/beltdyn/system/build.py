@@ -10,6 +10,7 @@ from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
+from beltdyn.elements.quintic import QUINTIC
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
@@ -21,7 +22,11 @@ from beltdyn.records import records
 from beltdyn.system.arrays import Supports, System
 from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
 from beltdyn.system.discretization import discretize
+from beltdyn.system.frame import Travelling, staying
 from beltdyn.system.weight import weight_forces
+
+_STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
+"""Gauss points of an element that stays, for elastic forces and for contact."""
 
 Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
@@ -51,6 +56,39 @@ def drive_system(drive: Drive) -> System:
         gravity=drive.gravity,
         **_at_ends(drive),
     )
+
+
+def staying_system(drive: Drive, lengths: FloatArray) -> System:
+    """Arrays of a drive with a closed belt on a mesh that stays, of quintic elements.
+
+    Parameters
+    ----------
+    drive
+        A checked drive.
+    lengths : ndarray, shape (elements,)
+        Reference lengths of the elements, m.
+
+    Returns
+    -------
+    System
+        With a belt that does not flow.
+    """
+    completed = drive.completed
+    belt = completed.belt.replace(
+        discretization=QUINTIC.name, elements=lengths.size, integration="full", quadrature_points=_STAYING_ELASTIC
+    )
+    contact = completed.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
+    system = belt_system(
+        belt,
+        completed.pulleys,
+        contact,
+        "shared_node",
+        tensioners=completed.tensioners,
+        path=completed.path,
+        gravity=drive.gravity,
+        lengths=lengths,
+    )
+    return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
 
 
 def belt_system(
@@ -144,6 +182,7 @@ def belt_system(
         bodies=bodies,
         **machines._asdict(),
         supports=supports._replace(force=supports.force + weight_forces(mesh, nodes, gravity)),
+        frame=Travelling(),
     )
 
 

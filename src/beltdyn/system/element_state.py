@@ -11,6 +11,7 @@ from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, System, TangentFactors
 from beltdyn.system.discretization import element_kind
+from beltdyn.system.frame import add_flow
 from beltdyn.system.moving_center import drift_record
 
 
@@ -48,6 +49,28 @@ def gather(system: System, element: int, vector: FloatArray, coordinates: FloatA
     for c in range(dof):
         coordinates[c] = vector[dof * element + c]
         coordinates[dof + c] = vector[dof * node_j + c]
+
+
+@kernel(inline=True)
+def gather_motion(
+    system: System, element: int, position: FloatArray, velocity: FloatArray, coordinates: FloatArray
+) -> None:
+    """Coordinates of an element and their rates, those of its material points.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element
+        Which one.
+    position, velocity : ndarray, shape (n N + D,)
+        The state.
+    coordinates : ndarray, shape (3, 2 n)
+        The first two rows are overwritten.
+    """
+    gather(system, element, position, coordinates[0])
+    gather(system, element, velocity, coordinates[1])
+    add_flow(system.frame, element, system.vectors, coordinates[0], coordinates[1])
 
 
 @kernel(inline=True)

@@ -14,7 +14,7 @@ from beltdyn.elements.dispatch import strain_energy, tension
 from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import BodyForces, System
-from beltdyn.system.element_state import centreline, gather
+from beltdyn.system.element_state import centreline, gather_motion
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
 from beltdyn.system.state_forces import body_forces_at
@@ -78,8 +78,7 @@ def fill_observations(
         show += shown[k]
         samples.nearest[:] = -1
         for element in range(system.length.size):
-            gather(system, element, position[k], work.coordinates[0])
-            gather(system, element, velocity[k], work.coordinates[1])
+            gather_motion(system, element, position[k], velocity[k], work.coordinates)
             if shown[k]:
                 _observe_energy(system, element, samples, result, show)
             for curve in range(curves):

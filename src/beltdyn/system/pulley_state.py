@@ -3,7 +3,7 @@
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.law import PulleyState
 from beltdyn.contact.surface import surface_at
-from beltdyn.kernel import kernel
+from beltdyn.kernel import interpreted, kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import System
 
@@ -36,3 +36,13 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     center = tensioner_center(system.tensioners[carrier], position[at])
     vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
     return PulleyState(center.x, center.y, surface, speed, item.friction, vx, vy)
+
+
+def pulley_center(system: System, pulley: int, position: FloatArray) -> tuple[float, float]:
+    """Where the shaft of a pulley is at a position of shape (n N + D,), m."""
+    item = system.pulleys[pulley]
+    if item.carrier < 0:
+        return float(item.center[0]), float(item.center[1])
+    place = position[interpreted(tensioner_coordinate)(system, item.carrier)]
+    center = interpreted(tensioner_center)(system.tensioners[item.carrier], place)
+    return float(center.x), float(center.y)

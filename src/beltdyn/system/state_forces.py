@@ -17,7 +17,7 @@ from beltdyn.system.body_forces import (
     keep_body_forces,
     new_body_forces,
 )
-from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather
+from beltdyn.system.element_state import add_material_damping, centreline, element_workspace, gather_motion
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.pulley_state import pulley_state
 
@@ -96,8 +96,7 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
     """
     clear_body_forces(forces)
     for element in range(system.length.size):
-        gather(system, element, motion.position, work.coordinates[0])
-        gather(system, element, motion.velocity, work.coordinates[1])
+        gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         add_material_damping(system, element, NO_TANGENT, work, forces)
         for curve in range(system.control.shape[1]):
             piece = centreline(system, element, curve, work)

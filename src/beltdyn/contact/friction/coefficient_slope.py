@@ -21,6 +21,10 @@ class CoefficientSlope(NamedTuple):
         """Slip velocity v_c whatever the normal force, m/s."""
         return np.full(np.broadcast_shapes(np.shape(normal), np.shape(friction)), self.creep_velocity)
 
+    def smoothed(self, factor: float) -> "CoefficientSlope":
+        """Fully used at a slip velocity that is larger by a factor."""
+        return CoefficientSlope(self.creep_velocity * factor)
+
     def softened(self, limit: float, slip: float) -> str:
         """Advice for full friction at a larger slip velocity."""
         return f"raise contact.creep_velocity to {slip:g} m/s"

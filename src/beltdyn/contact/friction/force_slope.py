@@ -21,6 +21,10 @@ class ForceSlope(NamedTuple):
         """Slip velocity mu f_n / nu_s, m/s."""
         return np.multiply(friction, normal) / self.creep_rate_factor
 
+    def smoothed(self, factor: float) -> "ForceSlope":
+        """Fully used at a slip velocity that is larger by a factor."""
+        return ForceSlope(self.creep_rate_factor / factor)
+
     def softened(self, limit: float, slip: float) -> str:
         """Advice for full friction at a larger slip velocity."""
         return f"lower contact.creep_rate_factor below {limit / slip:.2g}"

@@ -23,6 +23,9 @@ class FrictionParameters(Protocol):
             Coulomb coefficient mu.
         """
 
+    def smoothed(self, factor: float) -> Any:
+        """The same law, with friction fully used at a slip velocity that is larger by a factor."""
+
     def softened(self, limit: float, slip: float) -> str:
         """What to change in a drive file so that friction is fully used at a larger slip velocity.
 

@@ -2,11 +2,18 @@
 
 from collections.abc import Iterator
 
-from beltdyn.model import unresolved
+from beltdyn.model import ERROR_LIMITS, unresolved
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.resolution import found_errors
 
 
 def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
-    """Quantities whose estimated errors are above their limits."""
-    yield from unresolved(evidence.resolution.errors, evidence.resolution.needed)
+    """Quantities whose errors, estimated or found by a finer mesh, are above their limits."""
+    found = found_errors(evidence.recorded)
+    worse = [f"{name} ({error:.1%})" for name, error in found.items() if error > ERROR_LIMITS[name]]
+    if worse:
+        remedy = "Leave `elements` out for a graded mesh, or lower `force_tolerance`."
+        yield Finding(f"the mesh does not resolve {', '.join(worse)}.", remedy=remedy)
+    if not found:
+        yield from unresolved(evidence.resolution.errors, evidence.resolution.needed)

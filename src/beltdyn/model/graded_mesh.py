@@ -1,0 +1,85 @@
+"""A mesh graded towards the ends of arcs, where the belt takes the curvature of a pulley within short layers.
+
+At the end of an arc the deflection obeys EI w'''' - T w'' + k_p w = 0 inside of the pulley, and without the last term
+outside.  It decays over sqrt(EI / T) and sqrt(T / k_p), or over (EI / k_p)^(1/4) where the second is the shorter.
+"""
+
+from math import ceil, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+
+_FIRST = 1.5
+"""First element, over the length of the layers."""
+_GROWTH = 0.7
+"""Growth of elements away from the end of an arc, over the distance from there."""
+_WIDEST = pi / 3.0
+"""Angle of an element on an arc, rad, at most."""
+_FEWEST = 3
+"""Elements of a span, if its layers do not ask for more."""
+_ENOUGH = 0.2
+"""Length to resolve, over sqrt(T / k_p), where that of bending is shorter: it matters by the square of their ratio."""
+_SAMPLES = 400
+
+
+class Arc(NamedTuple):
+    """Where a belt lies on a pulley."""
+
+    start: float
+    """On the unstretched belt, m."""
+    end: float
+    radius: float
+    """m."""
+
+
+def layer_length(bending: float, sinking: float) -> float:
+    """Length over which the belt takes the curvature of a pulley, m.
+
+    Parameters
+    ----------
+    bending, sinking
+        sqrt(EI / T) and sqrt(T / k_p), m.
+    """
+    return sqrt(bending * sinking) if sinking < bending else max(bending, _ENOUGH * sinking)
+
+
+def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = 1.0) -> FloatArray:
+    """Divide a closed belt into elements.
+
+    Parameters
+    ----------
+    length : float
+        Unstretched length, m.
+    arcs : list of Arc
+        In the order in which they follow each other along the belt, within 0 and the length.
+    layer : float
+        Length of the layers at the ends of arcs, m.
+    fineness : float
+        Factor on the number of elements.
+
+    Returns
+    -------
+    ndarray, shape (elements,)
+        Lengths of the elements, m. The first begins at zero.
+    """
+    first = _FIRST * layer
+    around = length - arcs[-1].end + arcs[0].start
+    pieces = [_divide(arcs[0].start, first, around / _FEWEST, fineness, (False, True))]
+    for number, arc in enumerate(arcs):
+        pieces.append(_divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True)))
+        if number + 1 < len(arcs):
+            span = arcs[number + 1].start - arc.end
+            pieces.append(_divide(span, first, span / _FEWEST, fineness, (True, True)))
+    pieces.append(_divide(length - arcs[-1].end, first, around / _FEWEST, fineness, (True, False)))
+    return np.concatenate(pieces)
+
+
+def _divide(length: float, first: float, largest: float, fineness: float, graded: tuple[bool, bool]) -> FloatArray:
+    """Lengths of the elements of a piece of belt, with small ones at those of its ends that are ends of arcs."""
+    place = np.linspace(0.0, length, _SAMPLES + 1)
+    from_start, from_end = (away if own else np.inf for own, away in zip(graded, (place, length - place), strict=True))
+    size = np.minimum(first + _GROWTH * np.minimum(from_start, from_end), largest) / fineness
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * (1.0 / size[1:] + 1.0 / size[:-1]) * np.diff(place))])
+    return np.diff(np.interp(np.linspace(0.0, passed[-1], ceil(passed[-1]) + 1), passed, place))

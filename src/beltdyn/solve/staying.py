@@ -1,0 +1,203 @@
+"""A belt at rest on a mesh that stays, and from one such mesh to another."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive, Installation, Path, install
+from beltdyn.model.graded_mesh import Arc, graded_mesh, layer_length
+from beltdyn.model.installation import layer_lengths
+from beltdyn.solve.installation import looked_at, tighten
+from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
+from beltdyn.system.arrays import System
+from beltdyn.system.build import staying_system
+from beltdyn.system.centreline import centreline_points
+from beltdyn.system.discretization import nodal_coordinates, point_coordinates
+from beltdyn.system.pulley_state import pulley_center
+from beltdyn.system.state import State, at_rest
+from beltdyn.system.steady_assembly import Anchor
+
+TOLERANCE = 1e-9
+"""Of the last step of a search, over the smallest radius."""
+FIRST_FINENESS = 0.6
+"""Of the mesh at rest."""
+_MOST = 60
+_DEEPEST_START = 0.1
+"""Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
+_STIFFER_FIRST = (64.0, 16.0, 4.0, 1.0)
+_SOFTER_FIRST = (1 / 64, 1 / 16, 1 / 4, 1.0)
+"""Stiffness of contact on the way to equilibrium, over the drive's own."""
+_SAMPLES = 16
+"""Points of an element at which the ends of arcs are looked for."""
+
+
+class Standing(NamedTuple):
+    """A drive at rest, without friction, on a mesh that stays."""
+
+    drive: Drive
+    system: System
+    state: State
+    place: FloatArray
+    """Position of that state, which may move on."""
+    tension: float
+    """Mean of the span tensions, N."""
+    layer: float
+    """Length of the layers at the ends of arcs, m."""
+
+
+class Laid(NamedTuple):
+    """A belt laid on the path of a drive; its coordinate is zero in the middle of the longest span."""
+
+    path: Path
+    start: float
+    """Place of the coordinate zero along the path, m."""
+    stretch: float
+    """Length of the path over that of the belt."""
+
+    @classmethod
+    def on(cls, path: Path, length: float) -> "Laid":
+        """Lay a belt of an unstretched length (m) on a path."""
+        longest = int(np.argmax(path.span_lengths))
+        return cls(path, path.span_start(longest) + 0.5 * float(path.span_lengths[longest]), path.length / length)
+
+    def arcs(self) -> list[Arc]:
+        """Where the belt lies on pulleys, in the order in which they follow each other along the belt."""
+        found = list[Arc]()
+        for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
+            size = abs(float(radius))
+            arrives = self.path.span_start((p - 1) % self.path.count) + float(self.path.span_lengths[p - 1])
+            first = (arrives - self.start) % self.path.length
+            found.append(Arc(first / self.stretch, (first + size * float(wrap)) / self.stretch, size))
+        return sorted(found)
+
+    def state(self, system: System, tensioners: FloatArray) -> State:
+        """The state of a system whose belt lies so."""
+        along = self.start + self.stretch * point_coordinates(system)
+        slope, bend = self.stretch * self.path.tangent(along), self.stretch**2 * self.path.bend(along)
+        state = at_rest(system, nodal_coordinates(system, self.path.position(along), slope, bend))
+        state.position[state.position.size - tensioners.size :] = tensioners
+        return state
+
+
+def anchor_at(system: System, state: State, at_rest: bool) -> Anchor:
+    """Hold node 0 where it is along the belt."""
+    slope = centreline_points(system, state.position, np.zeros(1))[1][0]
+    return Anchor(state.position[:2].copy(), slope / np.hypot(*slope), at_rest)
+
+
+def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
+    """Find the equilibrium at rest, with the installed tension that was asked for if one was; as for `stand`."""
+    first = stand(drive, elements)
+    wanted = drive.belt.installed_tension
+    return first if wanted is None else tighten(first, wanted, lambda other: stand(other, elements))
+
+
+def stand(drive: Drive, elements: int | None = None) -> Standing:
+    """Find the equilibrium at rest, without friction, of a drive with the length that it has.
+
+    Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    elements
+        Number of equal elements; by default the mesh is graded.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found.
+    """
+    installation = install(drive)
+    layer = layer_length(*layer_lengths(drive, installation.tension))
+    system = staying_system(drive, _lengths(drive, installation.path, layer, elements))
+    for way in ((1.0,), _STIFFER_FIRST, _SOFTER_FIRST):
+        state = _lying(drive, system, installation, way[0])
+        anchor = anchor_at(system, state, True)
+        if all(_balance(drive, system, state, anchor, factor) for factor in way):
+            tension = looked_at(drive, system, state).tension
+            return Standing(drive, system, state, state.position.copy(), tension, layer)
+    raise ConvergenceError(
+        f"no equilibrium at rest found on a mesh of {system.nodes} elements. Check tension and stiffness of contact "
+        "with `beltdyn check`."
+    )
+
+
+def _lengths(drive: Drive, path: Path, layer: float, elements: int | None) -> FloatArray:
+    """Lengths of the elements for a belt on a path, m."""
+    if elements is not None:
+        return np.full(elements, drive.belt_length / elements)
+    return graded_mesh(drive.belt_length, Laid.on(path, drive.belt_length).arcs(), layer, FIRST_FINENESS)
+
+
+def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:
+    """Bring a state to equilibrium with contact stiffer by a factor; False if that fails."""
+    law = system.law._replace(normal=system.law.normal._replace(stiffness=factor * system.law.normal.stiffness))
+    still = without_friction(system)._replace(law=law)
+    tolerance = TOLERANCE * float(np.min(drive.radii))
+    return find_steady(still, state.at(0.0), anchor, tolerance, _MOST, steady_work(still))[0] == FOUND
+
+
+def without_friction(system: System) -> System:
+    """The same system with a belt that slides without friction on pulleys that stand still."""
+    pulleys, bodies, count = system.pulleys.copy(), system.bodies.copy(), system.tensioners.size
+    pulleys["friction"] = 0.0
+    bodies["unknown"] = -1
+    bodies["unknown"][bodies.size - count :] = np.arange(count)
+    return system._replace(pulleys=pulleys, bodies=bodies)
+
+
+def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+    """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
+    path = installation.path
+    depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
+    drawn_in = Path(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
+    return Laid.on(drawn_in, drive.belt_length).state(system, installation.tensioner_positions)
+
+
+def found_arcs(system: System, state: State) -> list[Arc]:
+    """Where the belt touches pulleys, in the order in which they follow each other along the belt.
+
+    Parameters
+    ----------
+    system, state
+        Where the belt is.
+    """
+    ends = np.cumsum(system.length)
+    parts = np.arange(_SAMPLES) / _SAMPLES
+    along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
+    places = centreline_points(system, state.position, along)[0]
+    found = list[Arc]()
+    for depth, radius in zip(depths(system, state, places), system.rims.radius, strict=True):
+        touching = np.flatnonzero(depth >= 0.0)
+        if touching.size:
+            first, last = int(touching[0]), int(touching[-1])
+            start = along[first] - _beyond(along, depth, first, first - 1)
+            end = along[last] - _beyond(along, depth, last, last + 1)
+            found.append(Arc(float(start), float(end), float(radius)))
+    return sorted(found)
+
+
+def depths(system: System, state: State, places: FloatArray) -> FloatArray:
+    """How deep places (k, 2) lie within each pulley, m, negative outside, shape (P, k)."""
+    centers = [pulley_center(system, p, state.position) for p in range(system.pulleys.size)]
+    away = np.linalg.norm(places - np.array(centers)[:, None], axis=2)
+    return np.asarray(system.rims.radius[:, None] - away)
+
+
+def _beyond(along: FloatArray, depth: FloatArray, inner: int, outer: int) -> float:
+    """Way from a point inside a pulley to its rim against the way to a neighbour outside, m."""
+    return float((along[inner] - along[outer]) * depth[inner] / (depth[inner] - depth[outer]))
+
+
+def transfer(system: System, state: State, other: System) -> State:
+    """The same curve and motion on another mesh."""
+    place, slope, bend = centreline_points(system, state.position, point_coordinates(other))
+    moved = at_rest(other, nodal_coordinates(other, place, slope, bend))
+    for mine, given in zip((moved.position, moved.velocity), (state.position, state.velocity), strict=True):
+        mine[other.first_body :] = given[system.first_body :]
+    other.frame.speed[:] = system.frame.speed
+    return moved

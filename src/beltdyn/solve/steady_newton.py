@@ -1,0 +1,130 @@
+"""Newton's method for steady running, compiled: steps damped by the natural monotonicity test (Deuflhard 2011)."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.records import blank
+from beltdyn.system.arrays import Equations, Motion, System
+from beltdyn.system.motion import new_equations
+from beltdyn.system.ring_matrix import factorise_ring, ring_matrix, substitute
+from beltdyn.system.steady_assembly import Anchor, assemble_steady, flow_record
+
+FOUND: Final = 0
+NOT_FOUND: Final = 1
+SINGULAR: Final = 2
+_SHORTEST: Final = 1.0 / 64.0
+
+
+class SteadyWork(NamedTuple):
+    """Arrays to work in."""
+
+    equations: Equations
+    """With one unknown more than the system's bodies have."""
+    flow: np.record
+    ahead_node: FloatArray
+    """The correction that the present tangent would make after a step, shape (N, n)."""
+    ahead_border: FloatArray
+    """Shape (m + 1,)."""
+
+
+def steady_work(system: System) -> SteadyWork:
+    """Make the arrays for a system."""
+    given, dof = new_equations(system), len(system.scale)
+    border = int(np.max(system.bodies.unknown, initial=-1)) + 2
+    equations = given._replace(matrix=ring_matrix(dof, system.nodes, border), border_part=np.zeros(border))
+    flow = blank(flow_record(len(system.vectors), 2 * dof))
+    return SteadyWork(equations, flow, np.zeros((system.nodes, dof)), np.zeros(border))
+
+
+@kernel
+def find_steady(
+    system: System, motion: Motion, anchor: Anchor, tolerance: float, most: int, work: SteadyWork
+) -> tuple[int, int]:
+    """Find steady running, or equilibrium at rest, from a state nearby.
+
+    Parameters
+    ----------
+    system
+        A closed belt in a mesh that stays; the speed of its frame is changed in place.
+    motion
+        The state, changed in place.
+    anchor
+        What keeps the mesh in place.
+    tolerance
+        Size of the last step, m.
+    most
+        Iterations, at most.
+    work
+        From `steady_work`; the body forces in it are those of the state that was found.
+
+    Returns
+    -------
+    status, iterations : int
+        `FOUND`, `NOT_FOUND` or `SINGULAR`.
+    """
+    equations, flow = work.equations, work.flow
+    node_part, border_part = equations.node_part, equations.border_part
+    assemble_steady(system, motion, anchor, True, equations, flow)
+    for iteration in range(1, most + 1):
+        if not factorise_ring(equations.matrix, True):
+            return SINGULAR, iteration
+        substitute(equations.matrix, True, node_part, border_part)
+        size, length = _size(system, node_part, border_part), 1.0
+        while True:
+            _step(system, motion, anchor, -length, node_part, border_part)
+            assemble_steady(system, motion, anchor, False, equations, flow)
+            substitute(equations.matrix, True, work.ahead_node, work.ahead_border)
+            ahead = _size(system, work.ahead_node, work.ahead_border)
+            if ahead <= max((1.0 - 0.25 * length) * size, tolerance):
+                break
+            _step(system, motion, anchor, length, node_part, border_part)
+            length *= 0.5
+            if length < _SHORTEST or not np.isfinite(size):
+                return NOT_FOUND, iteration
+        if ahead <= tolerance:
+            return FOUND, iteration
+        assemble_steady(system, motion, anchor, True, equations, flow)
+    return NOT_FOUND, most
+
+
+@kernel(inline=True)
+def _step(
+    system: System, motion: Motion, anchor: Anchor, factor: float, node_part: FloatArray, border_part: FloatArray
+) -> None:
+    """Add factor times a solution to the state."""
+    dof, first = len(system.scale), system.first_body
+    for node in range(system.nodes):
+        for c in range(dof):
+            motion.position[dof * node + c] += factor * node_part[node, c]
+    tensioners = system.bodies.size - system.tensioners.size
+    for body in range(system.bodies.size):
+        unknown = system.bodies[body].unknown
+        if unknown >= 0:
+            if body < tensioners:
+                motion.velocity[first + body] += factor * border_part[unknown]
+            else:
+                motion.position[first + body] += factor * border_part[unknown]
+    if not anchor.at_rest:
+        system.frame.speed[0] += factor * border_part[border_part.size - 1]
+
+
+@kernel(inline=True)
+def _size(system: System, node_part: FloatArray, border_part: FloatArray) -> float:
+    """Root mean square of the ways of nodes in a solution, or the largest way of a body, m.
+
+    A change of speed counts as the part that it is of the belt's speed, times the radius.
+    """
+    total = 0.0
+    for node in range(system.nodes):
+        total += node_part[node, 0] * node_part[node, 0] + node_part[node, 1] * node_part[node, 1]
+    size = (total / system.nodes) ** 0.5
+    tensioners, speed = system.bodies.size - system.tensioners.size, abs(system.frame.speed[0])
+    for body in range(system.bodies.size):
+        unknown, reach = system.bodies[body].unknown, system.bodies[body].reach
+        if unknown >= 0:
+            scale = reach * reach / speed if body < tensioners else reach
+            size = max(size, scale * abs(border_part[unknown]))
+    return size

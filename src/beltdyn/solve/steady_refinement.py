@@ -1,0 +1,110 @@
+"""Meshes finer and finer, until contact forces, tensions and slip no longer depend on them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model.graded_mesh import graded_mesh
+from beltdyn.solve.staying import FIRST_FINENESS, depths, found_arcs
+from beltdyn.solve.steady_search import SteadySearch
+from beltdyn.system.arrays import System
+from beltdyn.system.build import staying_system
+from beltdyn.system.centreline import centreline_points
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State
+
+_FINER = 1.4
+"""Elements of a mesh over those of the one before."""
+_MOST = 1500
+"""Elements, at most."""
+_POINTS = 200
+"""Points of an arc at which two meshes are compared."""
+_LEAST_SLIP = 1e-4
+"""Slip against which differences of slip are measured, at least."""
+
+
+class _Solution(NamedTuple):
+    """Steady running on a mesh."""
+
+    system: System
+    state: State
+    tensions: FloatArray
+    """Of the spans, N."""
+    slips: FloatArray
+    """Of the rims behind the first one, relative."""
+
+
+def refine(search: SteadySearch, layer: float, tolerance: float, elements: int | None = None) -> dict[str, float]:
+    """Refine the mesh of a drive in steady running, which is changed in place.
+
+    Parameters
+    ----------
+    search
+        In steady running.
+    layer
+        Length of the layers at the ends of arcs, m.
+    tolerance
+        Change of contact forces from one mesh to the next, over the largest of a pulley, that is small enough.
+    elements
+        Number of elements of a mesh of equal ones, which is made finer once to learn its errors.
+
+    Returns
+    -------
+    dict of str to float
+        Differences between the last two meshes, relative: "tension", "mean pressure", "peak pressure", "slip".
+
+    Raises
+    ------
+    ConvergenceError
+        If a finer mesh finds no steady running.
+    """
+    fineness, before = FIRST_FINENESS if elements is None else 1.0, _solution(search)
+    while True:
+        fineness *= _FINER
+        search.move_to(staying_system(search.drive, _finer(search, before, layer, fineness, elements)))
+        after = _solution(search)
+        errors = _differences(before, after)
+        if errors["peak pressure"] <= tolerance or elements is not None or after.system.nodes > _MOST:
+            return errors
+        before = after
+
+
+def _finer(search: SteadySearch, now: _Solution, layer: float, fineness: float, elements: int | None) -> FloatArray:
+    """Lengths of the elements of a finer mesh, m."""
+    length = search.drive.belt_length
+    if elements is not None:
+        count = round(elements * fineness)
+        return np.full(count, length / count)
+    return graded_mesh(length, found_arcs(now.system, now.state), layer, fineness)
+
+
+def _solution(search: SteadySearch) -> _Solution:
+    """Steady running where the search is."""
+    system, state = search.constant, search.state
+    seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
+    speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
+    return _Solution(system, state, seen.span_tension[0], 1.0 - speeds / speeds[0])
+
+
+def _differences(before: _Solution, after: _Solution) -> dict[str, float]:
+    """Differences of two solutions, relative."""
+    peaks, means = [0.0], [0.0]
+    for arc in found_arcs(after.system, after.state):
+        along = np.linspace(arc.start, arc.end, _POINTS)
+        one, other = (np.maximum(_depth(solution, along), 0.0) for solution in (before, after))
+        peaks.append(float(np.max(np.abs(other - one)) / np.max(other)))
+        means.append(float(abs(np.sum(other - one)) / np.sum(other)))
+    slip = float(np.max(np.abs(after.slips - before.slips)))
+    return {
+        "tension": float(np.max(np.abs(after.tensions - before.tensions)) / np.max(np.abs(after.tensions))),
+        "mean pressure": max(means),
+        "peak pressure": max(peaks),
+        "slip": slip / max(_LEAST_SLIP, float(np.max(np.abs(after.slips)))),
+    }
+
+
+def _depth(solution: _Solution, along: FloatArray) -> FloatArray:
+    """Depth of points of the belt in whatever pulley is deepest, m; negative outside."""
+    places = centreline_points(solution.system, solution.state.position, along)[0]
+    return np.asarray(depths(solution.system, solution.state, places).max(axis=0))

@@ -1,0 +1,204 @@
+"""From a belt at rest to steady running: Newton's method along speed, steepness of friction and load.
+
+A belt of which every point slides leaves the speeds of pulleys open, so that friction rises gently with slip at first,
+under a small part of the loads.  Each way is gone in as long steps as Newton's method takes.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.kernel import interpreted
+from beltdyn.machines.loads.shaft import shaft_torque
+from beltdyn.solve.staying import TOLERANCE, Standing, anchor_at, transfer
+from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
+from beltdyn.solve.steady_slip import slips_through
+from beltdyn.system.arrays import BodyForces, System
+from beltdyn.system.constant_drive import constant_drive, drive_shafts, rim_of_bodies, with_speeds_unknown
+from beltdyn.system.operating_point import operating_point
+
+_MOST = 25
+"""Iterations of a step."""
+_SHORTEST = 1e-3
+"""Part of a way, below which there is no going on."""
+_FIRST_LOAD = 0.05
+_FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
+_GENTLE = 0.3
+"""Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
+
+
+class Setting(NamedTuple):
+    """How far a drive is from the one that is asked for."""
+
+    speed: float = 1.0
+    """Factor on prescribed speeds."""
+    load: float = 1.0
+    """Factor on torques and loads."""
+    smoothing: float = 1.0
+    """Factor on the slip velocity at which friction is fully used."""
+    support: float = 0.0
+    """Part of the torque that keeps a motor at the speed at which it was held."""
+
+
+class SteadySearch:
+    """A drive on its way to steady running.
+
+    Parameters
+    ----------
+    rest
+        The drive at rest on a mesh that stays.
+    time
+        At which speeds, torques and schedules are taken, s.
+    """
+
+    def __init__(self, rest: Standing, time: float) -> None:
+        self.drive, self._time, self._rest = rest.drive, time, rest
+        self.state, self.iterations, self.setting = rest.state, 0, Setting()
+        self._held: int | None = None
+        self._supported: int | None = None
+        self._held_speed = self._support = 0.0
+        self._work_on(rest.system)
+
+    def _work_on(self, system: System) -> None:
+        """Take a mesh."""
+        self.constant = constant_drive(system, self._time)
+        self._wanted = self.constant.profiles.segment.offset.copy()
+        self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
+        self._hold(self._held)
+
+    def _hold(self, pulley: int | None) -> None:
+        """Hold the shaft of a pulley at a speed, or none beyond those that are prescribed."""
+        self._held = pulley
+        self._system = with_speeds_unknown(self.constant, () if pulley is None else (pulley,))
+        self._work = steady_work(self._system)
+
+    @property
+    def forces(self) -> BodyForces:
+        """Body forces of the state that was found last."""
+        return self._work.equations.forces
+
+    @property
+    def belt_parameter(self) -> float:
+        """Length of unstretched belt that passes in a second, m/s."""
+        return float(self.constant.frame.speed[0])
+
+    def run(self) -> None:
+        """Find steady running under the loads that are asked for.
+
+        Raises
+        ------
+        ModelError
+            If nothing drives.
+        ConvergenceError
+            If there is no steady running; it says how much the drive transmits.
+        """
+        speed, driver = operating_point(self.constant, self.drive.path.radii, self._prescribed)
+        if driver is not None:
+            self._held_speed = speed / float(self.drive.path.radii[driver])
+            self._hold(driver)
+        gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed))
+        if not any(self._start(speed, gentle._replace(speed=first)) for first in _FIRST_SPEEDS):
+            raise ConvergenceError(
+                "steady running not found: the search does not even begin, under a twentieth of the loads. Check the "
+                "drive with `beltdyn check`, and its run over time with `beltdyn run`."
+            )
+        for target in (gentle, gentle._replace(smoothing=1.0), Setting()):
+            self._follow(target)
+        if driver is not None:
+            self._release(driver)
+
+    def move_to(self, system: System) -> None:
+        """Go on to another mesh of the same drive.
+
+        Raises
+        ------
+        ConvergenceError
+            If nothing is found there.
+        """
+        self.state = transfer(self.constant, self.state, system)
+        self._work_on(system)
+        if not self._try(self.setting):
+            raise ConvergenceError(
+                f"steady running not found on a mesh of {system.nodes} elements, though on a coarser one. Raise "
+                "force_tolerance."
+            )
+
+    def _gentle(self, speed: float) -> float:
+        """Smoothing with which friction is not fully used anywhere."""
+        pulleys = self._system.pulleys
+        limits = self._system.law.friction.saturation(self._rest.tension / self.drive.radii, pulleys.friction)
+        least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
+        return max(1.0, _GENTLE * abs(speed) / least)
+
+    def _start(self, speed: float, setting: Setting) -> bool:
+        """Begin at a setting, from rest, with a belt of a speed (m/s) that sticks to all pulleys."""
+        state, running, path = self.state, setting.speed * speed, self.drive.path
+        state.position[:] = self._rest.place
+        self.constant.frame.speed[0] = running * self.drive.belt_length / path.length
+        rims = rim_of_bodies(self._system)
+        state.velocity[self._system.first_body :][: rims.size] = running / path.radii[rims]
+        return self._try(setting)
+
+    def _follow(self, target: Setting) -> None:
+        """Go on to another setting."""
+        begin, reached, step = self.setting, 0.0, 1.0
+        while reached < 1.0:
+            ahead = min(1.0, reached + step)
+            if self._try(_between(begin, target, ahead)):
+                reached, step = ahead, 2.0 * step
+                continue
+            step = 0.5 * (ahead - reached)
+            if step < _SHORTEST:
+                seen = slips_through(self.drive, self.constant, self.state, self.setting.load)
+                raise ConvergenceError(f"no steady running at t = {self._time:g} s: {seen}")
+
+    def _release(self, driver: int) -> None:
+        """Let a driver turn as its torque says."""
+        speed = float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[driver]])
+        reaction = float(self.forces.shaft[driver])
+        self._hold(None)
+        self._at(Setting())
+        loads = self._system.shaft_loads
+        own = interpreted(shaft_torque)(self._system.profiles, loads, driver, 0.0, 0.0, speed).torque
+        self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
+        self._follow(Setting())
+
+    def _try(self, setting: Setting) -> bool:
+        """Look for steady running at a setting from the state that there is, which stays where that fails."""
+        state, system = self.state, self._at(setting)
+        speed: FloatArray = system.frame.speed
+        before = state.position.copy(), state.velocity.copy(), speed.copy()
+        drive_shafts(system, state.velocity)
+        tolerance = TOLERANCE * float(np.min(self.drive.radii))
+        anchor = anchor_at(system, state, False)
+        status, iterations = find_steady(system, state.at(0.0), anchor, tolerance, _MOST, self._work)
+        self.iterations += iterations
+        if status == FOUND:
+            self.setting = setting
+            return True
+        state.position[:], state.velocity[:], speed[:] = before
+        return False
+
+    def _at(self, setting: Setting) -> System:
+        """The system at a setting."""
+        system = self._system
+        offset, count, driven = system.profiles.segment.offset, system.pulleys.size, self._prescribed.copy()
+        offset[:] = self._wanted
+        if self._held is not None:
+            driven[self._held], offset[self._held] = True, self._held_speed
+        offset[:count] *= np.where(driven, setting.speed, setting.load)
+        offset[system.shaft_loads.table.schedule[:-1]] *= setting.load
+        if self._supported is not None:
+            offset[self._supported] += setting.support * self._support
+        friction = system.law.friction.smoothed(setting.smoothing)
+        return system._replace(law=system.law._replace(friction=friction))
+
+
+def _between(begin: Setting, end: Setting, part: float) -> Setting:
+    """A setting on the way from one to another, on which the smoothing changes by equal factors."""
+    if part == 1.0:
+        return end
+    even = Setting(*(a + part * (b - a) for a, b in zip(begin, end, strict=True)))
+    return even._replace(smoothing=begin.smoothing ** (1.0 - part) * end.smoothing**part)

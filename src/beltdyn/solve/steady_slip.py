@@ -1,0 +1,47 @@
+"""Why a drive has no steady running: which pulley slips through, and what it transmits at most."""
+
+import numpy as np
+
+from beltdyn.model import Drive
+from beltdyn.system.arrays import System
+from beltdyn.system.discretization import curve_lengths
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State
+
+_FULL = 0.9
+"""Use of friction of a pulley that slips through, at least."""
+_RPM = 30.0 / np.pi
+
+
+def slips_through(drive: Drive, system: System, state: State, load: float) -> str:
+    """Say how much the drive transmits.
+
+    Parameters
+    ----------
+    drive, system
+        The drive.
+    state
+        The last steady running on the way to the loads that are asked for.
+    load
+        Factor on the loads there.
+    """
+    seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
+    touched, normal, friction = (one[0] for one in (seen.contact_pulley, seen.normal_force, seen.friction_force))
+    weights = np.outer(curve_lengths(system), system.contact.weights).ravel()
+    used = np.zeros(system.pulleys.size)
+    for p, coefficient in enumerate(system.pulleys.friction):
+        here = touched == p
+        limit = coefficient * float(np.sum((weights * normal)[here]))
+        used[p] = abs(float(np.sum((weights * friction)[here]))) / limit if limit > 0.0 else 0.0
+    worst = int(np.argmax(used))
+    name, torque = drive.pulleys[worst].name, abs(float(seen.pulley_torque[0, worst]))
+    speed = _RPM * abs(float(state.velocity[system.first_body + worst]))
+    if used[worst] < _FULL:
+        return (
+            f"the search ends at {load:.1%} of the loads, where {name} uses {used[worst]:.0%} of its friction. Look at "
+            "a run over time with `beltdyn run`."
+        )
+    return (
+        f"the belt slips through on {name}, which transmits at most {torque:.4g} N m at {speed:.4g} rpm; "
+        f"{torque / load:.4g} N m is asked for. Raise the tension, the friction or the wrap angle, or reduce the load."
+    )

@@ -1,0 +1,136 @@
+"""A system whose speeds, torques and loads stay as they are at an instant, as steady running takes it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.kernel import interpreted
+from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.profiles.functions import PROFILE, profile_value
+from beltdyn.machines.profiles.profile import SEGMENT
+from beltdyn.records import Records, records
+from beltdyn.system.arrays import System
+
+_OF_MOTION = ("damping", "tensioning_friction", "yielding_friction", "stop_damping")
+"""Constants of a spring-loaded tensioner that matter while it moves."""
+
+
+def constant_drive(system: System, time: float) -> System:
+    """Hold everything that changes over time or with the angle of a shaft.
+
+    Harmonics are left out, and so is what acts on a tensioner only while it moves. Each load has a schedule of its own.
+
+    Parameters
+    ----------
+    system
+        A system.
+    time
+        At which speeds, torques and schedules are taken, s.
+    """
+    loads, profiles = system.shaft_loads, system.profiles
+    values = [interpreted(profile_value)(profiles, number, time)[0] for number in range(len(profiles.table) - 1)]
+    factors = [values[number] if number >= 0 else 1.0 for number in loads.table.schedule[:-1]]
+    table = loads.table.copy()
+    table["schedule"][:-1] = len(values) + np.arange(len(factors))
+    table["harmonic"] = 0
+    held = np.array([*values, *factors])
+    return system._replace(
+        profiles=profiles._replace(
+            table=records(PROFILE, segment=np.arange(held.size + 1)),
+            segment=records(SEGMENT, start=np.full(held.size, -np.inf), offset=held),
+        ),
+        shaft_loads=loads._replace(table=table),
+        tensioners=_without_motion(system.tensioners),
+    )
+
+
+def _without_motion(tensioners: Records) -> Records:
+    """Tensioners without damping and dry friction."""
+    still = tensioners.copy()
+    for name in still.dtype.names or ():
+        if "spring" in (still.dtype[name].names or ()):
+            for constant in _OF_MOTION:
+                still[name]["spring"][constant] = 0.0
+    return still
+
+
+def rigid_links(system: System) -> BoolArray:
+    """Which links transmit a constant torque without a difference of speeds, as springs do; shape (L,)."""
+    torque = interpreted(link_torque)
+    found = [torque(system.profiles, link, 0.0, 0.0, 0.0).by_twist != 0.0 for link in system.links]
+    return np.array(found, dtype=bool)
+
+
+def with_speeds_unknown(system: System, held: Sequence[int] = ()) -> System:
+    """The same system with the speeds of its shafts and rims as unknowns, equal where springs couple them.
+
+    Parameters
+    ----------
+    system
+        A system.
+    held
+        Pulleys beside those of prescribed speed whose shafts have a given speed, for which their profiles stand then.
+    """
+    bodies, group = system.bodies.copy(), np.arange(system.bodies.size)
+    for link, rigid in zip(system.links, rigid_links(system), strict=True):
+        if rigid:
+            group[link.back] = group[link.front]
+    shafts = system.pulleys.shaft
+    driven = {*group[shafts[system.bodies.unknown[shafts] < 0]], *group[shafts[list(held)]]}
+    free = sorted(set(group.tolist()) - {int(one) for one in driven})
+    numbers = {one: number for number, one in enumerate(free)}
+    bodies["unknown"] = [numbers.get(int(one), -1) for one in group]
+    return system._replace(bodies=bodies)
+
+
+def rim_of_bodies(system: System) -> IntArray:
+    """Number of the pulley behind whose rim each body is, shape (D - K,)."""
+    pulley = np.arange(system.bodies.size - system.tensioners.size)
+    for link in system.links:
+        pulley[link.back] = pulley[link.front]
+    return pulley
+
+
+def drive_shafts(system: System, velocity: FloatArray) -> None:
+    """Give shafts of known speed, and what springs couple to them, that speed.
+
+    Parameters
+    ----------
+    system
+        From `with_speeds_unknown`.
+    velocity : ndarray, shape (n N + D,)
+        Changed in place.
+    """
+    first, shafts = system.first_body, system.pulleys.shaft
+    for p in np.flatnonzero(system.bodies.unknown[shafts] < 0):
+        velocity[first + shafts[p]] = system.profiles.segment.offset[p]
+    for link in system.links[::-1]:
+        if system.bodies.unknown[link.front] < 0:
+            velocity[first + link.front] = velocity[first + link.back]
+
+
+def twists(system: System, moments: FloatArray) -> FloatArray:
+    """Angles of the rims and hub bodies against their shafts, from the moments of the belt on the pulleys.
+
+    In steady running each link of a hub chain transmits the moment of the belt.
+
+    Parameters
+    ----------
+    system
+        A system.
+    moments : ndarray, shape (P,)
+        N m.
+
+    Returns
+    -------
+    ndarray, shape (D - K,)
+        rad.
+    """
+    pulley, torque = rim_of_bodies(system), interpreted(link_torque)
+    angles = np.zeros(pulley.size)
+    for link in system.links[::-1]:
+        stiffness = torque(system.profiles, link, 0.0, 0.0, 0.0).by_twist
+        turned = moments[pulley[link.front]] / stiffness if stiffness != 0.0 else 0.0
+        angles[link.front] = angles[link.back] + turned
+    return angles
