@@ -36,6 +36,10 @@ ELSEWHERE = {
     "solve/integrator_state.py": "unit/solve/test_alpha_advance.py",
     "solve/observer.py": "unit/solve/test_recording.py",
     "solve/result_layout.py": "unit/solve/test_recording.py",
+    "solve/steady_newton.py": "unit/solve/test_steady.py",
+    "solve/steady_refinement.py": "unit/solve/test_steady.py",
+    "solve/steady_search.py": "unit/solve/test_steady.py",
+    "solve/steady_slip.py": "unit/solve/test_steady.py",
     "solve/worker.py": "unit/solve/test_batch.py",
     # Seen by a user through something else, and tested there.
     "__init__.py": "unit/test_public_names.py",

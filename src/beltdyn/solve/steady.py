@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from beltdyn.elements.quintic import QUINTIC
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import MESH_ERROR, Run
@@ -116,6 +117,13 @@ def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) 
         raise ModelError(
             f"{', '.join(shaped)} is no smooth circle, so that nothing is steady around it. Simulate the drive with "
             "`beltdyn run`, or remove `surface`."
+        )
+    belt = drive.belt
+    if max(belt.stretch_damping_time, belt.bending_damping_time) > 0.0 and not QUINTIC.is_damped:
+        raise ModelError(
+            "steady running does not know the damping of the belt's material: belt.stretch_damping_time = "
+            f"{belt.stretch_damping_time:g} s, belt.bending_damping_time = {belt.bending_damping_time:g} s. Set both "
+            "to zero, or simulate the drive with `beltdyn run`."
         )
     if not 0.0 < force_tolerance < 1.0:
         raise ModelError(f"force_tolerance = {force_tolerance:g} must lie between 0 and 1, such as 0.01 for 1 %.")

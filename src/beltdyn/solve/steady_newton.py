@@ -127,4 +127,4 @@ def _size(system: System, node_part: FloatArray, border_part: FloatArray) -> flo
         if unknown >= 0:
             scale = reach * reach / speed if body < tensioners else reach
             size = max(size, scale * abs(border_part[unknown]))
-    return size
+    return float(size)

@@ -8,7 +8,7 @@ from beltdyn.kernel import interpreted
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.system.arrays import System
 
-_SPEEDS = np.geomspace(1e-2, 300.0, 200)
+_SPEEDS = np.geomspace(1e-2, 300.0, 100)
 """Speeds of the belt at which the balance is looked at, m/s."""
 
 
@@ -36,6 +36,8 @@ def operating_point(system: System, radii: FloatArray, prescribed: BoolArray) ->
     ModelError
         If nothing drives.
     """
+    from scipy.optimize import brentq
+
     driven = np.flatnonzero(prescribed)
     if driven.size:
         speeds = system.profiles.segment.offset[driven] * radii[driven]
@@ -43,15 +45,17 @@ def operating_point(system: System, radii: FloatArray, prescribed: BoolArray) ->
         if fastest == 0.0:
             raise ModelError("nothing drives the belt: every prescribed speed is zero.")
         return fastest, None
-    pulls = {sense: np.array([_pulls(system, radii, sense * speed) for speed in _SPEEDS]) for sense in (1.0, -1.0)}
-    for sense, forces in pulls.items():
-        total = sense * forces.sum(axis=1)
-        crossing = np.flatnonzero((total[:-1] > 0.0) & (total[1:] <= 0.0))
+    for sense in (1.0, -1.0):
+
+        def pull(size: float, sense: float = sense) -> float:
+            return sense * float(np.sum(_pulls(system, radii, sense * size)))
+
+        pulls = np.array([pull(size) for size in _SPEEDS])
+        crossing = np.flatnonzero((pulls[:-1] > 0.0) & (pulls[1:] <= 0.0))
         if crossing.size:
             k = int(crossing[0])
-            part = total[k] / (total[k] - total[k + 1])
-            speed = float(_SPEEDS[k] + part * (_SPEEDS[k + 1] - _SPEEDS[k]))
-            return sense * speed, int(np.argmax(sense * forces[k]))
+            speed = sense * brentq(pull, _SPEEDS[k], _SPEEDS[k + 1])
+            return speed, int(np.argmax(sense * _pulls(system, radii, speed)))
     raise ModelError(
         "the drive has no operating point: at no speed do its motors and loads balance. Give a pulley a speed, a motor "
         "that is stronger than the loads at rest, or a load that grows with the speed."

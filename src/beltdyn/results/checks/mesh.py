@@ -13,7 +13,10 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
     found = found_errors(evidence.recorded)
     worse = [f"{name} ({error:.1%})" for name, error in found.items() if error > ERROR_LIMITS[name]]
     if worse:
-        remedy = "Leave `elements` out for a graded mesh, or lower `force_tolerance`."
-        yield Finding(f"the mesh does not resolve {', '.join(worse)}.", remedy=remedy)
+        yield Finding(
+            f"the mesh does not resolve {', '.join(worse)}.",
+            "The numbers change by as much on a finer mesh.",
+            "Leave `elements` out for a graded mesh, or lower `force_tolerance`.",
+        )
     if not found:
         yield from unresolved(evidence.resolution.errors, evidence.resolution.needed)

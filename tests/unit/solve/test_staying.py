@@ -1,0 +1,49 @@
+"""A belt at rest on a mesh that stays, and on its way to another one."""
+
+import numpy as np
+import pytest
+
+from beltdyn.model import Drive
+from beltdyn.solve.staying import Laid, bring_to_stand, found_arcs, stand, transfer
+from beltdyn.system.build import staying_system
+from beltdyn.system.centreline import centreline_points
+
+
+def test_arcs_of_a_laid_belt(drive: Drive) -> None:
+    """Half circles of equal pulleys, with node zero in the middle of a span."""
+    laid = Laid.on(drive.path, drive.belt_length)
+    span, arc = drive.path.span_lengths[0] / laid.stretch, np.pi * drive.radii[0] / laid.stretch
+    expected = [(0.5 * span, 0.5 * span + arc), (1.5 * span + arc, 1.5 * span + 2.0 * arc)]
+    np.testing.assert_allclose([one[:2] for one in laid.arcs()], expected)
+
+
+def test_at_rest_the_tension_is_the_one_asked_for(drive: Drive) -> None:
+    wanted = drive.replace(belt=drive.belt.replace(installed_tension=100.0))
+    assert bring_to_stand(wanted).tension == pytest.approx(100.0, rel=1e-6)
+
+
+def test_graded_and_fine_meshes_have_the_same_equilibrium(drive: Drive) -> None:
+    """The graded mesh of some 30 elements has the tension of 120 equal ones."""
+    graded, fine = stand(drive), stand(drive, 120)
+    assert graded.system.nodes < 40
+    assert graded.tension == pytest.approx(fine.tension, rel=2e-3)
+
+
+def test_the_belt_touches_where_it_was_laid(drive: Drive) -> None:
+    rest = stand(drive)
+    found, laid = found_arcs(rest.system, rest.state), Laid.on(drive.path, drive.belt_length).arcs()
+    np.testing.assert_allclose([one[:2] for one in found], [one[:2] for one in laid], atol=0.02)
+
+
+def test_a_finer_mesh_takes_the_curve_over(drive: Drive) -> None:
+    """Nodes on the curve, and deviations between them far below the penetration of 30 um."""
+    rest = stand(drive)
+    lengths = np.repeat(rest.system.length / 2.0, 2)
+    finer = staying_system(drive, lengths)
+    moved = transfer(rest.system, rest.state, finer)
+    along = np.linspace(0.0, drive.belt_length * 0.999, 500)
+    one, other = (
+        centreline_points(system, state.position, along)[0]
+        for system, state in ((rest.system, rest.state), (finer, moved))
+    )
+    np.testing.assert_allclose(one, other, atol=1e-12)

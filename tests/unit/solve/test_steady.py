@@ -1,0 +1,98 @@
+"""Steady running as a result like that of a run over time, what it needs, and how it fails."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.results import Run, open_result, summarize
+from beltdyn.solve.steady import steady_state
+
+RunMain = Callable[[list[str]], tuple[int, str, str]]
+
+
+@pytest.fixture(scope="module")
+def loaded() -> Drive:
+    return better(loaded_two_pulley())
+
+
+@pytest.fixture(scope="module")
+def run(loaded: Drive) -> Run:
+    return steady_state(loaded)
+
+
+def test_torques_balance(run: Run) -> None:
+    """The driven pulley takes its load, and power goes nowhere but into friction and contact dampers."""
+    summary = summarize(run)
+    driver, driven = summary.pulleys
+    assert driven.shaft_torque == pytest.approx(-45.0, rel=1e-6)
+    assert driver.power + driven.power == pytest.approx(summary.balance.lost, rel=1e-4)
+    spans = np.array([span.tension for span in summary.spans])
+    assert np.ptp(spans) * 0.08125 == pytest.approx(45.0, rel=0.03)  # less penetration
+
+
+def test_nothing_changes_but_angles(run: Run) -> None:
+    found = run.dataset
+    for name in ("span_tension", "pulley_speed", "hub_force"):
+        assert np.ptp(found[name].values, axis=0).max() == 0.0
+    turned = np.diff(found.pulley_angle.values, axis=0) / np.diff(found.time.values)[:, None]
+    np.testing.assert_allclose(turned[0], found.pulley_speed[0])
+    assert summarize(run).turns == 1
+
+
+def test_its_errors_are_known(run: Run) -> None:
+    assert run.resolution.errors["peak pressure"] < 0.01
+    assert run.dataset.sizes["node"] < 60
+    assert not [warning for warning in run.warnings if "mesh" in warning]
+
+
+def test_equal_elements(loaded: Drive, run: Run) -> None:
+    found = steady_state(loaded, elements=60)
+    np.testing.assert_allclose(found.dataset.pulley_speed, run.dataset.pulley_speed, rtol=1e-3)
+    assert found.dataset.sizes["node"] == 84
+
+
+def test_the_instant(loaded: Drive) -> None:
+    """At a quarter of the ramp of speed."""
+    found = steady_state(loaded, at=0.05 + 0.25 * 0.55)
+    assert float(found.dataset.pulley_speed[0, 0]) == pytest.approx(30.0)
+
+
+def test_it_says_what_slips_through(loaded: Drive) -> None:
+    """Euler's formula for the limit: T1 / T2 = exp(mu phi) with the sum of the tensions of the belt at rest."""
+    driver, driven = loaded.pulleys
+    heavy = loaded.replace(
+        pulley=[driver, driven.replace(torque={"kind": "constant", "value": -600.0})],
+        contact=loaded.contact.replace(friction=0.3, creep_rate_factor=1e5),
+    )
+    with pytest.raises(ConvergenceError, match=r"slips through on driven, .* at most 1[12]\d.* 600 N m is asked"):
+        steady_state(heavy)
+
+
+def test_drives_that_cannot_run_steadily(loaded: Drive) -> None:
+    driver, driven = loaded.pulleys
+    still = driver.replace(speed={"kind": "constant", "value": 0.0})
+    with pytest.raises(ModelError, match="every prescribed speed is zero"):
+        steady_state(loaded.replace(pulley=[still, driven]))
+    shaped = driven.replace(surface={"kind": "eccentric", "eccentricity": 1e-3})
+    with pytest.raises(ModelError, match="driven is no smooth circle"):
+        steady_state(loaded.replace(pulley=[driver, shaped]))
+    with pytest.raises(ModelError, match="force_tolerance = 2"):
+        steady_state(loaded, force_tolerance=2.0)
+    with pytest.raises(ModelError, match="elements = 2"):
+        steady_state(loaded, elements=2)
+
+
+def test_the_command_writes_a_result(loaded: Drive, run: Run, tmp_path: Path, run_main: RunMain) -> None:
+    (tmp_path / "drive.toml").write_text(bd.dumps(loaded), encoding="utf-8")
+    code, out, _ = run_main(["steady", str(tmp_path / "drive.toml")])
+    assert code == 0
+    assert "driven" in out
+    saved = open_result(tmp_path / "drive-steady.nc")
+    np.testing.assert_allclose(saved.dataset.span_tension, run.dataset.span_tension)
+    assert bd.steady_state is steady_state

@@ -1,0 +1,93 @@
+"""Equations of steady running: their tangent by differences, and what they say of a hoop that spins freely."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
+from beltdyn.model import Drive, Path
+from beltdyn.solve.staying import Laid, anchor_at
+from beltdyn.solve.steady_newton import SteadyWork, steady_work
+from beltdyn.system.arrays import System
+from beltdyn.system.build import belt_system, staying_system
+from beltdyn.system.constant_drive import constant_drive, drive_shafts, with_speeds_unknown
+from beltdyn.system.discretization import nodal_coordinates, point_coordinates
+from beltdyn.system.frame import staying
+from beltdyn.system.ring_matrix import entries, places
+from beltdyn.system.state import State, at_rest
+from beltdyn.system.steady_assembly import Anchor, assemble_steady
+
+SPEED = 3.0
+
+
+def residual(system: System, state: State, anchor: Anchor, work: SteadyWork, wanted: bool = False) -> FloatArray:
+    interpreted(assemble_steady)(system, state.at(0.0), anchor, wanted, work.equations, work.flow)
+    matrix = work.equations.matrix
+    return np.concatenate([matrix.node_side.ravel(), matrix.border_side])
+
+
+@pytest.mark.parametrize("tensioner", ["rotary", "sliding"])
+@pytest.mark.parametrize("law", ["force_slope", "coefficient_slope"])
+def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str) -> None:
+    """Along any direction of all unknowns, in contact that damps, creeps and slides, to the floor of differences."""
+    drive = with_machines(tensioner)
+    if law == "coefficient_slope":
+        contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law, "creep_velocity": 0.5}
+        contact.pop("creep_rate_factor")
+        drive = drive.replace(contact=contact)
+    base = staying_system(drive, np.full(16, drive.belt_length / 16))
+    system = with_speeds_unknown(constant_drive(base, 0.3))
+    random = np.random.default_rng(5)
+    drawn_in = Path(drive.path.centers, drive.path.radii - 1e-3 * np.sign(drive.path.radii))
+    state = Laid.on(drawn_in, drive.belt_length).state(system, np.array([2e-3]))
+    state.position[: system.first_body] += 2e-4 * random.normal(size=system.first_body)
+    system.frame.speed[0] = SPEED
+    bodies = slice(system.first_body, system.first_body + system.bodies.size - 1)
+    state.velocity[bodies] = SPEED / 0.08 * (1.0 + 0.02 * random.normal(size=system.bodies.size - 1))
+    drive_shafts(system, state.velocity)
+    state.velocity[-2] = state.velocity[-3]
+    anchor, work = anchor_at(system, state, False), steady_work(system)
+    residual(system, state, anchor, work, wanted=True)
+    rows, columns = places(work.equations.matrix)
+    size = system.first_body + work.equations.border_part.size
+    tangent = np.zeros((size, size))
+    np.add.at(tangent, (rows, columns), entries(work.equations.matrix))
+
+    def at(change: FloatArray) -> FloatArray:
+        moved = State(state.position.copy(), state.velocity.copy(), state.acceleration)
+        moved.position[: system.first_body] += change[: system.first_body]
+        border = change[system.first_body :]
+        for body, unknown in enumerate(system.bodies.unknown):
+            if unknown >= 0:
+                vector = moved.position if body == system.bodies.size - 1 else moved.velocity
+                vector[system.first_body + body] += border[unknown]
+        system.frame.speed[0] = SPEED + border[-1]
+        found = residual(system, moved, anchor, work)
+        system.frame.speed[0] = SPEED
+        return found
+
+    scale = np.concatenate([np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes), np.full(size, 100.0)])[:size]
+    for _ in range(3):
+        way = 1e-8 * scale * random.normal(size=size)
+        difference = 0.5 * (at(way) - at(-way))
+        np.testing.assert_allclose(tangent @ way, difference, rtol=2e-4, atol=2e-6 * np.abs(difference).max())
+
+
+def test_a_free_hoop(drive: Drive) -> None:
+    """A ring that spins at a speed c in its plane, free of forces: EA (G - 1) / 2 = m c^2, G its squared stretch."""
+    belt = drive.belt.replace(discretization="quintic", elements=16, quadrature_points=8, bending_factor=1e-9)
+    given = belt_system(belt, closure="shared_node")
+    system = given._replace(frame=staying(given.control, given.length, belt.mass_per_length))
+    system.frame.speed[0] = 20.0
+    force = belt.mass_per_length * 20.0**2
+    stretch = np.sqrt(1.0 + 2.0 * force / belt.axial_stiffness)
+    radius = stretch * belt.given_length / (2.0 * np.pi)
+    angle = 2.0 * np.pi * point_coordinates(system) / belt.given_length
+    out, along = np.stack([np.cos(angle), np.sin(angle)], 1), np.stack([-np.sin(angle), np.cos(angle)], 1)
+    state = at_rest(system, nodal_coordinates(system, radius * out, stretch * along, -(stretch**2) / radius * out))
+    found = residual(system, state, anchor_at(system, state, False), steady_work(system))
+    np.testing.assert_allclose(found, 0.0, atol=1e-5 * force)
+    system.frame.speed[0] = 22.0
+    assert np.abs(residual(system, state, anchor_at(system, state, False), steady_work(system))).max() > 0.05 * force
