@@ -19,8 +19,8 @@ from beltdyn.system.constant_drive import twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
-_TURNS = 1.1
-"""Turns of the belt in the results, of which means are taken over one."""
+_TURNS = 2.2
+"""Turns of the belt in the results; means are taken over the last one."""
 
 
 def steady_state(
@@ -59,7 +59,7 @@ def steady_state(
     Returns
     -------
     Run
-        A turn of the belt in steady running. Its drive has the length, or the take-up, that gives the installed
+        Two turns of the belt in steady running. Its drive has the length, or the take-up, that gives the installed
         tension.
 
     Raises

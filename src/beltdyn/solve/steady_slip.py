@@ -10,6 +10,8 @@ from beltdyn.system.state import State
 
 _FULL = 0.9
 """Use of friction of a pulley that slips through, at least."""
+_ALIKE = 0.98
+"""Of pulleys that use so much of the friction that the worst one does, the one that takes most power is named."""
 _RPM = 30.0 / np.pi
 
 
@@ -33,7 +35,8 @@ def slips_through(drive: Drive, system: System, state: State, load: float) -> st
         here = touched == p
         limit = coefficient * float(np.sum((weights * normal)[here]))
         used[p] = abs(float(np.sum((weights * friction)[here]))) / limit if limit > 0.0 else 0.0
-    worst = int(np.argmax(used))
+    taken = seen.pulley_torque[0] * state.velocity[system.first_body :][: used.size]
+    worst = int(np.argmax(np.where(used > _ALIKE * used.max(), taken, -np.inf)))
     name, torque = drive.pulleys[worst].name, abs(float(seen.pulley_torque[0, worst]))
     speed = _RPM * abs(float(state.velocity[system.first_body + worst]))
     if used[worst] < _FULL:
