@@ -72,7 +72,7 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
 def found_errors(recorded: Recorded) -> dict[str, float]:
     """Errors that an analysis has found by a finer mesh; empty without them."""
     marked = {name: MESH_ERROR + name.replace(" ", "_") for name in ERROR_LIMITS}
-    known = {name: float(recorded.attrs[mark]) for name, mark in marked.items() if mark in recorded.attrs}
+    known = {name: np.asarray(recorded.attrs[mark]).item() for name, mark in marked.items() if mark in recorded.attrs}
     return dict.fromkeys(ERROR_LIMITS, math.nan) | known if known else {}
 
 

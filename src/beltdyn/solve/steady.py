@@ -88,7 +88,7 @@ def steady_state(
         simulation=drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
     )
     title = f"Belt drive in steady running, as at {instant:g} s"
-    with Recording(shown, search.constant, output, title, progress, overwrite) as recording:
+    with Recording(shown, search.constant, output, title, None, overwrite) as recording:
         recording.start(shown, search.constant, ())
         recording.take(_running(search.constant, search.state, duration))
         recording.note(
