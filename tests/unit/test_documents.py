@@ -1,6 +1,7 @@
 """What the documents say of drive files is true."""
 
 import re
+import shlex
 import tomllib
 from importlib.resources import files
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 import tomli_w
 
 from beltdyn.analyses import ANALYSES, RUN, STATIC
+from beltdyn.cli import main
 from beltdyn.machines.links import kinds as links
 from beltdyn.machines.loads import kinds as loads_
 from beltdyn.machines.profiles import kinds as profiles
@@ -23,6 +25,7 @@ from beltdyn.model.pulley import Diameter
 from beltdyn.parts.part import Part
 from beltdyn.plot import FIGURES
 from beltdyn.plot.registry import on_request
+from beltdyn.solve import simulate
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
@@ -139,6 +142,44 @@ def test_python_blocks_run_one_after_another(
             exec(compile(code, document, "exec"), names)
     finally:
         plt.close("all")
+
+
+def test_python_of_the_results_page_runs(new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its drive has an alternator, and runs longer."""
+    monkeypatch.chdir(tmp_path)
+    simulate(loads(new_drive), "drive.nc")
+    (code,) = blocks(RESULTS, "python")
+    assert {"alternator", "start=0.9"} <= set(re.findall(r"alternator|start=0.9", code))
+    exec(code.replace("alternator", "driven").replace("start=0.9", "start=0.05"), {})
+
+
+@pytest.mark.parametrize(
+    "document",
+    [
+        "README.md",
+        "docs/tutorial.md",
+        *(
+            pytest.param(f"docs/examples/{file.name}", marks=pytest.mark.slow)
+            for file in sorted((ROOT / "docs" / "examples").glob("*.md"))
+        ),
+    ],
+)
+def test_commands_run_one_after_another(document: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With short runs; a run-up has too few turns for its figures then."""
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / document).read_text(encoding="utf-8")
+    commands = [shlex.split(line, comments=True)[1:] for line in re.findall(r"^    (beltdyn .*)$", text, re.MULTILINE)]
+    assert commands[0][0] == "new"
+    for words in commands:
+        if words[0] == "sweep" or any("-sweep" in word for word in words):
+            continue
+        with pytest.raises(SystemExit) as ended:
+            main(words)
+        assert ended.value.code == 0, words
+        for file in tmp_path.glob("*.toml"):
+            drive = file.read_text(encoding="utf-8")
+            file.write_text(re.sub(r"^duration = .*$", "duration = 0.01", drive, flags=re.MULTILINE), encoding="utf-8")
+    plt.close("all")
 
 
 def test_the_tutorials_pulleys_fit_the_new_drive(new_drive: str, tmp_path: Path) -> None:
