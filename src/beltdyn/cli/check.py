@@ -26,6 +26,10 @@ _PULLEY_HEADINGS = (
 )
 
 
+_HALF_TURN = 179.95
+"""Degrees from which on a direction is written as 180.0."""
+
+
 def check(
     file: Path,
     /,
@@ -130,10 +134,16 @@ def _pulleys(drive: "Drive", installation: "Installation") -> list[tuple[str, ..
             (f"{path.radii[0] / radius:.4f}" for radius in path.radii),
             aligned([1e3 * depth for depth in installation.penetrations], 2),
             aligned([math.hypot(*load) for load in loads]),
-            (f"{math.degrees(math.atan2(load[1], load[0])):.1f}°" for load in loads),
+            (f"{_angle(load):z.1f}°" for load in loads),
             strict=True,
         )
     )
+
+
+def _angle(force: list[float]) -> float:
+    """Direction of a force, above -180° up to 180°."""
+    angle = math.degrees(math.atan2(force[1], force[0]))
+    return angle if angle > -_HALF_TURN else angle + 360.0
 
 
 def _spans(drive: "Drive", installation: "Installation") -> list[tuple[str, ...]]:

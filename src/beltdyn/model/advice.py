@@ -100,7 +100,7 @@ def _tension(drive: Drive, installation: Installation) -> list[Finding]:
     shorter = installation.path.length / float(drive.belt.stretch_parameters.stretch(tension)) - drive.belt_length
     return [
         Finding(
-            f"the contact of belt and pulleys is so soft that the belt must be {1e3 * shorter:.2g} mm shorter for "
+            f"the contact of belt and pulleys is so soft that the belt must be {1e3 * shorter:.3g} mm shorter for "
             f"{tension:.4g} N than on hard pulleys.",
             f"Its length of {drive.belt_length:.5g} m is wrong by as much; the tension is right, after a loss of "
             f"{lost:.1%}.",

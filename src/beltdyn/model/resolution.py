@@ -138,9 +138,8 @@ def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> list[F
     other = f", or {needed[fewer[0]]} for all but {most}" if fewer else ""
     return [
         Finding(
-            f"the belt has too few elements for {listing(names)}.",
-            f"Of these, errors are about {listing([_size(errors[name]) for name in names])}; speeds and torques need "
-            "fewer elements.",
+            f"the belt has too few elements for {listing([f'{name} ({_size(errors[name])})' for name in names])}.",
+            "These are wrong by about as much; speeds and torques need fewer elements.",
             f"Set belt.elements = {needed[most]} for all of that{other}.",
         )
     ]
@@ -148,4 +147,4 @@ def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> list[F
 
 def _size(error: float) -> str:
     """An error in words; no number where it says only that nothing is right."""
-    return f"{error:.{0 if error > 0.1 else 1}%}" if error < 1.0 else "more than 100%"
+    return f"{error:.{0 if error > 0.1 else 1}%}" if error < 1.0 else "over 100%"

@@ -109,7 +109,7 @@ def test_advice_on_a_belt_of_given_tension_is_about_its_length(drive: Drive) -> 
     (warning,) = (text for text in advise(given, install(given)) if "hard pulleys" in text)
     assert warning == (
         "the contact of belt and pulleys is so soft that the belt must be "
-        f"{1e3 * (hard.belt_length - given.belt_length):.2g} mm shorter for 26.56 N than on hard pulleys. Its length "
+        f"{1e3 * (hard.belt_length - given.belt_length):.3g} mm shorter for 26.56 N than on hard pulleys. Its length "
         f"of {given.belt_length:.5g} m is wrong by as much; the tension is right, after a loss of 5.8%. Where its "
         "length matters, raise contact.stiffness to 3.1e+07 N/m^2 or more (contact.allowed_penetration = 1.0e-05 m)."
     )

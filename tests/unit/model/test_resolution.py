@@ -57,7 +57,6 @@ def test_said_are_errors_and_meshes_from_the_most_demanding_on() -> None:
     errors = dict.fromkeys(ERROR_LIMITS, 0.0) | {"tension": 0.123, "peak pressure": 2.0, "losses": float("nan")}
     needed = dict.fromkeys(ERROR_LIMITS, 20) | {"tension": 47, "peak pressure": 90}
     (finding,) = unresolved(errors, needed)
-    assert finding.fault == "the belt has too few elements for peak pressure and tension."
-    assert finding.spoils.startswith("Of these, errors are about more than 100% and 12%;")
+    assert finding.fault == "the belt has too few elements for peak pressure (over 100%) and tension (12%)."
     assert finding.remedy == "Set belt.elements = 90 for all of that, or 47 for all but peak pressure."
     assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed) == []

@@ -117,7 +117,7 @@ def test_slack_span_is_said(make_run: MakeRun) -> None:
 def test_what_the_mesh_does_not_resolve_is_said(run: Run) -> None:
     (warning,) = Run(run.dataset, run.drive).warnings
     assert warning.startswith("the belt has too few elements for peak pressure")
-    assert "errors are about more than 100%" in warning
+    assert "(over 100%)" in warning
     assert "speeds and torques need fewer elements. Set belt.elements = " in warning
 
 
