@@ -5,14 +5,26 @@ from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
 from beltdyn.model import Drive, loads
 from beltdyn.signals import ENDING
+from beltdyn.stretch import LAWS, StretchLaw, StretchParameters
 
 settings.register_profile("patient", deadline=None)  # loading units and kernels takes its time once
 settings.load_profile("patient")
+
+
+@pytest.fixture(scope="session", params=list(LAWS.values()), ids=list(LAWS))
+def stretch_law(request: pytest.FixtureRequest) -> StretchParameters:
+    """Each law of stretch, with about 20 kN; a measured one softens like that of an elastic belt."""
+    law: StretchLaw = request.param
+    strains = np.array([0.0, 0.004, 0.01, 0.02, 0.05, 0.1, 0.3])
+    given = (strains, 600.0 * (np.sqrt(strains / 0.03 + 0.25) - 0.5)) if law.from_points else (2e4,)
+    made: StretchParameters = law.make(*given)
+    return made
 
 
 @pytest.fixture(scope="session")

@@ -69,16 +69,22 @@ def off_the_stop(stop: str) -> str:
 
 
 def _strain(drive: Drive, installation: Installation) -> list[Finding]:
-    if installation.strain <= _LARGEST_STRAIN:
-        return []
-    return [
-        Finding(
-            f"the belt at rest is stretched by {installation.strain:.1%}, more than {_LARGEST_STRAIN:.0%}.",
-            f"Its tension of {installation.tension:.4g} N is taken from a constant axial stiffness, which few belts "
-            "have so far.",
-            "Lengthen the belt, move the pulleys together, or lower the installed tension.",
+    strain, tension = installation.strain, installation.tension
+    if drive.belt.stretch_curve is not None:
+        measured = drive.belt.stretch_curve.strains[-1]
+        finding = Finding(
+            f"the belt at rest is stretched by {strain:.2%}, and belt.stretch_curve ends at {measured:.2%}.",
+            f"Its tension of {tension:.4g} N is a guess: beyond the last point the curve goes on as a straight line.",
+            "Measure farther, lengthen the belt, or lower the installed tension.",
         )
-    ]
+        return [finding] if strain > measured else []
+    finding = Finding(
+        f"the belt at rest is stretched by {strain:.1%}, more than {_LARGEST_STRAIN:.0%}.",
+        f"Its tension of {tension:.4g} N is taken from a constant axial stiffness, which few belts have so far.",
+        "Lengthen the belt, move the pulleys together, lower the installed tension, or give a measured "
+        "belt.stretch_curve.",
+    )
+    return [finding] if strain > _LARGEST_STRAIN else []
 
 
 def _tension(drive: Drive, installation: Installation) -> list[Finding]:

@@ -1,6 +1,7 @@
 """The belt: a closed loop of rectangular section."""
 
 from collections.abc import Mapping
+from functools import cached_property
 from math import pi, sin
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -13,16 +14,20 @@ from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, describe_forms, in_new_form, to_material
+from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
-from beltdyn.stretch import Green, StretchParameters
+from beltdyn.stretch import LAWS, StretchParameters
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
+_LAWS = ", ".join(f'"{law.name}" ({law.meaning})' for law in LAWS.values())
 
 if TYPE_CHECKING:
     ElementName = str
+    StretchLawName = str
 else:
     ElementName = Literal[tuple(ELEMENTS)]
+    StretchLawName = Literal[tuple(LAWS)]
 
 Side = Literal["inside", "outside"]
 """The side of the belt that touches a pulley; the outside is the belt's back."""
@@ -39,6 +44,9 @@ class Belt(Part):
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
     number of `ribs`; they are turned into density, modulus and factors when the belt is made. In place of `length`,
     that of the line that carries the tension, it takes the `nominal_length` by which it is sold.
+
+    `stretch_law` is ``"linear"`` for belts given so, ``"measured"`` for belts with a `stretch_curve`, and ``"green"``,
+    as published, for belts given by their material, unless it is given.
     """
 
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))
@@ -78,6 +86,10 @@ class Belt(Part):
         gt=0,
         description="the normal force per metre of belt and metre by which it is pressed into a pulley, where it is "
         "known, in N/m^2",
+    )
+    stretch_law: StretchLawName = Field("green", description=f"the law of tension over stretch: {_LAWS}")
+    stretch_curve: StretchCurve | None = Field(
+        None, description="the measured curve of tension over strain, in place of the axial stiffness"
     )
     stretch_damping_time: Time = Field(
         0.0, ge=0, description="the time that multiplies the rate of strain in the tension, in s"
@@ -142,6 +154,27 @@ class Belt(Part):
                     f'{key} = {value:g}{unit} does not fit discretization = "{self.discretization}", which has no '
                     f'damping. Set {key} = 0, or set discretization = "ancf"'
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _has_what_its_law_of_stretch_needs(self) -> Self:
+        if LAWS[self.stretch_law].from_points and self.stretch_curve is None:
+            raise ValueError(
+                f'stretch_law = "{self.stretch_law}" needs the curve. Give [belt.stretch_curve] with strains and '
+                "tensions, or a file"
+            )
+        if self.stretch_curve is None:
+            return self
+        if not LAWS[self.stretch_law].from_points:
+            raise ValueError(
+                f'stretch_curve does not fit stretch_law = "{self.stretch_law}". Remove it, or set '
+                'stretch_law = "measured"'
+            )
+        if self.axial_factor != 1:
+            raise ValueError(
+                f"axial_factor = {self.axial_factor:g} does not fit stretch_curve, which is that of the whole belt. "
+                "Remove axial_factor"
+            )
         return self
 
     @model_validator(mode="after")
@@ -227,13 +260,16 @@ class Belt(Part):
 
     @property
     def axial_stiffness(self) -> float:
-        """Axial stiffness E A α₁, N."""
-        return self.youngs_modulus * self.area * self.axial_factor
+        """Axial stiffness E A α₁, or the slope of the measured curve without strain, N."""
+        return self.stretch_parameters.stiffness
 
-    @property
+    @cached_property
     def stretch_parameters(self) -> StretchParameters:
         """Parameters of the law of stretch, which know tension over stretch and stretch over tension."""
-        return Green(self.axial_stiffness)
+        if self.stretch_curve is not None:
+            return self.stretch_curve.parameters
+        made: StretchParameters = LAWS[self.stretch_law].make(self.youngs_modulus * self.area * self.axial_factor)
+        return made
 
     def local_stiffness(self, tension: float) -> float:
         """Rate dN/dg at which the tension grows with the stretch, where it is `tension`, N."""

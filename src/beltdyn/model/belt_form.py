@@ -11,9 +11,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
 from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
+from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 
@@ -36,6 +37,7 @@ DAMPING_TIMES = ("stretch_damping_time", "bending_damping_time")
 LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 """In the order of `DAMPING_TIMES`: of each strain a belt has the one or the other."""
 
+_STRETCH = ("stretch_law", "stretch_curve")
 _TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *DAMPING_TIMES, *LOSS_FACTORS)
 
 
@@ -91,8 +93,8 @@ def to_material(data: Any, base: Path | None) -> Any:
     Returns
     -------
     Any
-        Keys that are fields of `Belt`: E = EA / bh, alpha2 = EI / (E b h^3 / 12), rho = m / bh, and what the catalogue
-        says of the profile and the user does not; the length of the line that carries the tension.
+        Keys that are fields of `Belt`: E = EA / bh, alpha2 = EI / (E b h^3 / 12), rho = m / bh, the law of stretch, and
+        what the catalogue says of the profile and the user does not; the length of the line that carries the tension.
 
     Raises
     ------
@@ -125,15 +127,16 @@ class _Offset(Part):
 def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any]:
     """Turn a profile or stiffnesses into material."""
     given = [key for key in (*Sold.model_fields, *_OWN) if key in data]
+    law = {"stretch_law": "measured"} if "stretch_curve" in data else {"stretch_law": "linear"} if given else {}
     if not given:
-        return data
+        return {**law, **data}
     both = [key for key in _MATERIAL if key in data]
     if both:
         raise ValueError(
             f"{given[0]} and {both[0]} exclude each other: a belt is given by a profile, or by its stiffnesses and its "
             "mass per length, or by its material. Keep one of the forms"
         )
-    values = dict(data)
+    values: dict[str, Any] = {**law, **data}
     if any(key in data for key in Sold.model_fields):
         sold = Sold.model_validate({key: values.pop(key) for key in Sold.model_fields if key in values})
         section = _section(sold, data.get("width"), base)
@@ -141,6 +144,7 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
             if any(key in values for key in pair):
                 section = {key: value for key, value in section.items() if key not in pair}
         values = section | values
+    _take_initial_slope(values, data, base)
     given_section = {key: values.pop(key) for key in Stiffnesses.model_fields if key in values}
     return {"poissons_ratio": _POISSONS_RATIO} | values | _material(Stiffnesses.model_validate(given_section))
 
@@ -160,16 +164,42 @@ def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: M
     Returns
     -------
     dict
-        A profile takes the place of the whole section; a stiffness or the mass of a metre that of the material.
+        A profile takes the place of the whole section; a stiffness or the mass of a metre that of the material; a law
+        or a curve of stretch that of the other.
     """
+    gone: set[str] = set()
     if any(key in changes for key in Sold.model_fields):
-        gone = {*_MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *_TAKEN_OVER}
+        gone = {*_MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *_TAKEN_OVER, *_STRETCH}
         own = {}
     elif any(key in changes for key in _OWN):
         gone = {*_MATERIAL}
     else:
-        return dict(arguments)
-    return {**own, **{key: value for key, value in arguments.items() if key in changes or key not in gone}}
+        own = {}
+    if "stretch_curve" in changes:
+        gone |= {"stretch_law", "axial_factor"}
+    elif "stretch_law" in changes:
+        gone |= {"stretch_curve"}
+    elif "stretch_curve" in arguments and "axial_stiffness" in changes:
+        gone |= {*_STRETCH}
+    kept = {key: value for key, value in arguments.items() if key in changes or key not in gone}
+    without = {"axial_stiffness"} if "stretch_curve" in kept else set()
+    return {key: value for key, value in own.items() if key not in without} | kept
+
+
+def _take_initial_slope(values: dict[str, Any], data: Mapping[str, Any], base: Path | None) -> None:
+    """Set the axial stiffness of a belt with a measured curve to the slope with which the curve begins."""
+    if "stretch_curve" not in data:
+        return
+    if "axial_stiffness" in data:
+        raise ValueError(
+            "axial_stiffness and stretch_curve exclude each other: the curve has the stiffness. Keep one of them"
+        )
+    try:
+        curve = StretchCurve.model_validate(data["stretch_curve"], context={"base": base})
+    except ValidationError:
+        values["axial_stiffness"] = 1.0  # the field of the belt tells what is wrong with the curve
+    else:
+        values["stretch_curve"], values["axial_stiffness"] = curve, curve.parameters.stiffness
 
 
 def _material(section: Stiffnesses) -> dict[str, float]:

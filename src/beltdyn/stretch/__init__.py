@@ -7,6 +7,8 @@ from beltdyn.stretch.law import Stretching as Stretching
 from beltdyn.stretch.law import StretchLaw as StretchLaw
 from beltdyn.stretch.law import StretchParameters as StretchParameters
 from beltdyn.stretch.linear import Linear as Linear
+from beltdyn.stretch.measured import Measured as Measured
+from beltdyn.stretch.measured import through as through
 
 stretching = by_type({law.record: law.stretching for law in LAWS.values()}, "stretching")
 """Strain energy of stretch per reference length and its derivatives in G = q . q; see `StretchLaw.stretching`."""

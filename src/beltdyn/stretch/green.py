@@ -1,6 +1,5 @@
 """Green's strain as published: N = EA (g^2 - 1) g / 2, the elongation (g^2 - 1) / 2 of Eq. 13 in Eq. 14."""
 
-from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +15,6 @@ class Green(NamedTuple):
 
     stiffness: float
     """EA, N."""
-
-    @property
-    def largest_stretch(self) -> float:
-        """None: a formula holds everywhere."""
-        return inf
 
     def tension(self, stretch: ArrayLike) -> FloatArray:
         """Tension EA (g^2 - 1) g / 2, N."""

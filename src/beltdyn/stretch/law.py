@@ -24,10 +24,6 @@ class StretchParameters(Protocol):
     def stretch(self, tension: ArrayLike) -> FloatArray:
         """Stretch g under a tension (N); 1 without tension."""
 
-    @property
-    def largest_stretch(self) -> float:
-        """Stretch up to which the law is known; infinite for a formula."""
-
 
 class Stretching(NamedTuple):
     """Strain energy of stretch per reference length over G = g^2; the tension is 2 g dW/dG."""
@@ -51,8 +47,10 @@ class StretchLaw(NamedTuple):
     """Class of its parameters, a named tuple."""
     stretching: Callable[[Any, float], Stretching]
     """Kernel: from parameters and G the energy and its exact derivatives."""
-    make: Callable[[float], Any]
-    """Parameters from the axial stiffness EA (N) of a belt."""
+    make: Callable[..., Any]
+    """Parameters from the axial stiffness EA (N) of a belt, or from measured points."""
+    from_points: bool = False
+    """Whether it is made of strains and tensions (N) that were measured."""
 
 
 LAWS: dict[str, StretchLaw] = {}

@@ -1,6 +1,5 @@
 """Tension in proportion to the elongation, N = EA (g - 1): the axial stiffness as belts are sold and tested with."""
 
-from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -16,11 +15,6 @@ class Linear(NamedTuple):
 
     stiffness: float
     """EA, N."""
-
-    @property
-    def largest_stretch(self) -> float:
-        """None: a formula holds everywhere."""
-        return inf
 
     def tension(self, stretch: ArrayLike) -> FloatArray:
         """Tension EA (g - 1), N."""

@@ -13,7 +13,7 @@ from beltdyn.elements.section import Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
-from beltdyn.stretch import LAWS, StretchLaw
+from beltdyn.stretch import StretchParameters
 from beltdyn.system.discretization import belt_section
 
 LENGTH = 0.06
@@ -27,11 +27,10 @@ def kind(request: pytest.FixtureRequest) -> ElementKind:
     return chosen
 
 
-@pytest.fixture(scope="module", params=list(LAWS.values()), ids=list(LAWS))
-def section(drive: Drive, request: pytest.FixtureRequest) -> Section:
+@pytest.fixture(scope="module")
+def section(drive: Drive, stretch_law: StretchParameters) -> Section:
     """With each law of stretch."""
-    law: StretchLaw = request.param
-    return belt_section(drive.belt)._replace(stretch=law.make(drive.belt.axial_stiffness))
+    return belt_section(drive.belt)._replace(stretch=stretch_law)
 
 
 def stretched(kind: ElementKind, stretch: float) -> FloatArray:

@@ -8,7 +8,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, FixedEnd, PulledEnd, WeightEnd, describe, dumps, install, loads
 from beltdyn.model.end import ends_on_path, pulling
-from beltdyn.stretch import Green
+from beltdyn.stretch import Linear
 
 ANCHOR = {"name": "anchor", "kind": "fixed", "point": [0.1, -0.4]}
 PULL = {"name": "pull", "kind": "pulled", "direction": [0.0, -2.0], "tension": "50 N"}
@@ -59,7 +59,7 @@ def test_a_pulled_end_gives_the_tension_and_ends_where_the_belt_does(
     """50 N either way; the span hangs straight down from the rim, and the path is as long as the stretched belt."""
     ends = (end, ANCHOR | {"point": [-0.1, -0.4]}) if first else (ANCHOR, end)
     drive = strap(*ends, gravity=gravity)
-    g = float(Green(2e4).stretch(50.0))
+    g = float(Linear(2e4).stretch(50.0))
     assert drive.path.length == pytest.approx(1.2 * g, rel=1e-12)
     hanging = 1.2 * g - 0.4 - 0.1 * np.pi
     assert drive.path.ends is not None

@@ -93,12 +93,21 @@ def large_strain(evidence: Evidence) -> Iterator[Finding]:
     """Spans that stretch more than belts do."""
     tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     row, span = np.unravel_index(int(tension.argmax()), tension.shape)
-    strain = float(evidence.drive.belt.stretch_parameters.stretch(tension[row, span])) - 1.0
-    if strain > STRAIN_LIMIT:
+    belt, most = evidence.drive.belt, float(tension[row, span])
+    strain = float(belt.stretch_parameters.stretch(most)) - 1.0
+    where = f"the span {names(evidence.recorded, 'span')[span]} at t = {evidence.time[row]:.4g} s"
+    if belt.stretch_curve is not None:
+        if strain > belt.stretch_curve.strains[-1]:
+            yield Finding(
+                f"{where} is stretched by {strain:.2%}, and belt.stretch_curve ends at "
+                f"{belt.stretch_curve.strains[-1]:.2%}.",
+                f"Up to {most:.4g} N are a guess: beyond the last point the curve goes on as a straight line.",
+                "Measure farther, or lower the tension.",
+            )
+    elif strain > STRAIN_LIMIT:
         yield Finding(
-            f"the span {names(evidence.recorded, 'span')[span]} is stretched by {strain:.1%} at t = "
-            f"{evidence.time[row]:.4g} s, more than {STRAIN_LIMIT:.0%}: few belts bear that.",
-            f"Up to {tension[row, span]:.4g} N are taken from a constant axial stiffness, which few belts have so far.",
-            f"Lower the tension, or see whether the axial stiffness of {evidence.drive.belt.axial_stiffness:.4g} N is "
-            "right.",
+            f"{where} is stretched by {strain:.1%}, more than {STRAIN_LIMIT:.0%}: few belts bear that.",
+            f"Up to {most:.4g} N are taken from a constant axial stiffness, which few belts have so far.",
+            f"Lower the tension, see whether the axial stiffness of {belt.axial_stiffness:.4g} N is right, or give a "
+            "measured belt.stretch_curve.",
         )

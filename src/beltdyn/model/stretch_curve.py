@@ -1,0 +1,66 @@
+"""A measured curve of tension over strain."""
+
+from functools import cached_property
+from itertools import pairwise
+from typing import Any, Self
+
+from pydantic import ConfigDict, Field, ValidationInfo, model_validator
+
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Force, Ratio
+from beltdyn.parts.table_file import check_points, describe_file, take_file
+from beltdyn.stretch import LAWS, StretchParameters
+
+
+class StretchCurve(Part):
+    """Tension over strain as measured on the whole belt, a smooth curve through its points.
+
+    The points are `strains` and `tensions`, or the two columns of the CSV file `file`: a relative path starts at the
+    folder of the drive file. The point without strain and tension may be left out.
+    """
+
+    model_config = ConfigDict(
+        json_schema_extra=lambda schema: describe_file(schema, "strains", "tensions", "strain and tension in N")
+    )
+
+    strains: tuple[Ratio, ...] = Field(
+        min_length=1, description="the elongations of the points over the unstretched length, ascending"
+    )
+    tensions: tuple[Force, ...] = Field(min_length=1, description="the tensions at these strains, ascending, in N")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_file(cls, data: Any, info: ValidationInfo) -> Any:
+        return take_file(data, info, "strains", "tensions")
+
+    @model_validator(mode="after")
+    def _is_a_law(self) -> Self:
+        check_points("strains", self.strains, "tensions", self.tensions)
+        strains, tensions = self._points
+        if self.strains[0] < 0 or (self.strains[0] == 0 and self.tensions[0] != 0):
+            raise ValueError(
+                f"the first point has the strain {self.strains[0]:g} and the tension {self.tensions[0]:g} N: the curve "
+                "begins without strain and tension. Measure the strain from the unstretched length"
+            )
+        for (_, before), (strain, after) in pairwise(zip(strains, tensions, strict=True)):
+            if after <= before:
+                raise ValueError(
+                    f"tensions must increase, but {after:g} N at the strain {strain:g} follows {before:g} N. Take the "
+                    "curve of loading, and smooth it"
+                )
+        if len(strains) < 2:
+            raise ValueError("the curve has no point with a strain. Give at least one")
+        return self
+
+    @property
+    def _points(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """The points, with the one without strain."""
+        if self.strains[0] == 0:
+            return self.strains, self.tensions
+        return (0.0, *self.strains), (0.0, *self.tensions)
+
+    @cached_property
+    def parameters(self) -> StretchParameters:
+        """Parameters of the law of stretch."""
+        made: StretchParameters = LAWS["measured"].make(*self._points)
+        return made
