@@ -27,6 +27,7 @@ LAWS: Mapping[str, Mapping[str, Any]] = {
     "measured": {"stretch_law": "measured", "stretch_curve": CURVE},
 }
 INSTALLED = 120.0
+OTHERS = [pytest.param(name, marks=pytest.mark.slow) for name in ELEMENTS if name != "ancf"]
 
 
 @pytest.fixture(params=list(LAWS))
