@@ -11,7 +11,7 @@ import pytest
 from scipy.linalg import eigh
 
 from beltdyn import simulate
-from beltdyn.elements import ANCF, QUINTIC, ElementKind
+from beltdyn.elements import ANCF, ELEMENTS, QUINTIC, ElementKind
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
