@@ -20,7 +20,9 @@ class StretchCurve(Part):
     """
 
     model_config = ConfigDict(
-        json_schema_extra=lambda schema: describe_file(schema, "strains", "tensions", "strain and tension in N")
+        json_schema_extra=lambda schema: describe_file(
+            schema, ("strains", "tensions"), "two columns, strains and tensions"
+        )
     )
 
     strains: tuple[Ratio, ...] = Field(
