@@ -3,7 +3,7 @@
 Against: the law of the belt itself, put into the closed forms of belt theory.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from beltdyn.theory.elastic_creep import speed_loss
 
 CURVE = {"strains": [0.01, 0.02, 0.03, 0.05], "tensions": [70.0, 120.0, 155.0, 200.0]}
 """A belt that softens: 8.3 kN without strain, 2.9 kN at 155 N."""
-LAWS: Mapping[str, Mapping[str, Any]] = {
+LAWS: dict[str, dict[str, Any]] = {
     "green": {"stretch_law": "green", "axial_factor": 0.25},
     "linear": {"stretch_law": "linear", "axial_factor": 0.25},
     "measured": {"stretch_law": "measured", "stretch_curve": CURVE},
