@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from beltdyn.cli.console import show, show_facts, show_table, show_warnings
+from beltdyn.cli.console import aligned, show, show_facts, show_table, show_warnings
 from beltdyn.cli.summary import show_summary
 
 if TYPE_CHECKING:
@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 
 _SHOWN_UNITS = {"rad": ("°", math.degrees(1.0)), "1": ("", 1.0)}
 """Unit of a variable -> how it is written, and the factor on its numbers."""
+_MILLIMETRES = 0.1
+"""Size of lengths, m, below which they are written in mm."""
+_DIGITS = 5
 
 
 def show_result(result: "Result") -> None:
@@ -40,17 +43,24 @@ def show_result(result: "Result") -> None:
             rows = zip(map(str, labels.values), *map(_written, columns), strict=True)
             headings = (f"{one.attrs['long_name']}\n{_unit(one)}" for one in columns)
             show()
-            show_table("", (str(labels.attrs.get("long_name", dimension)), *headings), rows)
+            name = str(labels.attrs.get("long_name", dimension)).partition(",")[0]
+            show_table("", (name, *headings), rows)
     show()
     show_warnings(result.warnings)
 
 
-def _unit(variable: "xr.DataArray") -> str:
+def _shown(variable: "xr.DataArray") -> tuple[str, float]:
+    """The unit in which a variable is written, and the factor on its numbers."""
     unit = str(variable.attrs["units"])
-    return _SHOWN_UNITS.get(unit, (unit, 1.0))[0]
+    if unit == "m" and not (abs(variable) >= _MILLIMETRES).any():
+        return "mm", 1e3
+    return _SHOWN_UNITS.get(unit, (unit, 1.0))
+
+
+def _unit(variable: "xr.DataArray") -> str:
+    return _shown(variable)[0]
 
 
 def _written(variable: "xr.DataArray") -> list[str]:
-    """The numbers of a variable."""
-    _, factor = _SHOWN_UNITS.get(str(variable.attrs["units"]), ("", 1.0))
-    return [f"{factor * value:.5g}" for value in variable.values.ravel()]
+    """The numbers of a variable, with as many decimals each."""
+    return aligned((_shown(variable)[1] * variable.values.ravel()).tolist(), _DIGITS)

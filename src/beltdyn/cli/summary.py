@@ -136,11 +136,11 @@ def _tensioners(summary: "Summary") -> list[tuple[str, str]]:
 
 def _solver(summary: "Summary") -> list[tuple[str, str]]:
     """What the solver did; of a static equilibrium, which takes no steps, nothing but the time."""
-    steps = f"{summary.steps}, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"
+    steps = f"{summary.steps} steps, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"
     facts = [
         ("errors of mesh", _mesh(summary.resolution)),
-        ("energy closure", f"within {abs(summary.energy_closure):.1e} of the energy put in"),
-        ("steps", f"{steps}; {summary.outputs} outputs"),
+        ("energy balance", f"closes within {abs(summary.energy_closure):.1e} of the energy put in"),
+        ("solver", f"{steps}; {summary.outputs} outputs"),
     ]
     took = f"{summary.wall_time:.3g} s{_pace(summary)}, and {summary.compile_time:.3g} s to prepare"
     known = not math.isnan(summary.wall_time)

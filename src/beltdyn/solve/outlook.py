@@ -32,8 +32,8 @@ def step_bound(simulation: Simulation, statistics: Statistics, reached: float) -
     mean, share = reached / taken, rejected / (taken + rejected)
     if share > _MANY:
         return (
-            f"{share:.0%} of the steps tried are in vain, since Newton's method does not solve longer ones: friction "
-            "is steep, or contact hard. A smaller contact.creep_rate_factor (or a larger contact.creep_velocity) or "
+            f"{share:.0%} of the time steps are tried in vain, since friction builds up steeply with the slip "
+            "velocity, or contact is hard. A smaller contact.creep_rate_factor (or a larger contact.creep_velocity) or "
             "contact.stiffness makes it quicker."
         )
     if simulation.max_step is not None and mean > _NEAR * simulation.max_step:

@@ -30,8 +30,8 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "96.04%",
         "1.2 W: friction 1.08 W, contact damping 0.12 W",
         "driven-driver 60.00 60.00 60.00 0.9750",
-        "1.0e-04 of the energy",
-        "1200, 14 rejected, 4900 Newton iterations; 101 outputs",
+        "energy balance closes within 1.0e-04 of the energy",
+        "1200 steps, 14 rejected, 4900 Newton iterations; 101 outputs",
     ):
         assert part in output
     assert "computing time 0.5 s, 0.5 s for each simulated second, and 2.5 s to prepare" in output

@@ -49,10 +49,11 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     worst, number = min(near, key=lambda one: one[0].margin)
     half = 0.5 * evidence.drive.frictions[number] * worst.wrap_angle
     least = float(np.arctanh(min(np.tanh(half) / worst.margin, np.tanh(half))) / half)
+    margins = [f"{one.margin:.2f} times this load on {one.name}" for one, _ in near]
     yield Finding(
         f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near slipping through: the belt "
-        f"would slide on the whole arc at {listing([f'{pulley.margin:.2f}' for pulley, _ in near])} times this load, "
-        f"less than {MARGIN_LIMIT:g}.",
+        f"would slide on the whole arc at {listing(margins)}, "
+        f"less than {MARGIN_LIMIT:g} times.",
         f"The numbers hold as long as friction does: where it falls by more than {1.0 - least:.0%}, as by water or "
         f"oil, {worst.name} stops pulling.",
         f"Raise the tension by about {MARGIN_LIMIT / worst.margin - 1.0:.0%}, lower the load by "
