@@ -28,3 +28,19 @@ class ConvergenceError(SimulationError):
 
 class OutputError(SimulationError):
     """Results can no longer be written, as on a full disk; what was written before stays readable."""
+
+
+class SlipError(SimulationError):
+    """A pulley slips through where that ends the analysis.
+
+    Parameters
+    ----------
+    fault : str
+        Which, when and why.
+    remedy : str
+        What to do.
+    """
+
+    def __init__(self, fault: str, remedy: str) -> None:
+        super().__init__(f"{fault} {remedy}")
+        self.fault = fault

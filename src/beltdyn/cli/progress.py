@@ -23,6 +23,7 @@ _SLOW_RUNS = "Fine meshes, steep friction and small tolerances make runs long; `
 _PHASES = {
     "compiling": "preparing kernels (the first run compiles them: about 20 s)",
     "equilibrium": "finding equilibrium",
+    "settling": "settling at the first speed",
     "integrating": "simulating",
 }
 

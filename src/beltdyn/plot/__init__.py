@@ -12,6 +12,7 @@ from beltdyn.plot.history import torques as torques
 from beltdyn.plot.layout import layout as layout
 from beltdyn.plot.layout import save_layout as save_layout
 from beltdyn.plot.pulleys import capstan_margins as capstan_margins
+from beltdyn.plot.pulleys import hub_load_sizes as hub_load_sizes
 from beltdyn.plot.pulleys import hub_loads as hub_loads
 from beltdyn.plot.pulleys import losses as losses
 from beltdyn.plot.pulleys import powers as powers

@@ -52,12 +52,13 @@ def name_of(result: Result) -> str:
 
 
 def _range(run: Run) -> str:
-    """Speeds of the pulley that was swept; empty of other runs."""
+    """Mean speeds between which a pulley was swept; empty of other runs."""
     swept = run.dataset.attrs.get("swept_pulley", "")
-    if not swept:
+    profile = next((one.speed for one in run.drive.pulleys if one.name == swept), None)
+    if profile is None:
         return ""
-    speed = _RPM * run.dataset["pulley_speed"].sel(pulley=swept)
-    return f"{swept} from {float(speed[0]):.4g} to {float(speed[-1]):.4g} rpm"
+    first, last = _RPM * profile.at(run.dataset["time"].values[[0, -1]])
+    return f"{swept} from {_whole(float(first))} to {_whole(float(last))} rpm"
 
 
 def _operating_point(run: Run) -> str:
@@ -69,8 +70,13 @@ def _operating_point(run: Run) -> str:
         put_in = power_balance(recorded, over).power_in
     first = int(power.argmax()) if put_in > 0.0 else 0
     given = f", {_power(put_in)} in" if put_in > 0.0 else ""
-    return f"{run.drive.pulleys[first].name} {speed[first]:.4g} rpm{given} at the end"
+    return f"{run.drive.pulleys[first].name} {_whole(float(speed[first]))} rpm{given} at the end"
 
 
 def _power(power: float) -> str:
     return f"{power / 1e3:.3g} kW" if power >= 1e3 else f"{power:.3g} W"
+
+
+def _whole(number: float) -> str:
+    """Four digits, or all those before the point where they are more."""
+    return f"{number:.4g}" if abs(number) < 9999.5 else f"{number:.0f}"

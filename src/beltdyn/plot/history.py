@@ -1,6 +1,7 @@
 """Figures over time."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -22,13 +23,14 @@ _ENERGIES = (
     "potential_energy",
     *LOSSES,
 )
+_RPM = 30.0 / np.pi
 _WAVES = 5.0
 """Vibrations as high as the figure above which dashes cannot be told from them."""
 
 
 @figure(over_time, compares=True)
 def speeds(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the speeds of the pulleys over time, and those of the shafts behind hub chains.
+    """Draw the speeds of the pulleys over time, in rad/s and rpm, and those of the shafts behind hub chains.
 
     Parameters
     ----------
@@ -48,6 +50,9 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
         if pulley.hub:
             name = f"shaft of {pulley.name}"
             ax.plot(shafts["time"], shafts[:, number], label=name, color=color(number), linewidth=0.9)
+    if not ax.child_axes:
+        scale = ax.secondary_yaxis("right", functions=(partial(np.multiply, _RPM), partial(np.multiply, 1.0 / _RPM)))
+        scale.set_ylabel("[rpm]")
     name_lines(ax)
     return ax
 
@@ -138,6 +143,45 @@ def lines(variable: xr.DataArray, ax: Axes, names: Sequence[str] | None = None) 
             ax.plot(variable["time"], variable[:, number], label=str(name), color=color(number), linewidth=0.8)
         else:
             _line(ax, variable[:, number], str(name), number, dash(number))
+    ax.set(xlabel=label(variable["time"]), ylabel=label(variable))
+    name_lines(ax)
+    return ax
+
+
+def envelope(variable: xr.DataArray, ax: Axes, parts: int = 100) -> Axes:
+    """Draw lines as `lines` does, but what vibrates as a band from least to largest values, and their medians.
+
+    Parameters
+    ----------
+    variable : DataArray
+        Over time and a dimension with names; NaN where there is no value.
+    ax : Axes
+        Where to draw.
+    parts : int
+        Number of equal parts of the time, in each of which least, largest and median values are taken.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    vibrating = vibrates(variable)
+    time = variable["time"].values
+    part = np.minimum((parts * (time - time[0]) / np.ptp(time)).astype(int), parts - 1) if len(time) > 1 else time * 0
+    first = np.unique(part, return_index=True)[1]
+    middles = np.array([group.mean() for group in np.split(time, first[1:])])
+    for number, name in enumerate(variable[variable.dims[1]].values):
+        values = variable[:, number]
+        if bool(values.isnull().all()):
+            continue
+        if not vibrating[number]:
+            _line(ax, values, str(name), number, dash(number))
+            continue
+        groups = [group[np.isfinite(group)] for group in np.split(values.values, first[1:])]
+        of_parts = [np.percentile(group, (0, 50, 100)) if group.size else np.full(3, np.nan) for group in groups]
+        low, median, high = np.transpose(of_parts)
+        ax.fill_between(middles, low, high, color=color(number), alpha=0.25, linewidth=0.0)
+        ax.plot(middles, median, color=color(number), linestyle=dash(number), label=str(name))
     ax.set(xlabel=label(variable["time"]), ylabel=label(variable))
     name_lines(ax)
     return ax

@@ -10,13 +10,15 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.history import lines
+from beltdyn.plot.history import envelope, lines
 from beltdyn.plot.registry import Choice, figure, over_time
-from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, name_lines, new_figure, polar_or_new
+from beltdyn.plot.style import INK, POLAR_SIZE, axes_or_new, color, label, name_lines, new_figure, polar_or_new
 from beltdyn.results import Run, derived, power_balance, summarize
 from beltdyn.results.cycles import mean_window
 
 _LARGEST_MARGIN = 10.0
+_RUNNING = 0.98
+"""Part of its mean speed at the end from which on the first pulley counts as running."""
 _RINGS = 4
 
 
@@ -25,7 +27,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the first over time, and dotted the part of it that is elastic creep.
 
     Means over a turn of the belt and a period of what repeats besides; the numbers are those of the summary. Where
-    whole arcs slide, all creep is dotted.
+    whole arcs slide, all creep is dotted. The scale is that of the running drive: at the start slip may go beyond it.
 
     Parameters
     ----------
@@ -58,15 +60,23 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
         else "dotted: elastic creep; the rest is the slope of the friction law"
     )
     ax.annotate("\n".join(notes), (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
-    _limit(ax, parts["slip"].values)
+    _limit(ax, parts["slip"], _after_start(run, summary.start))
     return ax
+
+
+def _after_start(run: Run, latest: float) -> float:
+    """When the start is over, s: the first pulley runs, and a tenth of the rest has gone by; before means begin."""
+    time, speed = run.dataset["time"].values, np.abs(run.dataset["pulley_speed"].values[:, 0])
+    reached = time[np.argmax(speed >= _RUNNING * speed[time >= latest].mean())]
+    return float(min(reached + 0.1 * (time[-1] - reached), latest))
 
 
 @figure(over_time, compares=True)
 def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     """Draw how many times its load each pulley could transmit, over time; below 1 its whole arc slides.
 
-    Pulleys that hardly carry a load, whose margin is mostly above ten, are left out where others are below.
+    Pulleys that hardly carry a load, whose margin is mostly above ten, are left out where others are below. A margin
+    that vibrates is drawn as a band from its least to its largest value within a hundredth of the time, and its median.
 
     Parameters
     ----------
@@ -87,7 +97,7 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     """
     margins = derived.capstan_margins(run)
     loaded = margins.median("time") < _LARGEST_MARGIN
-    ax = lines(margins.where(np.isfinite(margins) & (loaded | ~loaded.any())), axes_or_new(ax))
+    ax = envelope(margins.where(np.isfinite(margins) & (loaded | ~loaded.any())), axes_or_new(ax))
     ax.axhspan(0.0, 1.0, color="#f6d9c9", linewidth=0.0, zorder=0)
     ax.annotate("gross slip", (0.995, 0.5), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=9)
     ax.set_ylim(0.0, _LARGEST_MARGIN)
@@ -122,7 +132,7 @@ def powers(run: Run, ax: Axes | None = None) -> Axes:
 def losses(run: Run, ax: Axes | None = None) -> Axes:
     """Draw where the power goes that is lost, by cause: means over the end of the run, as in the summary.
 
-    Friction and contact damping are laid out by pulley.
+    Friction and contact damping are laid out by pulley. What gives power, which no loss can, stands left of zero.
 
     Parameters
     ----------
@@ -150,17 +160,19 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}
     drawn = {cause: power for cause, power in balance.losses.items() if power != 0.0 or cause in parts}
     for row, (cause, power) in enumerate(drawn.items()):
-        left = _stack(ax, row, parts[cause]) if cause in parts else power
+        ends = _stack(ax, row, parts[cause]) if cause in parts else (min(power, 0.0), max(power, 0.0))
         if cause not in parts:
             ax.barh(row, power, color="0.55", height=0.6)
         share = f" ({power / balance.power_in:.2%})" if balance.power_in > 0.0 else ""
-        place = (max(left, power, 0.0), row)
+        place = (max(ends), row)
         ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center")
     ax.set_yticks(range(len(drawn)), list(drawn))
     ax.invert_yaxis()
     ax.grid(axis="y", visible=False)
     ax.margins(x=0.3)
-    ax.set_xlim(left=0.0)
+    if ax.dataLim.x0 >= 0.0:
+        ax.set_xlim(left=0.0)
+    ax.axvline(0.0, color=INK, linewidth=0.8)
     ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {over.start:.4g} to {over.end:.4g} s")
     name_lines(ax)
     return ax
@@ -220,6 +232,42 @@ def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None)
     return ax
 
 
+@figure(over_time, compares=True)
+def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
+    """Draw the sizes of the hub loads over time; the numbers are their means and largest values at the end of the run.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the run holds no output.
+    """
+    run.require_output()
+    loads = derived.hub_loads(run)["hub_load"]
+    over = mean_window(run.dataset, run.drive)
+    means, largest = over.mean_of(loads.values), loads.values[over.first :].max(axis=0)
+    names = [
+        f"{pulley.name} {mean:.4g} N, up to {most:.4g} N"
+        for pulley, mean, most in zip(run.drive.pulleys, means, largest, strict=True)
+    ]
+    ax = lines(loads, axes_or_new(ax), names)
+    ax.set_ylim(bottom=0.0)
+    note = f"numbers: from {over.start:.4g} to {over.end:.4g} s"
+    ax.annotate(note, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+    return ax
+
+
 def _widest_gap(directions: np.ndarray) -> float:
     """Middle of the widest sector without a direction, degrees."""
     angles = np.sort(np.degrees(directions), axis=None)
@@ -228,19 +276,21 @@ def _widest_gap(directions: np.ndarray) -> float:
     return float(angles[widest] + 0.5 * gaps[widest])
 
 
-def _stack(ax: Axes, row: int, powers: xr.DataArray) -> float:
-    """Draw bars of the pulleys on end, and give where they end."""
-    left = 0.0
-    for number, (name, power) in enumerate(zip(powers["pulley"].values, powers.values, strict=True)):
-        ax.barh(row, power, left=left, color=color(number), height=0.6, label=str(name) if row == 0 else None)
-        left += float(power)
-    return left
+def _stack(ax: Axes, row: int, powers: xr.DataArray) -> tuple[float, float]:
+    """Draw bars of the pulleys on end, losses to the right of zero and gains to its left; give where both end."""
+    left, right = 0.0, 0.0
+    for number, (name, power) in enumerate(zip(powers["pulley"].values, powers.values.tolist(), strict=True)):
+        begin = left if power < 0.0 else right
+        ax.barh(row, power, left=begin, color=color(number), height=0.6, label=str(name) if row == 0 else None)
+        left, right = min(left, begin + power), max(right, begin + power)
+    return left, right
 
 
-def _limit(ax: Axes, values: np.ndarray) -> None:
-    """Keep a few wild values, as at the start of a run, from making all others flat."""
-    known = values[np.isfinite(values)]
+def _limit(ax: Axes, variable: xr.DataArray, from_: float) -> None:
+    """Let what is drawn from an instant on fill the figure, with zero in it: the start may be much larger."""
+    known = variable.values[variable["time"].values >= from_]
+    known = known[np.isfinite(known)]
     if known.size:
-        low, high = np.percentile(known, (1.0, 99.0))
+        low, high = min(float(known.min()), 0.0), max(float(known.max()), 0.0)
         margin = 0.1 * max(high - low, 1e-3)
-        ax.set_ylim(min(low, 0.0) - 2.0 * margin, high + margin)  # room for the notes below
+        ax.set_ylim(low - 3.0 * margin, high + margin)  # room for the notes below

@@ -40,7 +40,7 @@ POLAR_SIZE = (6.2, 4.6)
 _IN_A_ROW = 4
 _ROW = 60
 """Letters of a legend that fit beside each other."""
-_BEYOND_A_SCALE = 1.13
+_BEYOND_A_SCALE = 1.2
 """Where a legend begins beside axes with a second scale."""
 
 _RULES: dict[Any, Any] = {

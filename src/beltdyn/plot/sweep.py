@@ -1,22 +1,27 @@
 """Figures of a run-up: spectra over speed, and orders."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, figure, on_request
-from beltdyn.plot.style import axes_or_new, color, dash, label, unit
+from beltdyn.plot.series import names_of, series
+from beltdyn.plot.style import INK, axes_or_new, color, dash, label, unit
 from beltdyn.results import Run, derived
 
 _RPM = 30.0 / np.pi
-_DECADES = 1e-3
+_RANGE = 60.0
+"""Levels below the highest that are told apart, dB."""
+_MAP = "viridis"
 _STRONGEST = 5
 _HARMONICS = (1, 2, 3)
 """Multiples of the frequency at which elements pass that are marked."""
@@ -24,33 +29,85 @@ _DISTANCE = 0.4
 """Orders nearer to each other than this are one, and lower ones a trend."""
 
 
-def _one_by_one(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
-    """Lay out a panel for each pulley, span or tensioner that the chosen variable is recorded for."""
-    names = names_of(run, choice.variable)
+def _swept(run: Run, choice: Choice) -> tuple[list[str], str | int]:
+    """Names of the panels, and the pulley whose speed counts."""
     pulley = run.dataset.attrs.get("swept_pulley", 0) if choice.pulley is None else choice.pulley
-    calls = [partial(draw, run, choice.variable, name, pulley) for name in names]
-    return panels(rows(calls), sharey=False)
+    return names_of(run, choice.variable), pulley
 
 
-@figure(on_request, _one_by_one)
+def _common_orders(run: Run, choice: Choice) -> list[float]:
+    """The orders that stand out in any of the panels; none where the run is too short to tell."""
+    names, pulley = _swept(run, choice)
+    try:
+        found = [_amplitudes(run, choice.variable, name, pulley) for name in names]
+    except ModelError:
+        return []
+    highest = [one.max("speed").fillna(0.0).values for one in found]
+    return _strongest(found[0]["order"].values, np.max([one / max(one.max(), 1e-300) for one in highest], axis=0))
+
+
+def _waterfalls(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a panel for each pulley, span or tensioner, with the same colors for the same levels."""
+    names, pulley = _swept(run, choice)
+    number = derived.pulley_number(run, pulley)
+    found = [series(run, choice.variable, name) for name in names]
+    spectra = [derived.waterfall(values, run.dataset["pulley_speed"][:, number]) for values in found]
+    highest = max(float(_levels(one).max()) for one in spectra)
+    which = _common_orders(run, choice)
+    calls = [partial(draw, run, choice.variable, name, pulley, which=which, highest=highest) for name in names]
+    page = panels(rows(calls), sharey=False)
+    scale = ScalarMappable(Normalize(highest - _RANGE, highest), _MAP)
+    units = ", ".join(dict.fromkeys(unit(one) for one in spectra))
+    page.colorbar(scale, ax=page.axes, label=f"Amplitude (peak) [dB re 1 {units}]")
+    return page
+
+
+def _all_orders(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
+    """Lay out a panel for each pulley, span or tensioner, with the same orders in the same colors."""
+    names, pulley = _swept(run, choice)
+    which = _common_orders(run, choice) or None
+    calls = [partial(draw, run, choice.variable, name, pulley, which=which) for name in names]
+    page = panels(rows(calls), sharey=False)
+    legends = [box for ax in page.axes if (box := ax.get_legend()) is not None]
+    for box in legends:
+        box.remove()
+    words = [text.get_text() for text in legends[0].get_texts()]
+    lines = [line for line in legends[0].legend_handles if line is not None]
+    page.legend(lines, words, loc="outside right upper")
+    return page
+
+
+@figure(on_request, _waterfalls)
 def waterfall(
-    run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
+    run: Run,
+    variable: str = "span_tension",
+    of: str | int = 0,
+    pulley: str | int = 0,
+    *,
+    which: Sequence[float] = (),
+    highest: float | None = None,
+    ax: Axes | None = None,
 ) -> Axes:
     """Draw short-time spectra of a variable over the speed of a pulley.
 
-    Dashed lines are where elements of the mesh pass, and twice and three times as often: what lies on them belongs to
-    the mesh. Variables that are recorded for spectra are drawn up to where their filter keeps amplitudes.
+    Amplitudes are those of sinusoids (peak, not RMS). Thin lines are orders of the pulley's rotation. Dashed lines are
+    where elements of the mesh pass, and twice and three times as often: what lies on them belongs to the mesh.
+    Variables that are recorded for spectra are drawn up to where their filter keeps amplitudes.
 
     Parameters
     ----------
     run : Run
         A run-up.
     variable : str
-        A variable over time and pulley, span or tensioner.
+        A variable over time and pulley, span or tensioner, or "hub_load".
     of : str or int
         Name or number of the one to draw.
     pulley : str or int
         Name or number of the pulley whose speed is the vertical axis.
+    which : sequence of float
+        Orders to mark.
+    highest : float, optional
+        Level at the upper end of the color scale, dB; by default the highest one, with a color bar.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -65,48 +122,64 @@ def waterfall(
         If there is no such variable or pulley, or the run holds too few outputs.
     """
     number = derived.pulley_number(run, pulley)
-    values = _series(run, variable, of)
+    values = series(run, variable, of)
     amplitude = derived.waterfall(values, run.dataset["pulley_speed"][:, number])
+    level = _levels(amplitude)
+    top = float(level.max()) if highest is None else highest
     ax = axes_or_new(ax)
-    highest = float(amplitude[:, 1:].max())
     mesh = ax.pcolormesh(
         amplitude["frequency"][1:],
         _RPM * amplitude["speed"],
-        np.maximum(amplitude[:, 1:], _DECADES * highest),
-        norm=LogNorm(_DECADES * highest, highest),
-        cmap="viridis",
+        np.maximum(level, top - _RANGE),
+        norm=Normalize(top - _RANGE, top),
+        cmap=_MAP,
         shading="nearest",
         rasterized=True,
     )
-    figure = ax.get_figure()
-    assert figure is not None
-    figure.colorbar(mesh, ax=ax, label=f"Amplitude [{unit(amplitude)}]")
-    _mark_elements(ax, derived.element_order(run.drive, number), amplitude)
+    if highest is None:
+        page = ax.get_figure()
+        assert page is not None
+        page.colorbar(mesh, ax=ax, label=f"Amplitude (peak) [dB re 1 {unit(amplitude)}]")
+    for order in which:
+        _mark(ax, order, amplitude, f"{order:.3g}", "-")
+    elements = derived.element_order(run.drive, number)
+    for k in _HARMONICS:
+        _mark(ax, k * elements, amplitude, "elements pass" if k == 1 else f"{k} ×", "--")
     ax.set(xlabel=label(amplitude["frequency"]), ylabel=f"Speed of {run.drive.pulleys[number].name} [rpm]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.grid(visible=False)
     return ax
 
 
-@figure(on_request, _one_by_one, compares=True)
+@figure(on_request, _all_orders, compares=True)
 def orders(
-    run: Run, variable: str = "span_tension", of: str | int = 0, pulley: str | int = 0, ax: Axes | None = None
+    run: Run,
+    variable: str = "span_tension",
+    of: str | int = 0,
+    pulley: str | int = 0,
+    *,
+    which: Sequence[float] | None = None,
+    ax: Axes | None = None,
 ) -> Axes:
-    """Draw the amplitudes of the strongest orders of a pulley's rotation over its speed.
+    """Draw the amplitudes of the strongest orders of a pulley's rotation over its speed, and the overall level.
 
-    Orders at which elements of the mesh pass are named, and drawn thin and grey. Variables that are recorded for
-    spectra are drawn up to the speed at which their filter keeps the order.
+    Amplitudes are those of sinusoids (peak, not RMS); the overall level is the root mean square of all frequencies
+    times the square root of 2, so that a single order lies on it. Orders at which elements of the mesh pass are named,
+    and drawn thin and grey. Variables that are recorded for spectra are drawn up to the speed at which their filter
+    keeps the order.
 
     Parameters
     ----------
     run : Run
         A run-up.
     variable : str
-        A variable over time and pulley, span or tensioner.
+        A variable over time and pulley, span or tensioner, or "hub_load".
     of : str or int
         Name or number of the one to draw.
     pulley : str or int
         Name or number of the pulley whose rotation counts.
+    which : sequence of float, optional
+        Orders to draw; the strongest by default.
     ax : Axes, optional
         Where to draw; a new figure by default.
 
@@ -121,30 +194,44 @@ def orders(
         If there is no such variable or pulley, or the run is too short.
     """
     number = derived.pulley_number(run, pulley)
-    values = _series(run, variable, of)
-    amplitude = derived.orders(values, run.dataset["pulley_angle"][:, number])
+    values = series(run, variable, of)
+    amplitude = _amplitudes(run, variable, of, pulley)
     ax = axes_or_new(ax)
-    speed = _RPM * amplitude["speed"]
-    for line, place in enumerate(_strongest(amplitude)):
-        order = float(amplitude["order"][place])
+    overall = derived.overall_level(derived.waterfall(values, run.dataset["pulley_speed"][:, number]))
+    ax.plot(_RPM * overall["speed"], np.sqrt(2.0) * overall, color=INK, linewidth=1.0, label="overall (√2 RMS)")
+    speed, along = _RPM * amplitude["speed"], amplitude["order"].values
+    chosen = _strongest(along, amplitude.max("speed").fillna(0.0).values) if which is None else which
+    for line, order in enumerate(chosen):
         of_mesh = _multiple(order, derived.element_order(run.drive, number))
         name, tint = f"order {order:.3g}{', of the mesh' * of_mesh}", "0.6" if of_mesh else color(line)
+        place = int(np.argmin(np.abs(along - order)))
         ax.plot(speed, amplitude[:, place], label=name, color=tint, linestyle=dash(line), lw=0.8 if of_mesh else None)
-    ax.set(xlabel=f"Speed of {run.drive.pulleys[number].name} [rpm]", ylabel=f"Amplitude [{unit(amplitude)}]")
+    ax.set(xlabel=f"Speed of {run.drive.pulleys[number].name} [rpm]", ylabel=f"Amplitude (peak) [{unit(amplitude)}]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.set_ylim(bottom=0.0)
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
 
 
-def _strongest(amplitude: xr.DataArray) -> list[int]:
-    """Numbers of the orders that stand out most at some speed, ascending."""
+def _amplitudes(run: Run, variable: str, of: str | int, pulley: str | int) -> xr.DataArray:
+    """Amplitudes of orders over speed."""
+    angle = run.dataset["pulley_angle"][:, derived.pulley_number(run, pulley)]
+    return derived.orders(series(run, variable, of), angle)
+
+
+def _levels(amplitude: xr.DataArray) -> FloatArray:
+    """Levels without that at zero frequency, dB; NaN where the amplitude is unknown."""
+    known = amplitude.values[:, 1:]
+    return np.asarray(20.0 * np.log10(np.maximum(known, np.finfo(float).tiny)))
+
+
+def _strongest(order: FloatArray, highest: FloatArray) -> list[float]:
+    """The orders that stand out most at some speed, ascending."""
     from scipy.signal import find_peaks
 
-    highest = np.where(amplitude["order"] < _DISTANCE, 0.0, amplitude.max("speed").fillna(0.0).values)
-    apart = max(1, round(_DISTANCE / float(amplitude["order"][1])))
-    peaks, _ = find_peaks(highest, distance=apart)
-    return sorted(peaks[np.argsort(highest[peaks])[::-1][:_STRONGEST]].tolist())
+    highest = np.where(order < _DISTANCE, 0.0, highest)
+    peaks, _ = find_peaks(highest, distance=max(1, round(_DISTANCE / float(order[1]))))
+    return sorted(order[peaks[np.argsort(highest[peaks])[::-1][:_STRONGEST]]].tolist())
 
 
 def _multiple(order: float, elements: float) -> bool:
@@ -152,56 +239,12 @@ def _multiple(order: float, elements: float) -> bool:
     return any(abs(order - k * elements) < _DISTANCE for k in _HARMONICS)
 
 
-def _mark_elements(ax: Axes, elements: float, amplitude: xr.DataArray) -> None:
-    """Draw lines where elements pass."""
+def _mark(ax: Axes, order: float, amplitude: xr.DataArray, words: str, style: str) -> None:
+    """Draw a line where an order lies, with its name at its upper end, if it is seen."""
     speed, highest = amplitude["speed"].values, float(amplitude["frequency"][-1])
-    for k in _HARMONICS:
-        frequency = k * elements * speed / (2.0 * np.pi)
-        shown = frequency <= highest
-        if np.any(shown):
-            ax.plot(frequency[shown], _RPM * speed[shown], color="w", linestyle="--", linewidth=0.8)
-            place = frequency[shown][-1], _RPM * speed[shown][-1]
-            words = "elements pass" if k == 1 else f"{k} ×"
-            ax.annotate(words, place, (-3, -3), "data", "offset points", color="w", fontsize=8, ha="right", va="top")
-
-
-def names_of(run: Run, variable: str) -> list[str]:
-    """Give the names of what a variable over time is recorded for.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    variable : str
-        Its name.
-
-    Returns
-    -------
-    list of str
-        Of pulleys, spans or tensioners.
-
-    Raises
-    ------
-    ModelError
-        If there is no such variable.
-    """
-    known = [
-        str(name) for name, values in run.dataset.data_vars.items() if values.ndim == 2 and values.dims[0] == "time"
-    ]
-    named = [name for name in known if run.dataset[name].dims[1] in run.dataset.coords]
-    if variable not in named:
-        raise ModelError(f"variable = {variable!r} is not known over time. Those are: {', '.join(named)}.")
-    values = run.dataset[variable]
-    return [str(name) for name in values[values.dims[1]].values]
-
-
-def _series(run: Run, variable: str, of: str | int) -> xr.DataArray:
-    """One variable over time, filtered if it was recorded so, with the name of what it belongs to."""
-    run.require_output()
-    names = names_of(run, variable)
-    if of in names:
-        of = names.index(str(of))
-    if not isinstance(of, int) or not 0 <= of < len(names):
-        raise ModelError(f"of = {of!r} is not in this drive. Choose one of {', '.join(names)}.")
-    filtered = f"filtered_{variable}"
-    return run.dataset[filtered if filtered in run.dataset else variable][:, of].assign_attrs(of=names[of])
+    frequency = order * speed / (2.0 * np.pi)
+    shown = frequency <= highest
+    if np.any(shown):
+        ax.plot(frequency[shown], _RPM * speed[shown], color="w", linestyle=style, linewidth=0.6, alpha=0.7)
+        place = frequency[shown][-1], _RPM * speed[shown][-1]
+        ax.annotate(words, place, (-3, -3), "data", "offset points", color="w", fontsize=8, ha="right", va="top")

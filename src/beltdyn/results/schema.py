@@ -135,7 +135,7 @@ _OUTPUTS = {
 }
 
 FILTERED = (
-    *("pulley_speed", "shaft_speed", "pulley_torque", "shaft_torque", "tensioner_position"),
+    *("pulley_speed", "shaft_speed", "pulley_torque", "shaft_torque", "hub_force", "tensioner_position"),
     *("span_tension", "belt_speed", "mid_span_displacement"),
 )
 """Variables that are recorded for spectra too, through a low-pass filter, with ``filtered_`` before their names."""

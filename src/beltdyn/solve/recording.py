@@ -1,6 +1,8 @@
 """From states to results: observe what the integrator hands out, record it, and tell of progress."""
 
 import time
+from collections.abc import Callable, Mapping
+from math import prod
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -8,6 +10,7 @@ from typing import Any, Self
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.errors import SlipError
 from beltdyn.model import Drive
 from beltdyn.results import (
     RECORDED,
@@ -75,6 +78,7 @@ class Recording:
         **attributes: str,
     ) -> None:
         self.statistics = Statistics()
+        self.watch: Callable[[Arrays], None] | None = None
         self.integrator: str = drive.simulation.integrator
         self._drive, self._system, self._progress = drive, system, progress
         self._path = Path(output) if output is not None else None
@@ -107,6 +111,8 @@ class Recording:
     ) -> bool:
         """Write what waits and close the results with their status."""
         interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
+        if isinstance(error, SlipError):
+            self._findings["slips_through"] = error.fault
         self.end("interrupted" if interrupted else "completed" if kind is None else "failed")
         return interrupted
 
@@ -146,6 +152,10 @@ class Recording:
         self._drive, self._system = drive, system
         self._observer = Observer(drive, system, layout.belt_coordinate)
         self._started = time.perf_counter()
+
+    def note(self, findings: Mapping[str, float | str]) -> None:
+        """Add global attributes of the dataset."""
+        self._findings |= findings
 
     def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
         """Take states; they are recorded a few at a time."""
@@ -208,8 +218,11 @@ class Recording:
         end = self._instants.until(float(states.time[-1]))
         for first in range(self._written, end, _BLOCK):
             numbers = np.arange(first, min(first + _BLOCK, end))
-            self._recorder.append(self._outputs(states, seen, numbers))
+            outputs = self._outputs(states, seen, numbers)
+            self._recorder.append(outputs)
             self._written += len(numbers)
+            if self.watch is not None:
+                self.watch(outputs)
 
     def _outputs(self, states: Chunk, seen: Arrays, numbers: IntArray) -> Arrays:
         """Every recorded variable at some instants, by their numbers; fields at some of these."""
@@ -237,8 +250,9 @@ class Recording:
     def _take_for_spectra(self, states: Chunk, seen: Arrays) -> None:
         """Hand what is recorded for spectra to the filter."""
         known = seen | self._bodies(states.position, states.velocity)
-        self._channels = {name: known[name].shape[1] for name in FILTERED if name in known}
-        self._filter.take(states.time, np.hstack([known[name] for name in self._channels]))
+        self._channels = {name: known[name].shape[1:] for name in FILTERED if name in known}
+        flat = [known[name].reshape(len(states.time), -1) for name in self._channels]
+        self._filter.take(states.time, np.hstack(flat))
 
     def _for_spectra(self) -> Arrays:
         """What is recorded for spectra: the next outputs for which all states that they need have come."""
@@ -246,9 +260,10 @@ class Recording:
         instants = self._instants[np.arange(self._filtered, end)]
         self._filtered += len(instants)
         values = self._filter.at(instants)
-        columns = np.split(values, np.cumsum(list(self._channels.values()))[:-1], axis=1)
-        parts = zip(self._channels, columns, strict=True)
-        return {"filtered_time": instants, **{f"filtered_{name}": part for name, part in parts}}
+        columns = np.split(values, np.cumsum([prod(shape) for shape in self._channels.values()])[:-1], axis=1)
+        parts = zip(self._channels.items(), columns, strict=True)
+        filtered = {f"filtered_{name}": part.reshape(-1, *shape) for (name, shape), part in parts}
+        return {"filtered_time": instants, **filtered}
 
     def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
         """Coordinates and speeds of bodies, from states of shape (k, n N + D)."""

@@ -8,12 +8,17 @@ from beltdyn.model import Drive, Simulation
 from beltdyn.results import Run, require_room
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import bring_to_rest
+from beltdyn.solve.observer import Arrays
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
+from beltdyn.solve.settling import Start
 from beltdyn.solve.standard import Name, StandardIntegrator
 from beltdyn.solve.trajectory import Integrator, drive_task
 from beltdyn.system.build import drive_system
-from beltdyn.system.state import laid
+from beltdyn.system.state import State, laid
+
+Begin = Callable[[Drive, State, Integrator, Report | None], Start]
+"""``begin(drive, state, integrator, progress) -> Start``, from the drive and its state at rest."""
 
 
 def simulate(
@@ -70,6 +75,9 @@ def record_run(
     progress: Report | None,
     overwrite: bool,
     integrator: Integrator | None = None,
+    *,
+    begin: Begin | None = None,
+    watch: Callable[[Arrays], None] | None = None,
     **attributes: str,
 ) -> Run:
     """Simulate a drive over time, for an analysis that says something of its own about the run.
@@ -78,6 +86,10 @@ def record_run(
     ----------
     drive, output, progress, overwrite, integrator
         As for `simulate`.
+    begin
+        Finds the state to begin with from that at rest.
+    watch
+        Is given all outputs, and may end the run by an error.
     **attributes
         Global attributes of the dataset.
 
@@ -96,10 +108,13 @@ def record_run(
             rest = bring_to_rest(drive, progress)
             drive, system = rest.drive, rest.system
         state = rest.state if rest and settings.start == "equilibrium" else laid(system, drive.path)
+        integrator = integrator or choose_integrator(drive)
+        recording.integrator, recording.watch = integrator.name, watch
+        if begin is not None:
+            system, state, said = begin(drive, state, integrator, progress)
+            recording.note(said)
         recording.start(drive, system, rest.unstable if rest else ())
         task = drive_task(drive, system, state, recording.statistics)
-        integrator = integrator or choose_integrator(drive)
-        recording.integrator = integrator.name
         for chunk in integrator(task):
             recording.take(chunk)
         recording.check()

@@ -1,17 +1,24 @@
 """An analysis: a run-up, in which the speed of a pulley rises linearly."""
 
+from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 from beltdyn.errors import ModelError
+from beltdyn.machines import HubLink, Load, Profile, Table
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import to_si
 from beltdyn.results import Run
 from beltdyn.solve.progress import Report
+from beltdyn.solve.settling import Settling
 from beltdyn.solve.simulate import record_run
+from beltdyn.solve.slip_through import SlipThrough
 
 _LEAD = 0.1
-"""Part of the run-up's duration in which the drive first reaches the speed that it starts from."""
+"""Part of the run-up's duration in which the drive reaches the speed that it starts from, before the recording."""
+_LATE = 1e9
+"""An instant when nothing changes any more, s."""
 
 
 def sweep(
@@ -21,15 +28,17 @@ def sweep(
     from_: float | str,
     to: float | str,
     duration: float | str = 5.0,
+    settling: float | str | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Run:
     """Run a drive up through a range of speeds, for waterfall and order plots.
 
-    The speed of one pulley rises linearly in place of what the drive says; its harmonics, loads and all else stay.
-    Before, the drive runs up from rest to the first speed in a tenth of the duration. Spectra reach 0.375 over
-    simulation.output_interval; `beltdyn plot FILE --figures waterfall,orders` draws them.
+    The speed of one pulley rises linearly in place of what the drive says; its harmonics stay. Whatever else changes
+    over time, as schedules of loads, keeps its final value. The run begins at the first speed, when the transients of
+    the start have died; what goes before is not recorded. It ends early where a pulley slips through. Spectra reach
+    0.375 over simulation.output_interval; `beltdyn plot FILE --figures waterfall,orders` draws them.
 
     Parameters
     ----------
@@ -43,6 +52,9 @@ def sweep(
         The speed at the end, such as "6000 rpm".
     duration
         How long the run-up takes, with a unit, such as "5 s", or in s.
+    settling
+        The longest time at the first speed before, such as "2 s"; by default as long as the run-up. It takes less where
+        transients die sooner.
     output
         Result file (NetCDF4), written as the simulation goes; without one the results stay in memory.
     progress
@@ -53,14 +65,16 @@ def sweep(
     Returns
     -------
     Run
-        As `simulate` gives it. Its attribute ``swept_pulley`` has the name of the pulley.
+        As `simulate` gives it. Attributes of its dataset are ``swept_pulley``, the name of the pulley;
+        ``settling_time``, what was not recorded, s; ``settling_left``, what it left of the start in the span tensions,
+        over the largest mean one; and ``held``, what keeps its final value.
 
     Raises
     ------
     ModelError
         If there is no such pulley, its speed is not prescribed, or the numbers make no run-up; and as `simulate`.
     SimulationError
-        As `simulate`.
+        As `simulate`; a `SlipError` if a pulley slips through.
 
     Examples
     --------
@@ -69,8 +83,65 @@ def sweep(
     2.0944
     """
     start, end = _number("from", from_, "rad/s"), _number("to", to, "rad/s")
-    raised = run_up(drive, pulley, start, end, _number("duration", duration, "s"))
-    return record_run(raised, output, progress, overwrite, swept_pulley=pulley)
+    length = _number("duration", duration, "s")
+    longest = length if settling is None else _number("settling", settling, "s")
+    if not longest > 0.0:
+        raise ModelError(f"settling = {longest:g} s must be above zero. Raise it, or leave it away.")
+    steady, held = without_schedules(drive)
+    raised = run_up(steady, pulley, start, end, length)
+    number = [one.name for one in drive.pulleys].index(pulley)
+    return record_run(
+        raised,
+        output,
+        progress,
+        overwrite,
+        begin=Settling(number, start, _LEAD * length, longest) if start != 0.0 else None,
+        watch=None if drive.ends else SlipThrough(raised, number),
+        swept_pulley=pulley,
+        held=", ".join(held),
+    )
+
+
+def without_schedules(drive: Drive) -> tuple[Drive, list[str]]:
+    """Let all that changes over time keep its final value.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+
+    Returns
+    -------
+    drive : Drive
+        With constant speeds, torques and schedules.
+    held : list of str
+        What keeps its value, such as "alternator.load[1].schedule = 1".
+    """
+    held = list[str]()
+
+    def final(profile: Profile | None, name: str) -> dict[str, Any] | None:
+        if profile is None:
+            return None
+        value = float(profile.at([_LATE])[0])
+        if profile.breakpoints() or isinstance(profile, Table):
+            held.append(f"{name} = {value:.4g}")
+        return {"kind": "constant", "value": value}
+
+    def steady(parts: Sequence[Load | HubLink], name: str) -> list[Any]:
+        schedules = [final(getattr(part, "schedule", None), f"{name}[{n}].schedule") for n, part in enumerate(parts, 1)]
+        pairs = zip(parts, schedules, strict=True)
+        return [part if schedule is None else part.replace(schedule=schedule) for part, schedule in pairs]
+
+    pulleys = [
+        one.replace(
+            speed=final(one.speed, f"{one.name}.speed"),
+            torque=final(one.torque, f"{one.name}.torque"),
+            load=steady(one.load, f"{one.name}.load"),
+            hub=steady(one.hub, f"{one.name}.hub"),
+        )
+        for one in drive.pulleys
+    ]
+    return drive.replace(pulley=pulleys), held
 
 
 def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float) -> Drive:
@@ -85,7 +156,7 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     start, end
         Speeds, rad/s.
     duration
-        How long the rise takes, s; a tenth of it is put before, to reach the first speed.
+        How long the rise takes, s.
 
     Raises
     ------
@@ -106,11 +177,10 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
         raise ModelError(
             f"from {start:g} to {end:g} rad/s is no run-up: the speeds must differ and have one sign. Change one."
         )
-    lead = _LEAD * duration
-    speed = {"kind": "table", "times": [0.0, lead, lead + duration], "values": [0.0, start, end]}
+    speed = {"kind": "table", "times": [0.0, duration], "values": [start, end]}
     pulleys = list(drive.pulleys)
     pulleys[number] = pulleys[number].replace(speed=speed)
-    return drive.replace(pulley=pulleys, simulation=drive.simulation.replace(duration=lead + duration))
+    return drive.replace(pulley=pulleys, simulation=drive.simulation.replace(duration=duration))
 
 
 def _number(name: str, value: float | str, unit: str) -> float:

@@ -1,20 +1,36 @@
 """A run-up of a drive."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from beltdyn.errors import ModelError
+from beltdyn.errors import ModelError, SlipError
 from beltdyn.model import Drive
-from beltdyn.solve.sweep import run_up, sweep
+from beltdyn.results import open_run
+from beltdyn.solve.sweep import run_up, sweep, without_schedules
 
 
-def test_the_speed_rises_linearly_after_a_lead(drive: Drive) -> None:
+def test_the_speed_rises_linearly(drive: Drive) -> None:
     up = run_up(drive, "driver", 70.0, 600.0, 5.0)
     profile = up.pulleys[0].speed
     assert profile is not None
-    np.testing.assert_allclose(profile.at([0.0, 0.25, 0.5, 3.0, 5.5]), [0.0, 35.0, 70.0, 335.0, 600.0])
-    assert up.simulation.duration == 5.5
+    np.testing.assert_allclose(profile.at([0.0, 2.5, 5.0]), [70.0, 335.0, 600.0])
+    assert up.simulation.duration == 5.0
     assert (up.pulleys[1], up.belt, up.contact) == (drive.pulleys[1], drive.belt, drive.contact)
+
+
+def test_what_changes_over_time_keeps_its_final_value(drive: Drive) -> None:
+    first, last = drive.pulleys
+    schedule = {"kind": "step", "time": 0.5, "value": 0.7}
+    loads = [{"kind": "resistance", "constant": 2.0, "schedule": schedule}, {"kind": "resistance", "constant": 1.0}]
+    loaded = drive.replace(pulley=[first, last.replace(torque=None, load=loads)])
+    steady, held = without_schedules(loaded)
+    assert [value for value in held if value.startswith("driven")] == ["driven.load[1].schedule = 0.7"]
+    late, plain = steady.pulleys[1].load
+    assert late.schedule is not None
+    np.testing.assert_array_equal(late.schedule.at([0.0, 9.0]), 0.7)
+    assert plain == loaded.pulleys[1].load[1]
 
 
 def test_a_drive_without_a_prescribed_speed_cannot_be_swept(drive: Drive) -> None:
@@ -26,8 +42,31 @@ def test_a_drive_without_a_prescribed_speed_cannot_be_swept(drive: Drive) -> Non
 @pytest.mark.parametrize(("start", "end"), [("600 rpm", "1200 rpm"), (20.0 * np.pi, 40.0 * np.pi)])
 def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive, start: float | str, end: float | str) -> None:
     """Numbers are in SI units, texts have theirs."""
-    run = sweep(drive, pulley="driver", from_=start, to=end, duration="10 ms")
+    run = sweep(drive, pulley="driver", from_=start, to=end, duration="10 ms", settling="20 ms")
     assert run.kind == "run"
     assert run.dataset.attrs["swept_pulley"] == "driver"
     assert float(run.dataset.pulley_speed.sel(pulley="driver")[-1]) == pytest.approx(40.0 * np.pi)
-    assert float(run.dataset.time[-1]) == pytest.approx(0.011)
+    assert float(run.dataset.time[-1]) == pytest.approx(0.01)
+
+
+def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive) -> None:
+    """Angles go on from the settling; the account of energy begins anew."""
+    run = sweep(drive, pulley="driver", from_=20.0, to=30.0, duration="20 ms", settling="30 ms")
+    data = run.dataset
+    assert float(data.pulley_speed[0, 0]) == pytest.approx(20.0)
+    lead = 0.1 * 0.02
+    settled = float(data.attrs["settling_time"])
+    assert lead < settled <= lead + 0.03 + 2 * lead
+    assert float(data.pulley_angle[0, 0]) == pytest.approx(20.0 * (settled - 0.5 * lead))
+    assert float(data.pulley_angle[-1, 0] - data.pulley_angle[0, 0]) == pytest.approx(25.0 * 0.02)
+    assert float(abs(data.energy_closure).max()) < 1e-3
+    assert float(data.driver_work[0]) == 0.0
+
+
+def test_a_pulley_that_slips_through_ends_the_sweep_with_one_warning(drive: Drive, tmp_path: Path) -> None:
+    slippery = drive.replace(contact=drive.contact.replace(friction=0.02))
+    file = tmp_path / "slips.nc"
+    with pytest.raises(SlipError, match=r"driven slips through. Since .* rpm its whole arc slides"):
+        sweep(slippery, pulley="driver", from_=20.0, to=60.0, duration="1 s", settling="0.05 s", output=file)
+    (warning,) = open_run(file).warnings
+    assert "slips through" in warning

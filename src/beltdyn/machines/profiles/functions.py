@@ -132,6 +132,25 @@ def profile_integral(profiles: Profiles, number: int, time: float) -> float:
     return float(profiles.segment[k].integral + segment_integral(profiles.segment[k], begin, time))
 
 
+def go_on(profiles: Profiles, before: Profiles, numbers: Sequence[int], time: float) -> None:
+    """Let integrals go on from those that other profiles have at a time, as angles of prescribed speeds do.
+
+    Parameters
+    ----------
+    profiles
+        The profiles, whose integrals from their time zero on are raised.
+    before
+        As many profiles.
+    numbers
+        Which of them.
+    time
+        s.
+    """
+    for number in numbers:
+        rows = slice(profiles.table[number].segment, profiles.table[number + 1].segment)
+        profiles.segment.integral[rows] += interpreted(profile_integral)(before, number, time)
+
+
 @kernel
 def profile_bend(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
     """Where a profile bends: its next kink, and the angular frequency of the wave that it is until then.

@@ -8,13 +8,13 @@ from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.contact import deep_penetration, large_strain, leaves_pulley, slack_spans
 from beltdyn.results.checks.creep import impossible_slip, regularised_slip
-from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished
+from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
 from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
 from beltdyn.results.checks.evidence import Check, Evidence
 from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved_by_mesh
 from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
-from beltdyn.results.checks.sliding import gross_slip, gross_slip_before, near_gross_slip
+from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
 from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
@@ -23,6 +23,7 @@ __all__ = ["CHECKS", "Check", "Evidence", "Finding", "find"]
 
 CHECKS: tuple[Check, ...] = (
     unfinished,
+    unsettled,
     open_account,
     numerical_damping,
     unbalanced_powers,
@@ -66,4 +67,6 @@ def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> lis
     if resolution is None:
         return [NOTHING_RECORDED]
     evidence = Evidence(recorded, drive, resolution)
+    if "slips_through" in recorded.attrs:
+        return list(ended_by_slip(evidence))  # the other checks would tell of the same in other words
     return [finding for check in CHECKS for finding in check(evidence)]

@@ -8,6 +8,9 @@ from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import capstan_margin, rim_speeds
 
+SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or up to a lower speed."
+"""What to do where a pulley slips through in a run-up."""
+
 MARGIN_LIMIT = 1.5
 """Smallest capstan margin that passes without a warning."""
 
@@ -105,3 +108,9 @@ def _first_rim(evidence: Evidence) -> float:
 def _frictions(evidence: Evidence, numbers: list[int]) -> str:
     """Coefficients of friction of some pulleys, with the wedge factor."""
     return listing(sorted({f"{evidence.drive.frictions[number]:.3g}" for number in numbers}))
+
+
+def ended_by_slip(evidence: Evidence) -> Iterator[Finding]:
+    """A pulley that slipped through in a run-up, which ended there."""
+    fault = str(evidence.recorded.attrs["slips_through"])
+    yield Finding(fault, "Results end there; the last ones are those of a belt that slides.", SWEEP_REMEDY)

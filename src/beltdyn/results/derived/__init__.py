@@ -6,7 +6,7 @@ from beltdyn.results.derived.power import balance, pulley_powers
 from beltdyn.results.derived.pulley import capstan_margins, hub_loads, tension_ratios
 from beltdyn.results.derived.slip import sliding_arcs, slips
 from beltdyn.results.derived.span import mid_span_displacements, span_tensions
-from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, orders, waterfall
+from beltdyn.results.derived.spectrum import amplitude_spectrum, element_order, orders, overall_level, waterfall
 from beltdyn.results.derived.turn import turn_means
 from beltdyn.results.derived.wear import wear_by_arc, wear_by_belt
 
@@ -19,6 +19,7 @@ __all__ = [
     "hub_loads",
     "mid_span_displacements",
     "orders",
+    "overall_level",
     "pulley_number",
     "pulley_powers",
     "sliding_arcs",

@@ -19,6 +19,8 @@ _OVERLAP = 4
 _SAME = 0.01
 """Part of a speed by which it changes at least in a run-up."""
 
+_NOISE_BANDWIDTH = 1.5
+"""Of a Hann window, in lines of its spectrum."""
 _STANDING = 0.1
 """Part of the largest speed below which orders are not looked for."""
 
@@ -97,6 +99,25 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
     turning = np.interp(time[0] + middle, speed["time"].values, np.abs(speed.values))
     kept = transform.f <= _highest(values, transform.fs)
     return _over_speed(values, amplitude[:, kept], turning, "frequency", transform.f[kept], "Hz", "Frequency")
+
+
+def overall_level(amplitude: xr.DataArray) -> xr.DataArray:
+    """Give the root mean square of all that a waterfall shows, but for the mean.
+
+    Parameters
+    ----------
+    amplitude : DataArray
+        Result of `waterfall`.
+
+    Returns
+    -------
+    DataArray
+        In the unit of the variable, over ``speed``; a sinusoid of amplitude A gives A over the square root of 2. Each
+        spectrum's sum of squares is divided by the noise bandwidth of its window, 1.5 lines of a Hann window.
+    """
+    squares = 0.5 * np.sum(amplitude.values[:, 1:] ** 2, axis=1)
+    attributes = {"units": amplitude.attrs["units"], "long_name": "Overall level (RMS)"}
+    return amplitude[:, 0].copy(data=np.sqrt(squares / _NOISE_BANDWIDTH)).assign_attrs(attributes)
 
 
 def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, revolutions: int = 8) -> xr.DataArray:
