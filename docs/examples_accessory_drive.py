@@ -14,7 +14,6 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import install
 from beltdyn.plot.style import new_figure, styled
 from beltdyn.plot.sweep import orders
-from beltdyn.solve.sweep import run_up
 
 TURN = 0.075
 """A turn of the crank at idle, s."""
@@ -137,7 +136,7 @@ def study(run: bd.Run, folder: Path) -> Iterator[str]:
         least = float(one.dataset["span_tension"].min())
         yield f"{name}: slack span {slack(one, OFF):.4g} N, {slack(one, ON):.4g} N; least tension {least:.4g} N"
         yield from (f"  {warning}" for warning in one.warnings)
-    raised = bd.simulate(run_up(drive, "crank", 700.0 * RPM, 2400.0 * RPM, 3.0))
+    raised = bd.sweep(drive, pulley="crank", from_=700.0 * RPM, to=2400.0 * RPM, duration=3.0)
     draw_orders(raised, folder / "orders.png")
 
 

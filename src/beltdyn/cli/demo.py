@@ -27,5 +27,5 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
     show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
     run = analyse_to(ANALYSES[RUN], load(file), folder / "two_pulley.nc")
     if run.status == "completed":
-        draw([run], folder, animate=False)
+        draw([run], folder)
     return ended(run)

@@ -22,6 +22,10 @@ def plot(
     pulley: str | None = None,
     variable: str = "span_tension",
     animate: Annotated[bool, Parameter(negative="")] = False,
+    mp4: Annotated[bool, Parameter(negative="")] = False,
+    start: float | None = None,
+    end: float | None = None,
+    frames_per_turn: int | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
     """Draw the figures of a result file, or of several files, to compare them.
@@ -44,6 +48,12 @@ def plot(
         What waterfall and orders show, such as span_tension, pulley_speed or pulley_torque.
     animate
         Draw an animation too, which takes longer.
+    mp4
+        Write it as MP4 in place of GIF, which needs `pip install "beltdyn[video]"` or the program ffmpeg.
+    start, end
+        From when to when it shows the drive, s; all of the run by default.
+    frames_per_turn
+        Pictures for each turn of the first pulley: slow motion. By default 150 pictures in all.
     force
         Replace other files than figures of beltdyn too.
     """
@@ -52,21 +62,26 @@ def plot(
     others = f"-and-{more[0].stem if len(more) == 1 else f'{len(more)}-more'}" if more else ""
     folder = output or file.with_name(f"{file.stem}{others}-figures")
     choice = {"figures": _names(figures), "pulley": pulley, "variable": variable, "overwrite": force}
-    draw([open_result(one) for one in (file, *more)], folder, animate, **choice)
+    film = {"start": start, "end": end, "per_turn": frames_per_turn}
+    results = [open_result(one) for one in (file, *more)]
+    draw(results, folder, (folder / f"animation.{'mp4' if mp4 else 'gif'}", film) if animate or mp4 else None, **choice)
 
 
-def draw(results: "Sequence[Result]", folder: Path, animate: bool, **choice: Any) -> None:
-    """Draw figures of results into a folder, as `plot.save_all` does, and say where they are."""
+def draw(
+    results: "Sequence[Result]", folder: Path, animation: tuple[Path, dict[str, Any]] | None = None, **choice: Any
+) -> None:
+    """Draw figures of results into a folder, as `plot.save_all` does, and an animation with its options; name them."""
     from beltdyn import plot
     from beltdyn.results import Run
 
     first = results[0]
-    if animate and not (isinstance(first, Run) and len(results) == 1):
+    if animation and not (isinstance(first, Run) and len(results) == 1):
         these = f"are of {first.kind}" if len(results) == 1 else f"are {len(results)}"
         raise ModelError(f"--animate needs results over time of one run, and these {these}. Leave it away.")
     paths = plot.save_all(results, folder, **choice)
-    if animate and isinstance(first, Run):
-        paths = [*paths, plot.animate(first, folder / "animation.gif", overwrite=bool(choice.get("overwrite")))]
+    if animation and isinstance(first, Run):
+        path, film = animation
+        paths = [*paths, plot.animate(first, path, overwrite=bool(choice.get("overwrite")), **film)]
     show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
 
 

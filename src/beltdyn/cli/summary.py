@@ -34,8 +34,19 @@ def show_summary(run: "Run") -> None:
         _spans(summary),
     )
     show()
-    show_facts([*_power(summary), *_tensioners(summary), *_solver(summary)])
+    show_facts([*_power(summary), *_tensioners(summary), *_run_up(run), *_solver(summary)])
     show_warnings(summary.warnings)
+
+
+def _run_up(run: "Run") -> list[tuple[str, str]]:
+    """What goes before a run-up, and what does not change in it."""
+    from beltdyn.results.recorded import attribute
+
+    with run.recorded() as recorded:
+        said, left = recorded.attrs, attribute(recorded, "settling_left", math.nan)
+        time, held = attribute(recorded, "settling_time", 0.0), str(said.get("held", ""))
+    before = f"{time:.3g} s at the first speed, not recorded: {left:.1%} of the tensions is left of the start"
+    return [*([("settling", before)] if time else []), *([("held constant", held)] if held else [])]
 
 
 def _pulleys(summary: "Summary") -> tuple[tuple[str, ...], Iterable[tuple[str, ...]]]:

@@ -2,11 +2,13 @@
 
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.colors import Normalize
 from PIL.Image import Image
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.plot.drive import DrivePicture, size_of
 from beltdyn.plot.style import new_figure, styled
@@ -14,10 +16,24 @@ from beltdyn.results import Run
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
 
 _DPI = 100
+_EVEN = ("-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p")
+"""Widths and heights of pictures must be even, and all players know these colors."""
+_UNEVEN = 0.02
+"""Part of a step of the angle by which outputs may lie further apart, as where the speed has ripple."""
 
 
 @styled
-def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25, overwrite: bool = False) -> Path:
+def animate(
+    run: Run,
+    path: Path | str,
+    frames: int = 150,
+    frame_rate: int = 25,
+    overwrite: bool = False,
+    *,
+    start: float | None = None,
+    end: float | None = None,
+    per_turn: int | None = None,
+) -> Path:
     """Write an animation of belt and pulleys, the belt's tension in color.
 
     Parameters
@@ -25,13 +41,17 @@ def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25,
     run : Run
         The run.
     path : Path or str
-        The file: a GIF, or an MP4 where the program ffmpeg is installed.
+        The file: a GIF, or an MP4, for which ``pip install "beltdyn[video]"`` or the program ffmpeg is needed.
     frames : int
         Largest number of pictures; they are spread evenly over the outputs of fields.
     frame_rate : float
         Pictures shown per second.
     overwrite : bool
         Replace any regular file, and not only animations of beltdyn.
+    start, end : float, optional
+        From when to when, s; all of the run by default.
+    per_turn : int, optional
+        Pictures for each turn of the first pulley, in place of `frames`: slow motion in which the eye can follow it.
 
     Returns
     -------
@@ -41,24 +61,58 @@ def animate(run: Run, path: Path | str, frames: int = 150, frame_rate: int = 25,
     Raises
     ------
     ModelError
-        If the run holds no output, the format is unknown or needs a program that is missing, or the file
-        cannot be written or would replace one that is no animation of ours.
+        If the run holds no output, or too few for this; the format is unknown or needs a program that is missing; or
+        the file cannot be written or would replace one that is no animation of ours.
     """
     path = Path(path)
     run.require_output()
-    writer = _writer(path, frame_rate)
-    require_replaceable(path, is_marked, overwrite)
+    chosen = _instants(run, frames, start, end, per_turn)
     figure = new_figure(size_of(run.drive))
-    tension = run.dataset["belt_tension"]
-    picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
-    times = run.dataset["field_time"].values
-    chosen = times[np.unique(np.linspace(0, len(times) - 1, frames).round().astype(int))]
-    with atomic_path(path, is_marked, overwrite) as temporary, writer.saving(figure, str(temporary), _DPI):
-        for time in chosen:
-            picture.show(run.fields_at(time))
-            writer.grab_frame()
-            figure.set_layout_engine("none")
+    tension = run.dataset["belt_tension"].sel(field_time=slice(chosen[0], chosen[-1]))
+    with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg()}):
+        writer = _writer(path, frame_rate)
+        require_replaceable(path, is_marked, overwrite)
+        picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
+        with atomic_path(path, is_marked, overwrite) as temporary, writer.saving(figure, str(temporary), _DPI):
+            for time in chosen:
+                picture.show(run.fields_at(time))
+                writer.grab_frame()
+                figure.set_layout_engine("none")
     return path
+
+
+def _instants(run: Run, frames: int, start: float | None, end: float | None, per_turn: int | None) -> FloatArray:
+    """Outputs of fields that are shown, s."""
+    times = run.dataset["field_time"].values
+    inside = times[(times >= (-np.inf if start is None else start)) & (times <= (np.inf if end is None else end))]
+    if inside.size == 0:
+        raise ModelError(
+            f"no output of fields lies from {start} to {end} s: they are from {times[0]:.4g} to {times[-1]:.4g} s. "
+            "Choose a longer time, or reduce simulation.field_interval."
+        )
+    if per_turn is None:
+        return np.asarray(inside[np.unique(np.linspace(0, len(inside) - 1, frames).round().astype(int))])
+    if per_turn < 1:
+        raise ModelError(f"{per_turn} pictures a turn are none. Give one or more.")
+    turned = np.abs(run.dataset["pulley_angle"][:, 0].sel(time=inside).values) / (2.0 * np.pi)
+    largest = float(np.max(np.diff(turned))) if inside.size > 1 else np.inf
+    if largest * per_turn > 1.0 + _UNEVEN:
+        most = f"take {int(1.0 / largest)} a turn or fewer, or " if largest < 1.0 else ""
+        raise ModelError(
+            f"{per_turn} pictures a turn need more outputs of fields: from one to the next {run.drive.pulleys[0].name} "
+            f"makes up to {largest:.3g} turns. In the animation {most}reduce simulation.field_interval and run again."
+        )
+    wanted = np.arange(turned[0], turned[-1], 1.0 / per_turn)
+    return np.asarray(inside[np.unique(np.searchsorted(turned, wanted).clip(max=len(inside) - 1))])
+
+
+def _ffmpeg() -> str:
+    """The program that writes MP4: that of the system, or that of the package imageio-ffmpeg."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+    except ImportError:
+        return str(mpl.rcParams["animation.ffmpeg_path"])
+    return str(get_ffmpeg_exe())
 
 
 class _MarkedGif(PillowWriter):
@@ -77,9 +131,12 @@ def _writer(path: Path, frame_rate: int) -> AbstractMovieWriter:
         case ".gif":
             return _MarkedGif(fps=frame_rate)
         case ".mp4" if FFMpegWriter.isAvailable():
-            return FFMpegWriter(fps=frame_rate, metadata={"comment": MARK})
+            return FFMpegWriter(fps=frame_rate, metadata={"comment": MARK}, extra_args=list(_EVEN))
         case ".mp4":
-            raise ModelError(f"{path} cannot be written: MP4 needs the program ffmpeg. Install it, or write a .gif.")
+            raise ModelError(
+                f"{path} cannot be written: MP4 needs the program ffmpeg. "
+                'pip install "beltdyn[video]" brings one; or write a .gif.'
+            )
         case suffix:
             raise ModelError(
                 f"{path} cannot be written: {suffix or 'no suffix'} is not a format for animations. Use .gif or .mp4."

@@ -26,6 +26,8 @@ _ROOMY = 0.13
 _STEEP = 0.4
 _SIZE = 8.0
 _NARROW, _WIDE = 0.55, 1.1
+_LONG, _LONGEST, _WORDS = 0.25, 14.0, 2.2
+"""Height over width below which a drive is long; the widest figure, and what words take of its height, inches."""
 _MARGIN = 0.04
 _ROUNDS = 8
 
@@ -102,9 +104,13 @@ def draw_rotation(ax: Axes, center: ArrayLike, radius: float, speed: float) -> N
 
 
 def size_of(drive: Drive) -> tuple[float, float]:
-    """Width and height of a figure of a drive, inches: as high as it needs."""
+    """Width and height of a figure of a drive, inches: as high as it needs, and wider for a long drive."""
     width, height = np.ptp(extent_of(drive, drive.path), axis=0)
-    return _SIZE, _SIZE * float(np.clip(height / width, _NARROW, _WIDE))
+    shape = float(height / width)
+    if shape < _LONG:
+        wide = min(_SIZE * _LONG / shape, _LONGEST)
+        return wide, wide * shape + _WORDS
+    return _SIZE, _SIZE * float(np.clip(shape, _NARROW, _WIDE))
 
 
 def extent_of(drive: Drive, path: Path) -> FloatArray:
@@ -113,6 +119,9 @@ def extent_of(drive: Drive, path: Path) -> FloatArray:
     points = [*(path.centers - radii), *(path.centers + radii)]
     points += [np.array(one.anchor) for one in drive.tensioners if one.anchor is not None]
     points += [] if path.ends is None else list(path.ends)
+    for carrier in drive.carriers:
+        ends = [carrier.place(position)[0] for position in carrier.tensioner.stops or ()]
+        points += [end + side * radii[carrier.pulley] for end in ends for side in (-1.0, 1.0)]
     return np.array([np.min(points, axis=0), np.max(points, axis=0)])
 
 

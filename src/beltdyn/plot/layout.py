@@ -15,6 +15,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, Tensioner
 from beltdyn.model import Drive, Installation, Path, install
+from beltdyn.model.carrier import Carrier
 from beltdyn.model.clearance import crossings
 from beltdyn.model.end import End
 from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
@@ -30,6 +31,9 @@ _ARROW = "-|>,head_length=5,head_width=2.4"
 @styled
 def layout(drive: Drive, installation: Installation | None = None, ax: Axes | None = None) -> Axes:
     """Draw belt and pulleys at rest: spans and their lengths, wrap angles, directions of rotation, tensioners.
+
+    A tensioner is drawn with its arm and pivot, or its line, an arrow the way in which it tensions the belt, and its
+    pulley at both stops, dashed.
 
     Parameters
     ----------
@@ -52,6 +56,8 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     for number in range(path.count):
         _draw_pulley(ax, drive, path, number)
     _draw_belt(ax, path)
+    for carrier in drive.carriers:
+        _draw_stops(ax, drive, carrier)
     for tensioner, way in _ways(drive, installation):
         _draw_tensioner(ax, tensioner, way)
     if path.ends is not None:
@@ -159,6 +165,20 @@ def _draw_tensioner(ax: Axes, tensioner: Tensioner, way: FloatArray) -> None:
         ax.plot(*np.array([pivot, center]).T, **line)
         ax.plot(*pivot, marker="o", markersize=7, markeredgecolor=_TENSIONER, markerfacecolor="white", zorder=4.1)
     ax.add_patch(_arrow(way, _TENSIONER, 9))
+
+
+def _draw_stops(ax: Axes, drive: Drive, carrier: Carrier) -> None:
+    """Draw the way of a tensioned pulley from stop to stop, dotted, and its rim at both, dashed."""
+    if carrier.tensioner.stops is None:
+        return
+    lower, upper = carrier.tensioner.stops
+    way = np.array([carrier.place(position)[0] for position in np.linspace(lower, upper, _POINTS)])
+    ax.plot(*way.T, color=_TENSIONER, linewidth=1.2, linestyle=":", zorder=4)
+    radius = drive.pulleys[carrier.pulley].radius
+    for center, name in ((way[0], "lower stop"), (way[-1], "upper stop")):
+        rim = Circle(center, radius, fill=False, edgecolor=_TENSIONER, linewidth=0.8, linestyle="--", zorder=1.5)
+        rim.set_label(name)
+        ax.add_patch(rim)
 
 
 def _draw_end(ax: Axes, end: End, point: FloatArray, way: FloatArray) -> None:

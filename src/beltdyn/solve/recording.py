@@ -1,7 +1,7 @@
 """From states to results: observe what the integrator hands out, record it, and tell of progress."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import prod
 from pathlib import Path
 from types import TracebackType
@@ -152,10 +152,6 @@ class Recording:
         self._drive, self._system = drive, system
         self._observer = Observer(drive, system, layout.belt_coordinate)
         self._started = time.perf_counter()
-
-    def note(self, findings: Mapping[str, float | str]) -> None:
-        """Add global attributes of the dataset."""
-        self._findings |= findings
 
     def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
         """Take states; they are recorded a few at a time."""

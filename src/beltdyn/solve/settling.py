@@ -139,17 +139,18 @@ class _Left:
 
     @property
     def part(self) -> float:
-        """What is left, over the largest mean tension; NaN of too few windows.
+        """What is left, over the largest mean tension; NaN of too few windows, or without tension.
 
-        Changes that fall by the factor r from window to window leave the sum r + r^2 + ... of the last one.
+        Changes that fall by the factor r from window to window leave the sum r^2 + r^3 + ... = r^2 / (1 - r) of the
+        last but one.
         """
-        if not self.known:
+        scale = float(np.max(self._windows[-1][0])) if self.known else 0.0
+        if not scale > 0.0:
             return float("nan")
-        scale = float(np.max(self._windows[-1][0]))
         changes = np.abs(np.diff(self._windows[-_LAST - 1 :], axis=0)).max(axis=(1, 2)) / scale
         earlier, late = (float(np.max(half)) for half in np.split(changes, 2))
         ratio = min((late / earlier) ** (2.0 / _LAST), _SLOWEST) if earlier > 0.0 else 0.0
-        return late * ratio / (1.0 - ratio)
+        return late * ratio**2 / (1.0 - ratio)
 
 
 def _between(chunks: Iterator[Chunk], stops: FloatArray) -> Iterator[tuple[float, Chunk]]:

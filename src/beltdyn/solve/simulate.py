@@ -112,7 +112,7 @@ def record_run(
         recording.integrator, recording.watch = integrator.name, watch
         if begin is not None:
             system, state, said = begin(drive, state, integrator, progress)
-            recording.note(said)
+            recording.note(**said)
         recording.start(drive, system, rest.unstable if rest else ())
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in integrator(task):

@@ -10,7 +10,7 @@ from beltdyn.solve.observer import Arrays
 
 _RPM = 30.0 / np.pi
 _FAST = 0.05
-"""Velocity of sliding of a whole arc over the speed of the belt from which on it counts."""
+"""Velocity of sliding of a whole arc, over the speed of the swept pulley's rim, from which on it counts."""
 
 
 class SlipThrough:
@@ -25,7 +25,7 @@ class SlipThrough:
     """
 
     def __init__(self, drive: Drive, swept: int) -> None:
-        self._drive, self._swept = drive, swept
+        self._drive, self._swept, self._radius = drive, swept, float(drive.radii[swept])
         self._since = np.full(len(drive.pulleys), np.inf)
         self._load = np.zeros(len(drive.pulleys))
         self._speed = np.zeros(len(drive.pulleys))
@@ -36,29 +36,29 @@ class SlipThrough:
         Raises
         ------
         SlipError
-            If the whole arc of a pulley slides for a turn of the belt, faster than 5 % of its speed.
+            If the whole arc of a pulley slides for a turn of the belt, faster than 5 % of the swept rim's speed.
         """
         for row, time in enumerate(outputs["time"]):
             sliding = np.abs(outputs["sliding_speed"][row])
-            belt = float(np.nanmax(np.abs(outputs["belt_speed"][row])))
-            speed = outputs["pulley_speed"][row, self._swept]
-            fast = sliding > _FAST * belt
+            speed = float(outputs["pulley_speed"][row, self._swept])
+            rim = abs(speed) * self._radius
+            fast = sliding > _FAST * rim
             begins = fast & np.isinf(self._since)
             self._since = np.where(fast, np.where(begins, time, self._since), np.inf)
             self._load = np.where(begins, np.abs(outputs["pulley_torque"][row]), self._load)
             self._speed = np.where(begins, speed, self._speed)
-            for number in np.flatnonzero(time - self._since > self._drive.belt_length / max(belt, 1e-9)):
+            for number in np.flatnonzero(time - self._since > self._drive.belt_length / max(rim, 1e-9)):
                 raise SlipError(self._message(int(number), time, speed, outputs, row), SWEEP_REMEDY)
 
     def _message(self, number: int, time: float, speed: float, outputs: Arrays, row: int) -> str:
         name, swept = (self._drive.pulleys[one].name for one in (number, self._swept))
         before, after = (float(side[number]) for side in across(outputs["span_tension"][row], self._drive))
         sliding = abs(float(outputs["sliding_speed"][row, number]))
-        belt = float(np.nanmax(np.abs(outputs["belt_speed"][row])))
+        share = sliding / (abs(speed) * self._radius)
         return (
             f"the sweep stops at t = {time:.4g} s, {swept} at {_RPM * speed:.4g} rpm: {name} slips through. Since "
             f"{_RPM * self._speed[number]:.4g} rpm its whole arc slides, now at {sliding:.3g} m/s, "
-            f"{sliding / belt:.0%} of the belt's speed. When this began it had {self._load[number]:.4g} N m to "
+            f"{share:.0%} of the speed of {swept}'s rim. When this began it had {self._load[number]:.4g} N m to "
             f"transmit, and with the tensions of {max(before, after):.4g} and {min(before, after):.4g} N beside it "
             "friction transmits no more."
         )

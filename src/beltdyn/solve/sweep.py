@@ -3,11 +3,12 @@
 from collections.abc import Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from beltdyn.errors import ModelError
-from beltdyn.machines import HubLink, Load, Profile, Table
+from beltdyn.machines import Constant, Profile
 from beltdyn.model import Drive
+from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import to_si
 from beltdyn.results import Run
 from beltdyn.solve.progress import Report
@@ -15,6 +16,7 @@ from beltdyn.solve.settling import Settling
 from beltdyn.solve.simulate import record_run
 from beltdyn.solve.slip_through import SlipThrough
 
+_Part = TypeVar("_Part", bound=Part)
 _LEAD = 0.1
 """Part of the run-up's duration in which the drive reaches the speed that it starts from, before the recording."""
 _LATE = 1e9
@@ -85,10 +87,10 @@ def sweep(
     start, end = _number("from", from_, "rad/s"), _number("to", to, "rad/s")
     length = _number("duration", duration, "s")
     longest = length if settling is None else _number("settling", settling, "s")
-    if not longest > 0.0:
-        raise ModelError(f"settling = {longest:g} s must be above zero. Raise it, or leave it away.")
     steady, held = without_schedules(drive)
     raised = run_up(steady, pulley, start, end, length)
+    if not longest > 0.0:
+        raise ModelError(f"settling = {longest:g} s must be above zero. Raise it, or leave it away.")
     number = [one.name for one in drive.pulleys].index(pulley)
     return record_run(
         raised,
@@ -119,25 +121,22 @@ def without_schedules(drive: Drive) -> tuple[Drive, list[str]]:
     """
     held = list[str]()
 
-    def final(profile: Profile | None, name: str) -> dict[str, Any] | None:
-        if profile is None:
-            return None
-        value = float(profile.at([_LATE])[0])
-        if profile.breakpoints() or isinstance(profile, Table):
-            held.append(f"{name} = {value:.4g}")
-        return {"kind": "constant", "value": value}
+    def constant(part: _Part, name: str, **others: Any) -> _Part:
+        profiles = {key: value for key in type(part).model_fields if isinstance(value := getattr(part, key), Profile)}
+        final = {key: float(profile.at([_LATE])[0]) for key, profile in profiles.items()}
+        held.extend(f"{name}.{key} = {final[key]:.4g}" for key in final if not isinstance(profiles[key], Constant))
+        values = {key: {"kind": "constant", "value": value} for key, value in final.items()}
+        return part.replace(**values, **others) if values or others else part
 
-    def steady(parts: Sequence[Load | HubLink], name: str) -> list[Any]:
-        schedules = [final(getattr(part, "schedule", None), f"{name}[{n}].schedule") for n, part in enumerate(parts, 1)]
-        pairs = zip(parts, schedules, strict=True)
-        return [part if schedule is None else part.replace(schedule=schedule) for part, schedule in pairs]
+    def all_constant(parts: Sequence[_Part], name: str) -> list[_Part]:
+        return [constant(part, f"{name}[{number}]") for number, part in enumerate(parts, 1)]
 
     pulleys = [
-        one.replace(
-            speed=final(one.speed, f"{one.name}.speed"),
-            torque=final(one.torque, f"{one.name}.torque"),
-            load=steady(one.load, f"{one.name}.load"),
-            hub=steady(one.hub, f"{one.name}.hub"),
+        constant(
+            one,
+            one.name,
+            load=all_constant(one.load, f"{one.name}.load"),
+            hub=all_constant(one.hub, f"{one.name}.hub"),
         )
         for one in drive.pulleys
     ]

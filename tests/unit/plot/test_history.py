@@ -45,3 +45,11 @@ def test_what_vibrates_is_drawn_without_dashes(make_run: Callable[..., Run], ax:
     swings = make_run(span_tension=50.0 + 9.0 * np.sin(2.0 * np.pi * np.outer(time, (4.0, 6.0))))
     plot.span_tensions(swings, ax)
     assert [line.get_linewidth() for line in ax.lines] == [1.7, 0.8]
+
+
+def test_speeds_have_a_scale_in_rpm(run: Run, ax: Axes) -> None:
+    plot.speeds(run, ax)
+    (scale,) = ax.child_axes
+    assert scale.get_ylabel() == "[rpm]"
+    ax.figure.canvas.figure.draw_without_rendering()
+    np.testing.assert_allclose(scale.get_ylim(), np.multiply(ax.get_ylim(), 30.0 / np.pi))

@@ -145,3 +145,24 @@ def test_ends_of_a_belt_are_drawn_where_its_path_ends(drive: Drive, ax: Axes) ->
         assert places[name].get_position()[1] < 0.0
     low, high = ax.get_ylim()
     assert low < path.ends[:, 1].min() < high
+
+
+def test_stops_of_a_tensioner_are_drawn_where_its_pulley_stands(idler_drive: Drive, ax: Axes) -> None:
+    stops = {"stops": (-0.2, 0.1), "stop_stiffness": 100.0}
+    stopped = idler_drive.replace(tensioner=[idler_drive.tensioners[0].replace(**stops)])
+    plot.layout(stopped, ax=ax)
+    (carrier,) = stopped.carriers
+    rims = {str(patch.get_label()): patch for patch in ax.patches if "stop" in str(patch.get_label())}
+    for name, position in (("lower stop", -0.2), ("upper stop", 0.1)):
+        rim = rims[name]
+        assert isinstance(rim, Circle)
+        np.testing.assert_allclose(rim.center, carrier.place(position)[0])
+        assert rim.radius == 0.03
+
+
+def test_a_long_drive_is_drawn_wide(drive: Drive) -> None:
+    first, last = drive.pulleys
+    far = drive.replace(pulley=[first, last.replace(center=(8.0, 0.0))], belt=drive.belt.replace(length=16.8))
+    page = plot.layout(far).figure.figure
+    assert page.get_figwidth() > 12.0
+    assert page.get_figheight() < 4.0

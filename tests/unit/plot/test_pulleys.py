@@ -93,3 +93,39 @@ def test_pressure_where_nothing_touches(make_run: MakeRun, run: Run, ax: Axes) -
     free = np.full_like(run.dataset["contact_pulley"].values, -1)
     plot.contact_pressure(make_run(contact_pulley=free), 0, ax=ax)
     assert np.asarray(ax.lines[0].get_xdata()).size == 0
+
+
+def test_losses_that_give_power_stand_left_of_zero(make_run: MakeRun, run: Run, ax: Axes) -> None:
+    """The driver loses 2 W in friction, and the driven pulley would give 0.5 W."""
+    power = np.ones_like(run.dataset["friction_power"].values) * [2.0, -0.5]
+    plot.losses(make_run(friction_power=power), ax)
+    driver, driven = ax.patches[:2]
+    assert (driver.get_x(), driver.get_width()) == pytest.approx((0.0, 2.0))  # type: ignore[attr-defined]
+    assert (driven.get_x(), driven.get_width()) == pytest.approx((0.0, -0.5))  # type: ignore[attr-defined]
+    assert ax.get_xlim()[0] < -0.5
+
+
+def test_the_scale_of_slip_is_that_of_the_running_drive(make_run: MakeRun, run: Run, ax: Axes) -> None:
+    """The driven pulley stands at first."""
+    turning = {name: run.dataset[name].values.copy() for name in ("pulley_speed", "pulley_angle")}
+    turning["pulley_speed"][:5, 1] = 0.0
+    plot.slip(make_run(**turning), ax)
+    low, high = ax.get_ylim()
+    assert -1.0 < low < 0.0
+    assert 0.5 < high < 1.0
+
+
+def test_margins_that_vibrate_are_bands(make_run: MakeRun, run: Run, ax: Axes) -> None:
+    ripple = np.where(np.arange(run.dataset.sizes["time"]) % 2, 5.0, -5.0)[:, None]
+    shaken = make_run(span_tension=run.dataset["span_tension"].values + ripple * [1.0, -1.0])
+    plot.capstan_margins(shaken, ax)
+    assert ax.collections
+
+
+def test_sizes_of_hub_loads_have_their_values_in_the_legend(run: Run, ax: Axes) -> None:
+    plot.hub_load_sizes(run, ax)
+    loads = hub_loads(run)["hub_load"]
+    np.testing.assert_array_equal(ax.lines[1].get_ydata(), loads[:, 1])
+    last = float(loads[-1, 1])
+    assert str(ax.lines[1].get_label()).startswith(f"driven {last:.4g} N, up to ")
+    assert ax.get_ylabel() == "Hub load [N]"

@@ -57,7 +57,7 @@ def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path:
     page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
-    assert names == ["speeds", "torques", "span_tensions", "slip", "capstan_margins", "powers"]
+    assert names == ["speeds", "torques", "span_tensions", "slip", "capstan_margins", "powers", "hub_load_sizes"]
 
 
 def test_runs_in_memory_are_named_by_what_differs(run: Run) -> None:

@@ -95,6 +95,8 @@ def test_what_is_not_there_is_a_model_error(run_up: Run, ax: Axes, wrong: dict[s
 
 @pytest.mark.parametrize(("chosen", "shown"), [(None, "driven"), (0, "driver")])
 def test_the_swept_pulley_is_shown_unless_another_is_chosen(run_up: Run, chosen: int | None, shown: str) -> None:
-    swept = Run(run_up.dataset.assign_attrs(swept_pulley="driven"), run_up.drive)
+    first, last = run_up.drive.pulleys
+    pulleys = [first.replace(speed=None, inertia=0.1), last.replace(torque=None, speed=first.speed)]
+    swept = Run(run_up.dataset.assign_attrs(swept_pulley="driven"), run_up.drive.replace(pulley=pulleys))
     page = plot.FIGURES["waterfall"].arrange(swept, Choice(pulley=chosen))
     assert f"Speed of {shown} [rpm]" in [ax.get_ylabel() for ax in page.axes]

@@ -66,7 +66,7 @@ def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive
 def test_a_pulley_that_slips_through_ends_the_sweep_with_one_warning(drive: Drive, tmp_path: Path) -> None:
     slippery = drive.replace(contact=drive.contact.replace(friction=0.02))
     file = tmp_path / "slips.nc"
-    with pytest.raises(SlipError, match=r"driven slips through. Since .* rpm its whole arc slides"):
+    with pytest.raises(SlipError, match=r"driver slips through. Since .* rpm its whole arc slides"):
         sweep(slippery, pulley="driver", from_=20.0, to=60.0, duration="1 s", settling="0.05 s", output=file)
     (warning,) = open_run(file).warnings
     assert "slips through" in warning
