@@ -10,6 +10,7 @@ SOURCE = UNIT.parents[1] / "src" / "beltdyn"
 
 ELSEWHERE = {
     # Kinds of one contract: the test of their family runs over all of them alike.
+    "errors.py": "unit/solve/test_slip_through.py",
     "contact/friction/*.py": "unit/contact/test_friction.py",
     "contact/normal/*.py": "unit/contact/test_normal.py",
     "contact/surface/*.py": "unit/contact/test_surface.py",
