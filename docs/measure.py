@@ -531,7 +531,7 @@ def tutorial_rtol() -> Iterator[Row]:
     for rtol, run in runs.items():
         error = speed_difference(run, reference)
         errors = [f"{value:.1e}" for value in (rms(error), float(abs(error).max()), rms(error[-200:]))]
-        warns = " (warns)" if any("energy account" in warning for warning in run.warnings) else ""
+        warns = " (warns)" if any("energies do not add up" in warning for warning in run.warnings) else ""
         closure = f"{float(run.dataset['energy_closure'][-1]):.1e}{warns}"
         yield f"{rtol:.0e}", *errors, closure, steps(run), seconds(run)
     finer = bd.simulate(tutorial(belt={"elements": 120}, rtol=1e-4))
