@@ -33,7 +33,7 @@ def main() -> None:
         walls.append(time.perf_counter() - wall)
         processor.append(time.process_time() - start)
     wall, used = statistics.median(walls), statistics.median(processor)
-    table = Table("quantity", "value", title=f"{len(drive.pulleys)} pulleys, {drive.belt.elements} elements, 1 s")
+    table = Table("quantity", "value", title=f"{len(drive.pulleys)} pulleys, {drive.elements} elements, 1 s")
     table.add_row("wall time", f"{wall:.2f} s, {min(walls):.2f} to {max(walls):.2f}")
     table.add_row("time of the processor", f"{used:.2f} s, {min(processor):.2f} to {max(processor):.2f}")
     table.add_row("computing time for a simulated second", f"{attributes['wall_time']:.2f} s")

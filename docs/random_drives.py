@@ -74,7 +74,7 @@ def judge(seed: int) -> list[Judged]:
     return [
         Judged(
             mesh,
-            run.drive.belt.elements,
+            run.drive.elements,
             dict(run.resolution.errors),
             true_errors(values(run), exact),
             dict(run.resolution.needed),
@@ -133,6 +133,7 @@ def _draw(rng: np.random.Generator) -> bd.Drive | None:
         "stiffness": stiffness,
         "damping": damping,
         "friction": friction,
+        "friction_law": "force_slope",
         "creep_rate_factor": slope,
         "moment_arm": "rim" if rng.random() < 0.5 else "point",
     }
@@ -182,7 +183,7 @@ def values(run: bd.Run) -> Values:
     last = slice(round((_TURNS - _MEANS) * _OUTPUTS), None)
     window = data.isel(time=last, field_time=last)
     _, weights = gauss_points(drive.contact.quadrature_points)
-    cell = np.tile(weights, drive.belt.elements)
+    cell = np.tile(weights, drive.elements)
     force, touched = window["normal_force"].values, window["contact_pulley"].values
     on = [touched == number for number in range(len(drive.pulleys))]
     turned = window["pulley_angle"].values[-1] - window["pulley_angle"].values[0]

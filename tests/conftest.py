@@ -92,7 +92,7 @@ def fine_drive(drive: Drive) -> Drive:
 
 @pytest.fixture(scope="session")
 def layout(drive: Drive) -> Layout:
-    elements, length = drive.belt.elements, drive.belt_length
+    elements, length = drive.elements, drive.belt_length
     return Layout(
         pulleys=("driver", "driven"),
         spans=("driver-driven", "driven-driver"),
@@ -221,7 +221,7 @@ def _summed_up(drive: Drive, layout: Layout, outputs: Arrays) -> Arrays:
     work = FrictionWork(drive, cells(layout.belt_coordinate, drive.belt_length), layout.elements)
     touch = Touch(outputs["time"], centers, places, touched, np.abs(outputs["friction_force"] * slip))
     done = work.take(touch, np.ones(len(touched), dtype=bool))
-    scalars = sliding_of_pulleys(drive, layout.belt_coordinate, touched, normal, slip)
+    scalars = sliding_of_pulleys(drive, layout.belt_coordinate, touched, normal, slip, outputs["pulley_speed"])
     scalars["mid_span_displacement"] = mid_span_displacements(drive, centers, places, touched)
     seen = outputs | scalars
     return {

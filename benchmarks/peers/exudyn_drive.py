@@ -126,7 +126,7 @@ class _Model:
     def _add_belt(self) -> list[Any]:
         belt, pulleys = self._drive.belt, self._drive.pulleys
         circles = [[list(pulley.center), pulley.radius, "L"] for pulley in pulleys]
-        curve = CreateReevingCurve(circles, numberOfANCFnodes=belt.elements, closedCurve=True)
+        curve = CreateReevingCurve(circles, numberOfANCFnodes=belt.given_elements, closedCurve=True)
         stretch = curve["totalLength"] / belt.given_length
         nodes = [np.array([x, y, dx * stretch, dy * stretch]) for x, y, dx, dy in curve["ancfPointsSlopes"]]
         cable = Cable2D(
@@ -138,7 +138,7 @@ class _Model:
         made = PointsAndSlopes2ANCFCable2D(
             self._system,
             nodes,
-            [belt.given_length / belt.elements] * belt.elements,
+            [belt.given_length / belt.given_elements] * belt.given_elements,
             cable,
             fixedConstraintsNode0=[1, 0, 0, 0],
             firstNodeIsLastNode=True,
@@ -177,7 +177,7 @@ class _Model:
 
     def _add_contacts(self, pulley: Pulley, body: Any) -> None:
         belt, contact, count = self._drive.belt, self._drive.contact, self._settings.segments
-        segment = belt.given_length / (belt.elements * count)
+        segment = belt.given_length / (belt.given_elements * count)
         circle = self._system.AddMarker(MarkerBodyRigid(bodyNumber=body))
         for cable in self._cables:
             shape = self._system.AddMarker(MarkerBodyCable2DShape(bodyNumber=cable, numberOfSegments=count))
@@ -188,8 +188,8 @@ class _Model:
                 markerNumbers=[circle, shape],
                 nodeNumber=self._system.AddNode(memory),
                 numberOfContactSegments=count,
-                contactStiffness=contact.given_stiffness * segment,
-                contactDamping=contact.damping * segment,
+                contactStiffness=contact.given("stiffness") * segment,
+                contactDamping=contact.given("damping") * segment,
                 frictionVelocityPenalty=(contact.creep_rate_factor or 0.0) * segment,
                 frictionStiffness=0.0,
                 frictionCoefficient=0.0,

@@ -63,7 +63,7 @@ def look(drive: Drive) -> None:
 
 def balance(drive: Drive) -> None:
     """Find the equilibrium of a drive, as `beltdyn static` does, on a coarse mesh."""
-    coarse = drive.replace(belt=drive.belt.replace(elements=min(drive.belt.elements, COARSE)))
+    coarse = drive.replace(belt=drive.belt.replace(elements=min(drive.elements, COARSE)))
     assert isinstance(equilibrium(coarse).warnings, list)
 
 

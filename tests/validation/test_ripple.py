@@ -90,7 +90,7 @@ def lines_of(run: Run) -> Lines:
     g, span, driven = belt.stretch_parameters.stretch(tension), run.drive.path.span_lengths[0], run.drive.pulleys[1]
     wave = np.sqrt(tension * g / belt.mass_per_length)
     transverse = (wave**2 - speed**2) / (2.0 * span * wave)
-    nodes = float(np.mean(speed / g)) * belt.elements / belt.given_length
+    nodes = float(np.mean(speed / g)) * belt.given_elements / belt.given_length
     stiffness = driven.radius**2 * np.sum(belt.stretch_parameters.tangent_stiffness(g) * g / span)
     torsion = float(np.sqrt(stiffness / driven.inertia)) / (2.0 * np.pi)
     return Lines(np.multiply(nodes, np.arange(1.0, 7.0)), np.outer(transverse, [1, 2, 3]).ravel(), torsion)

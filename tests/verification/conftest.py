@@ -40,7 +40,7 @@ def belt(drive: Drive) -> Belt:
 
 @pytest.fixture(scope="session")
 def element_length(belt: Belt) -> float:
-    return belt.given_length / belt.elements
+    return belt.given_length / belt.given_elements
 
 
 @pytest.fixture(scope="session")
@@ -54,7 +54,7 @@ def evaluate() -> Callable[[Belt, FloatArray], tuple[float, FloatArray, FloatArr
     """Energy, its gradient and its tangent for one element of a belt."""
 
     def values(belt: Belt, e: FloatArray) -> tuple[float, FloatArray, FloatArray]:
-        section, length = belt_section(belt), belt.given_length / belt.elements
+        section, length = belt_section(belt), belt.given_length / belt.given_elements
         element, work = Ancf(section, gauss_points(belt.quadrature_points)), blank(ANCF.workspace)
         element_force(element, e, length, True, work)
         return element_energy(element, e, length), work.gradient, work.tangent

@@ -57,7 +57,7 @@ def catenary(belt: Belt, span: float) -> tuple[float, FloatArray, FloatArray]:
     pull = float(
         brentq(lambda h: half_shape(h, weight, law, half)[0] - 0.5 * span, 1e-3 * weight, 1e2 * weight, xtol=1e-16)
     )
-    s = np.linspace(-half, half, belt.elements + 1)
+    s = np.linspace(-half, half, belt.given_elements + 1)
     places = np.array([half_shape(pull, weight, law, abs(u)) * [np.sign(u), 1.0] for u in s])
     return pull, places, np.arctan2(weight * s, pull)
 

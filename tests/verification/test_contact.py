@@ -26,14 +26,21 @@ from beltdyn.theory.capstan import capstan_ratio
 RADIUS = 0.1
 STIFFNESS, DAMPING, FRICTION = 1e7, 50.0, 0.4
 LAWS: dict[str, dict[str, Any]] = {
-    "force_slope": {"creep_rate_factor": 1e3},
+    "force_slope": {"friction_law": "force_slope", "creep_rate_factor": 1e3},
     "coefficient_slope": {"friction_law": "coefficient_slope", "creep_velocity": 0.2},
 }
 
 
 @pytest.fixture(scope="module", params=LAWS)
 def contact(request: pytest.FixtureRequest) -> Contact:
-    return Contact(stiffness=STIFFNESS, damping=DAMPING, friction=FRICTION, quadrature_points=8, **LAWS[request.param])
+    return Contact(
+        stiffness=STIFFNESS,
+        damping=DAMPING,
+        friction=FRICTION,
+        quadrature_points=8,
+        moment_arm="point",
+        **LAWS[request.param],
+    )
 
 
 def belt_of(length: float, elements: int, **changed: float) -> Belt:
@@ -73,7 +80,7 @@ class TestStraightBelt:
     def forces(self, request: pytest.FixtureRequest, contact: Contact) -> BodyForces:
         belt = belt_of(0.3, 6)
         system = belt_system(belt, [turning(request.param)], contact)
-        along = np.linspace(-0.16, 0.14, belt.elements + 1)
+        along = np.linspace(-0.16, 0.14, belt.given_elements + 1)
         ones, zeros = np.ones_like(along), np.zeros_like(along)
         state = at_rest(system, np.stack([along, self.HEIGHT * ones, ones, zeros, zeros, ones], axis=1))
         return load(system, moving(state, np.zeros((along.size, len(system.scale))), request.param))[1]

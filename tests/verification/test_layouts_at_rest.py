@@ -50,7 +50,14 @@ def make(circles: Circles, turned: float = 0.0, shift: tuple[float, float] = (0.
             {"name": name, "center": (turn @ (x, y) + shift).tolist(), "radius": radius, "side": side, "inertia": 0.01}
             for name, x, y, radius, side in circles
         ],
-        contact={"allowed_penetration": 1e-4, "friction": 0.5, "creep_rate_factor": 1e4},
+        contact={
+            "allowed_penetration": 1e-4,
+            "friction": 0.5,
+            "creep_rate_factor": 1e4,
+            "damping": 0.0,
+            "friction_law": "force_slope",
+            "moment_arm": "point",
+        },
         simulation={"duration": 0.1, "output_interval": 1e-3},
     )
 

@@ -156,7 +156,7 @@ class TestSpinningRing:
 
     def spin(self, belt: Belt) -> tuple[System, State, float]:
         """Ring in steady rotation, by its stretch, and its tension."""
-        links = belt.element_kind.curves * belt.elements
+        links = belt.element_kind.curves * belt.given_elements
         length = belt.given_length / links
         half = sin(pi / links)
 

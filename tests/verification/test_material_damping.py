@@ -44,16 +44,16 @@ def make_belt(elements: int) -> Belt:
 
 def straight_matrices(belt: Belt) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Mass, damping and stiffness of the straight open belt, shape (6 N, 6 N)."""
-    section, length = belt_section(belt), belt.given_length / belt.elements
+    section, length = belt_section(belt), belt.given_length / belt.given_elements
     unloaded = np.array([0, 0, 1, 0, 0, 1, length, 0, 1, 0, 0, 1], dtype=float)
     element, work = Ancf(section, gauss_points(4)), blank(ANCF.workspace)
     damping_force(element, unloaded, np.zeros(12), length, 0.0, 1.0, work)
     damping = work.tangent.copy()
     element_force(element, unloaded, length, True, work)
     stiffness = work.tangent
-    size = 6 * (belt.elements + 1)
+    size = 6 * (belt.given_elements + 1)
     whole = np.zeros((3, size, size))
-    for first in range(0, 6 * belt.elements, 6):
+    for first in range(0, 6 * belt.given_elements, 6):
         rows = slice(first, first + 12)
         whole[:, rows, rows] += [element_mass(section, length), damping, stiffness]
     return whole[0], whole[1], whole[2]
@@ -72,7 +72,7 @@ def oscillations(matrices: tuple[FloatArray, FloatArray, FloatArray], free: Floa
 def test_modes_decay_with_half_omega_tau(kind: str, measured: Callable[..., None]) -> None:
     """Frequency and damping ratio of the first three modes, to what 16 elements and the thin beam leave open: 1e-4."""
     belt = make_belt(16)
-    nodes = np.arange(belt.elements + 1)
+    nodes = np.arange(belt.given_elements + 1)
     k = np.arange(1, 4)
     if kind == "stretch":
         free = np.concatenate([6 * nodes[1:], 6 * nodes + 2])
@@ -91,7 +91,7 @@ def test_modes_decay_with_half_omega_tau(kind: str, measured: Callable[..., None
 def test_energy_of_a_free_flight_is_lost_to_damping_alone(measured: Callable[..., None]) -> None:
     """Kinetic and strain energy and the loss together stay as they are, momentum and angular momentum too, to 1e-9."""
     belt = make_belt(16).replace(thickness="5 mm", stretch_damping_time="1 ms", bending_damping_time="2 ms")
-    section, length = belt_section(belt), belt.given_length / belt.elements
+    section, length = belt_section(belt), belt.given_length / belt.given_elements
     element, mass, work = Ancf(section, gauss_points(4)), element_mass(section, length), blank(ANCF.workspace)
     random = np.random.default_rng(2)
     scale = np.tile([length, length, 1, 1, 1, 1], 2)

@@ -37,7 +37,7 @@ STEP = 1e-8
 
 
 def lengths_of(belt: Belt) -> FloatArray:
-    along = (np.arange(belt.elements) + 0.8) / belt.elements
+    along = (np.arange(belt.given_elements) + 0.8) / belt.given_elements
     share = 2.0 + np.cos(2.0 * pi * along)
     return np.asarray(belt.given_length * share / share.sum())
 

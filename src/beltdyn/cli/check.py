@@ -97,7 +97,7 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
-        ("elements", f"{drive.belt.elements} of {1e3 * length / drive.belt.elements:.3g} mm"),
+        ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm"),
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]

@@ -6,7 +6,8 @@ from typing import NamedTuple
 class Parameter(NamedTuple):
     """A number of a law or of a surface, as a key of a drive file.
 
-    It is required where what it belongs to is chosen, unless it has a default, and refused elsewhere.
+    It is required where what it belongs to is chosen, unless it has a default or a drive finds it, and refused
+    elsewhere.
     """
 
     name: str
@@ -19,3 +20,5 @@ class Parameter(NamedTuple):
     """What it must be larger than; None where it may be any number."""
     default: float | None = None
     """What it is where it is not given."""
+    found: bool = False
+    """Whether a drive finds it where it is not given."""

@@ -10,7 +10,7 @@ and change n by t db, t by -n db, p_n by dr_n + p_t db, p_t by dr_t - p_n db, an
 
     d by -dr_n - p_t d(theta),
     w by dv_n + v_t db + omega (dr_t - p_n db) + p_t d(omega),
-    the slip velocity by dv_t - w db + omega p_t d(theta) - a d(omega),
+    the slip velocity by dv_t - w db + omega p_t d(theta) - a d(omega), and the speed of the rim by R d(omega),
 
 from which the variations of f_n n + f_t t and of the moment f_n p_t - arm f_t follow.  On a smooth circle kappa p_n = 1
 and p_t = 0.
@@ -40,6 +40,8 @@ class PointForce(NamedTuple):
     """df_t / d(slip velocity), N s/m^2."""
     by_normal: float
     """df_t / df_n."""
+    by_speed: float
+    """df_t / d(omega) at a constant slip velocity, N s/m."""
     moment: float
     """Moment on the pulley, N."""
     arm: float
@@ -82,7 +84,10 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
     """
     normal = normal_force(law.normal, here.penetration, -here.radial)
     slip = slip_velocity(here, pulley)
-    friction, by_slip, by_normal = friction_force(law.friction, slip, normal.force, pulley.friction)
+    radius = pulley.surface.radius
+    friction, by_slip, by_normal, by_rim = friction_force(
+        law.friction, slip, normal.force, pulley.friction, pulley.speed * radius
+    )
     arm, arm_slope = moment_arm(here, law)
     return PointForce(
         normal,
@@ -91,6 +96,7 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
         normal.force * here.normal_y + friction * here.normal_x,
         by_slip,
         by_normal,
+        by_rim * radius,
         pulley_moment(normal.force, friction, here.offset, arm),
         arm,
         arm_slope,
@@ -140,7 +146,7 @@ def point_tangent(
 @kernel
 def point_turn(here: Approach, force: PointForce, speed: float, by_angle: float, by_speed: float) -> PointTurn:
     """Derivative of force and moment: by_angle d/d(theta) + by_speed d/d(omega); arguments as for `point_tangent`."""
-    along = -force.by_slip * by_speed * here.rim
+    along = by_speed * (force.by_speed - force.by_slip * here.rim)
     if here.offset == 0.0 and here.turn == 0.0:
         return PointTurn(-along * here.normal_y, along * here.normal_x, -force.arm * along)
     tilt, lift = here.turn * by_angle, here.offset * by_angle

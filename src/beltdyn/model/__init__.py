@@ -35,10 +35,10 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
-from beltdyn.model.installation import Installation, describe, install, layer_lengths, tensioner_balances
+from beltdyn.model.installation import Installation, describe, install, tensioner_balances
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, mesh_errors, unresolved
+from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml_reader import json_schema, load, loads

@@ -20,8 +20,6 @@ _STEP = 1.7
 """Elements that an axial wave passes in a step at the default tolerance: 0.5 to 5 in the examples."""
 _ELEMENT_TIME = 6e-6
 """Computing time of a step for each element, s: 4.4e-6 to 7.5e-6 in the examples, on one core of 3 GHz."""
-_SLOWEST_CREEP = 1e-4
-"""Least slip velocity for full friction that does not make time steps much shorter, m/s."""
 
 
 def advise(drive: Drive, installation: Installation) -> list[str]:
@@ -44,7 +42,6 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
         *_stops(drive, installation),
         *_other_balances(drive, installation),
         *_penetration(drive, installation),
-        *_creep(drive, installation),
         *_mesh(drive, installation),
     ]
     return [str(finding) for finding in found]
@@ -188,28 +185,12 @@ def _penetration(drive: Drive, installation: Installation) -> list[Finding]:
     ]
 
 
-def _creep(drive: Drive, installation: Installation) -> list[Finding]:
-    """Compare the slip velocity at which friction is fully used with one that time steps can follow."""
-    law, pressures = drive.contact.friction_parameters, installation.tension / drive.radii
-    fastest = float(np.max(law.saturation(pressures, drive.frictions)))
-    if not 0 < fastest < _SLOWEST_CREEP:
-        return []
-    remedy = law.softened(float(np.max(drive.frictions * pressures)), _SLOWEST_CREEP)
-    return [
-        Finding(
-            f"friction is fully used at a slip velocity of {fastest:.1e} m/s, less than {_SLOWEST_CREEP:g} m/s.",
-            "Numbers are right, but a run takes long.",
-            f"For a fast one, {remedy}.",
-        )
-    ]
-
-
 def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     """Judge the mesh as that of a drive that runs slowly with the tension at rest."""
     if not installation.tension > 0:
         return []
     running = Running(installation.tension)
-    return unresolved(mesh_errors(drive, running), elements_needed(drive, running))
+    return unresolved(mesh_errors(drive, running, drive.elements), elements_needed(drive, running))
 
 
 def describe_time(drive: Drive) -> str:
@@ -217,7 +198,7 @@ def describe_time(drive: Drive) -> str:
     settings, belt = drive.simulation, drive.belt
     if settings.integrator != "generalized_alpha":
         return ""
-    element = drive.belt_length / belt.elements
+    element = drive.belt_length / drive.elements
     passage = element / math.sqrt(belt.axial_stiffness / belt.mass_per_length)
     rates = {
         f"simulation.rtol = {settings.rtol:g}": 1.0 / (_STEP * math.sqrt(settings.rtol / _DEFAULT_RTOL) * passage),
@@ -227,7 +208,7 @@ def describe_time(drive: Drive) -> str:
         rates[f"simulation.max_step = {settings.max_step:g} s"] = 1.0 / settings.max_step
     cause = max(rates, key=rates.__getitem__)
     steps = settings.duration * rates[cause]
-    seconds = steps * belt.elements * _ELEMENT_TIME
+    seconds = steps * drive.elements * _ELEMENT_TIME
     about = f"about {_spoken(seconds)}, a third or three times as much"
     if seconds < _LONG:
         return about

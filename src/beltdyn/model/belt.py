@@ -38,7 +38,7 @@ class Belt(Part):
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
     or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is open, None: the drive that
-    the belt is part of finds it (`Drive.belt_length`).
+    the belt is part of finds it (`Drive.belt_length`), and so it is with `elements` (`Drive.elements`).
 
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
@@ -118,7 +118,7 @@ class Belt(Part):
         gt=0,
         description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
     )
-    elements: Count = Field(20, ge=3, le=100_000, description="the number of belt elements")
+    elements: Count | None = Field(None, ge=3, le=100_000, description="the number of belt elements")
     discretization: ElementName = Field(ANCF.name, description=f"the kind of elements: {_MEANINGS}")
     integration: Literal["full", "reduced"] = Field(
         "full",
@@ -210,6 +210,19 @@ class Belt(Part):
                 "Take belt_length of the drive, or give length."
             )
         return self.length
+
+    @property
+    def given_elements(self) -> int:
+        """The number of elements that is given.
+
+        Raises
+        ------
+        ModelError
+            If it is left open: the drive finds it, `Drive.elements`.
+        """
+        if self.elements is None:
+            raise ModelError("belt.elements is open: a drive finds it. Take elements of the drive, or give them.")
+        return self.elements
 
     def offset(self, side: Side) -> float:
         """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""

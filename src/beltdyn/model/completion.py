@@ -1,4 +1,4 @@
-"""What follows from a drive as it is given: the length of the belt, the take-up, the stiffness of contact."""
+"""What follows from a drive as it is given: the length of the belt, the take-up, the numbers of computation."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,9 +11,18 @@ from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import carriers_of, check_tensioners
 from beltdyn.model.contact import Contact
+from beltdyn.model.defaults import (
+    Choice,
+    OnPath,
+    choose_creep_ratio,
+    choose_damping,
+    choose_elements,
+    choose_stiffness,
+    stiffness_for_tension,
+)
 from beltdyn.model.end import PathEnd, pulling
 from beltdyn.model.path import Path
-from beltdyn.model.pulley import Pulley
+from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.routing import lay_path
 from beltdyn.model.static_estimate import StaticEstimate
 from beltdyn.model.tensioner_balance import balance_tensioners
@@ -47,6 +56,11 @@ class Given(NamedTuple):
         return [pulley.name for pulley in self.pulleys]
 
     @property
+    def is_settled(self) -> bool:
+        """Whether the belt's length and the place of all pulleys are given."""
+        return loaded(self.belt, self.ends).installed_tension is None and not self.has_springs
+
+    @property
     def has_springs(self) -> bool:
         """Whether a spring-loaded tensioner moves a pulley."""
         return any(isinstance(tensioner, MovingTensioner) for tensioner in self.tensioners)
@@ -65,15 +79,17 @@ class Completed(NamedTuple):
     """The same with nothing left open, and what follows."""
 
     belt: Belt
-    """With its length."""
+    """With its length and its number of elements."""
     pulleys: tuple[Pulley, ...]
     """Where fixed tensioners hold them, and spring-loaded ones at zero."""
     contact: Contact
-    """With its stiffness."""
+    """With its stiffness, its damping and the parameters of its friction law."""
     tensioners: tuple[Tensioner, ...]
     """With their take-up."""
     path: Path
     """Around these pulleys."""
+    choices: tuple[Choice, ...] = ()
+    """Numbers of computation that were left open, as they are chosen, with their reasons."""
 
 
 def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
@@ -86,7 +102,8 @@ def complete(given: Given) -> Completed:
     """Find what a drive leaves open.
 
     Fixed tensioners move their pulleys; a belt with an installed tension gets its length, or, if it has one, the
-    fixed tensioner its take-up; an allowed penetration becomes a stiffness of contact.
+    fixed tensioner its take-up; an allowed penetration becomes a stiffness of contact. The numbers of computation that
+    are not given are chosen by `beltdyn.model.defaults`.
 
     Parameters
     ----------
@@ -105,26 +122,66 @@ def complete(given: Given) -> Completed:
     pulleys = given.pulleys_in_place
     path = given.path_around(pulleys)
     check_tensioners(given.tensioners, pulleys, path)
+    if given.is_settled:
+        _check_length(given.belt.given_length, path.length)
+    given, choices = _with_chosen_stiffness(given, path)
     belt, contact = given.belt, given.contact
     if belt.length is not None and belt.installed_tension is not None:
         _check_take_up_is_open(given.tensioners)
         given = _tightened(given, path)
         pulleys = given.pulleys_in_place
         path = given.path_around(pulleys)
-    if belt.installed_tension is None and not given.has_springs:
-        _check_length(belt.given_length, path.length)
-        if contact.stiffness is not None:
-            return Completed(belt, pulleys, contact, given.tensioners, path)
+    if given.is_settled and not contact.open_keys and belt.elements is not None:
+        return Completed(belt, pulleys, contact, given.tensioners, path)
     estimate = given.estimate(path)
     _check_estimate(given, pulleys, estimate)
     length = estimate.length if belt.length is None else belt.length
+    given = given._replace(
+        belt=belt.replace(length=length, installed_tension=None), contact=_with_stiffness(contact, estimate.stiffness)
+    )
+    choices += _choices(given, estimate)
     return Completed(
-        belt=belt.replace(length=length, installed_tension=None),
+        belt=given.belt.replace(**_chosen(choices, "belt.")),
         pulleys=pulleys,
-        contact=_with_stiffness(contact, estimate.stiffness),
+        contact=given.contact.replace(**_chosen(choices, "contact.")),
         tensioners=given.tensioners,
         path=path,
+        choices=choices,
     )
+
+
+def _with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice, ...]]:
+    """The same with a stiffness of contact, if neither this nor a penetration is given."""
+    belt, contact = loaded(given.belt, given.ends), given.contact
+    if contact.stiffness is not None or contact.allowed_penetration is not None:
+        return given, ()
+    tension = belt.installed_tension
+    if tension is None:
+        first = given._replace(contact=contact.replace(stiffness=stiffness_for_tension(path, belt)))
+        tension = first.estimate(path).tension
+    choice = choose_stiffness(path, belt, tension)
+    return given._replace(contact=contact.replace(stiffness=choice.value)), (choice,)
+
+
+def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
+    """Choose the other numbers that are left open, for a belt at rest."""
+    path, belt, contact = estimate.path, given.belt, given.contact
+    chosen = []
+    if contact.damping is None:
+        chosen.append(choose_damping(estimate.stiffness, belt))
+    if "creep_ratio" in contact.open_keys:
+        grip = np.array([friction_on(pulley, belt, contact) for pulley in given.pulleys])
+        strain = estimate.tension / belt.axial_stiffness
+        chosen.append(choose_creep_ratio(given.pulleys, grip * path.wrap_angles, strain))
+    if belt.elements is None:
+        on_path = OnPath(belt, estimate.length, np.abs(path.radii), estimate.stiffness)
+        chosen.append(choose_elements(on_path, estimate.tension))
+    return tuple(chosen)
+
+
+def _chosen(choices: Sequence[Choice], group: str) -> dict[str, float]:
+    """Values of the choices of a group, by their keys there."""
+    return {choice.key.removeprefix(group): choice.value for choice in choices if choice.key.startswith(group)}
 
 
 def _with_stiffness(contact: Contact, stiffness: float) -> Contact:

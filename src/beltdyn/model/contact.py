@@ -28,8 +28,8 @@ class Penalty(Part):
         gt=0,
         description="the depth to which the belt at rest may sink in anywhere, in place of stiffness, in m",
     )
-    damping: LineDamping = Field(
-        0.0, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
+    damping: LineDamping | None = Field(
+        None, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
     )
 
 
@@ -60,7 +60,7 @@ _Laws: Any = create_model(
         Ratio | None,
         Field(None, ge=0, description="the coefficient of friction, without the wedge; by default that of the belt"),
     ),
-    friction_law=_choice(FRICTION_LAWS, "force_slope", "the friction law"),
+    friction_law=_choice(FRICTION_LAWS, "relative_creep", "the friction law"),
     **_keys(FRICTION_LAWS),
 )
 
@@ -68,9 +68,13 @@ _Laws: Any = create_model(
 class Contact(_Laws, Penalty):
     """Penalty contact with friction, the same on every pulley.
 
-    The laws of normal force and friction have parameters of their own. The friction law ``"force_slope"`` (as
-    published) takes `creep_rate_factor`, the slope of the friction force over the slip velocity;
-    ``"coefficient_slope"`` takes `creep_velocity`, the slip velocity at which the coefficient of friction is reached.
+    Stiffness, damping and the creep ratio of friction are means of computation. Those that are not given are open,
+    None: the drive that the contact is part of finds them (`Drive.completed`), see `beltdyn.model.defaults`.
+
+    The laws of normal force and friction have parameters of their own. The friction law ``"relative_creep"`` takes
+    `creep_ratio`, the slip velocity over the speed of the rim at which friction is fully used. ``"coefficient_slope"``
+    takes this velocity itself, `creep_velocity`, and ``"force_slope"`` (as published) `creep_rate_factor`, the slope of
+    the friction force over the slip velocity.
     """
 
     if TYPE_CHECKING:  # the fields that the laws make
@@ -81,10 +85,10 @@ class Contact(_Laws, Penalty):
         def __init__(self, **keys: Any) -> None: ...
         def __getattr__(self, parameter: str) -> Any: ...
 
-    moment_arm: Literal["point", "rim"] = Field(
-        "point",
-        description="the arm of friction about the shaft: to the belt's point, as published, or the effective radius, "
-        "with which friction never gives energy",
+    moment_arm: Literal["rim", "point"] = Field(
+        "rim",
+        description="the arm of friction about the shaft: the effective radius, with which friction never gives "
+        "energy, or to the belt's point, as published",
     )
     sampling: Literal["distributed", "nodal"] = Field(
         "distributed",
@@ -100,8 +104,6 @@ class Contact(_Laws, Penalty):
 
     @model_validator(mode="after")
     def _has_stiffness_or_penetration(self) -> Self:
-        if self.stiffness is None and self.allowed_penetration is None:
-            raise ValueError("stiffness is missing. Give it, or allowed_penetration in its place")
         if self.stiffness is not None and self.allowed_penetration is not None:
             raise ValueError("stiffness and allowed_penetration exclude each other. Remove one of them")
         return self
@@ -118,31 +120,38 @@ class Contact(_Laws, Penalty):
                         f'Remove it, or set {kind}_law = "{owner}"'
                     )
             for key, parameter in own.items():
-                if getattr(self, key) is None and parameter.default is None:
+                if getattr(self, key) is None and parameter.default is None and not parameter.found:
                     raise ValueError(f'{key} is missing: the {kind} law "{chosen}" needs it. Give {key}')
         return self
 
     @property
-    def given_stiffness(self) -> float:
-        """The stiffness that is given, N/m^2.
+    def open_keys(self) -> tuple[str, ...]:
+        """Keys of the numbers that are left open, and that a drive finds."""
+        laws = NORMAL_LAWS[self.normal_law], FRICTION_LAWS[self.friction_law]
+        found = [parameter.name for law in laws for parameter in law.parameters if parameter.found]
+        return tuple(key for key in ("stiffness", "damping", *found) if getattr(self, key) is None)
+
+    def given(self, key: str) -> float:
+        """A number that is given.
 
         Raises
         ------
         ModelError
-            If it is left open: the drive finds it, `Drive.contact_stiffness`.
+            If it is left open: the drive finds it.
         """
-        if self.stiffness is None:
+        number: float | None = getattr(self, key)
+        if number is None:
             raise ModelError(
-                "contact.stiffness is open: a drive finds it for allowed_penetration = "
-                f"{self.allowed_penetration:g} m. Take contact_stiffness of the drive, or give stiffness."
+                f"contact.{key} is open. Take the contact that a drive completes, drive.completed.contact."
             )
-        return self.stiffness
+        return number
 
     @property
     def normal_parameters(self) -> NormalParameters:
-        """Parameters of the law of the normal force, whose type says which law it is; the stiffness must be given."""
+        """Parameters of the law of the normal force, whose type says which law it is."""
         law = NORMAL_LAWS[self.normal_law]
-        parameters: NormalParameters = law.record(self.given_stiffness, self.damping, *self._values(law.parameters))
+        given = self.given("stiffness"), self.given("damping")
+        parameters: NormalParameters = law.record(*given, *self._values(law.parameters))
         return parameters
 
     @property
@@ -155,5 +164,6 @@ class Contact(_Laws, Penalty):
     def _values(self, parameters: Iterable[Parameter]) -> Iterator[Any]:
         """What is given for some parameters, or their defaults."""
         for parameter in parameters:
-            given = getattr(self, parameter.name)
-            yield parameter.default if given is None else given
+            value = getattr(self, parameter.name)
+            value = parameter.default if value is None else value
+            yield self.given(parameter.name) if value is None else value

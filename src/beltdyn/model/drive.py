@@ -9,12 +9,14 @@ import tomli_w
 from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.arrays import FloatArray
+from beltdyn.contact.friction import FrictionParameters
 from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of
 from beltdyn.model.completion import Completed, Given, complete, loaded, take_up
 from beltdyn.model.contact import Contact
+from beltdyn.model.defaults import critical_damping
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
@@ -33,13 +35,14 @@ class Drive(Part):
     `end` (lists) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
 
     The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
-    the drive: `belt_length`, also of a belt of given tension; `contact_stiffness`, also where a penetration is allowed;
-    `path` and `centers`, where fixed tensioners hold their pulleys.
+    the drive: `belt_length`, also of a belt of given tension; `path` and `centers`, where fixed tensioners hold their
+    pulleys; `elements`, `contact_stiffness`, `contact_damping` and `friction_parameters`, also where the numbers of
+    computation are left open. `completed.choices` has their values and the reasons.
     """
 
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
-    contact: Contact = Field(description="the group [contact]")
+    contact: Contact = Field(default_factory=Contact, description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
     ends: tuple[AnyEnd, ...] = Field(
         (), alias="end", description="the groups [[end]], first and second, of a belt that is not closed"
@@ -55,13 +58,13 @@ class Drive(Part):
         return _from_text, (self.text,)
 
     @model_validator(mode="after")
-    def _leaves_nothing_open(self) -> Self:
-        _ = self.completed
+    def _has_friction(self) -> Self:
+        _ = self.frictions
         return self
 
     @model_validator(mode="after")
-    def _has_friction(self) -> Self:
-        _ = self.frictions
+    def _leaves_nothing_open(self) -> Self:
+        _ = self.completed
         return self
 
     @model_validator(mode="after")
@@ -114,8 +117,28 @@ class Drive(Part):
 
     @property
     def contact_stiffness(self) -> float:
-        """Normal force per metre of belt and metre of penetration, N/m^2: as given, or with the allowed penetration."""
-        return self.completed.contact.given_stiffness
+        """Normal force per metre of belt and metre of penetration, N/m^2: as given or chosen, or by a penetration."""
+        return self.completed.contact.given("stiffness")
+
+    @property
+    def contact_damping(self) -> float:
+        """Normal force per metre of belt and m/s of penetration, N s/m^2: as given, or chosen."""
+        return self.completed.contact.given("damping")
+
+    @property
+    def critical_damping(self) -> float:
+        """Damping of contact with which a belt pressed on a pulley does not swing, N s/m^2."""
+        return critical_damping(self.contact_stiffness, self.belt.mass_per_length)
+
+    @property
+    def friction_parameters(self) -> FrictionParameters:
+        """Parameters of the friction law, as given or chosen."""
+        return self.completed.contact.friction_parameters
+
+    @property
+    def elements(self) -> int:
+        """Number of belt elements: as given, or chosen."""
+        return self.completed.belt.given_elements
 
     @property
     def path(self) -> Path:

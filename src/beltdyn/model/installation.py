@@ -1,6 +1,5 @@
 """What to expect of a belt at rest on its pulleys: estimates by hand, or what static equilibrium gives."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,17 +47,6 @@ class Installation:
     path: Path
     hub_loads: FloatArray
     span_frequencies: FloatArray
-
-
-def layer_lengths(drive: Drive, tension: float) -> tuple[float, float]:
-    """Lengths within which a belt under a tension (N) turns at the ends of an arc.
-
-    Returns
-    -------
-    bending, sinking : float
-        sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
-    """
-    return math.sqrt(drive.belt.bending_stiffness / tension), math.sqrt(tension / drive.contact_stiffness)
 
 
 def install(drive: Drive) -> Installation:

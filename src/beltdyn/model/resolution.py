@@ -17,12 +17,12 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Protocol
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.model.drive import Drive
-from beltdyn.model.installation import layer_lengths
+from beltdyn.model.belt import Belt
 from beltdyn.parts.finding import Finding, listing
 
 ERROR_LIMITS: Mapping[str, float] = MappingProxyType(
@@ -36,6 +36,26 @@ _SURE = 2.0
 _COARSE = 12.0
 """y from which elements touch at single points, and errors grow less."""
 _MOST = 100_000
+
+
+class OnPulleys(Protocol):
+    """What matters to a mesh of a belt on its pulleys: a drive has it, or what is known of one."""
+
+    @property
+    def belt(self) -> Belt:
+        """The belt; its length and elements do not matter."""
+
+    @property
+    def belt_length(self) -> float:
+        """Unstretched length of the belt, m."""
+
+    @property
+    def radii(self) -> FloatArray:
+        """Effective radii, shape (n,), m."""
+
+    @property
+    def contact_stiffness(self) -> float:
+        """Normal force per metre of belt and metre of penetration, N/m^2."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +74,23 @@ class Running:
     lifted: float = 0.0
 
 
-def element_angles(drive: Drive, elements: int) -> FloatArray:
+def layer_lengths(drive: OnPulleys, tension: float) -> tuple[float, float]:
+    """Lengths within which a belt under a tension (N) turns at the ends of an arc.
+
+    Returns
+    -------
+    bending, sinking : float
+        sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
+    """
+    return math.sqrt(drive.belt.bending_stiffness / tension), math.sqrt(tension / drive.contact_stiffness)
+
+
+def element_angles(drive: OnPulleys, elements: int) -> FloatArray:
     """Angle of each pulley that one element covers, rad; of others, that of the cubic that misses as much."""
     return drive.belt.element_kind.cubic_angle(drive.belt_length / (elements * drive.radii))
 
 
-def mesh_errors(drive: Drive, running: Running, elements: int | None = None) -> dict[str, float]:
+def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, float]:
     """Estimate the errors of a mesh.
 
     Parameters
@@ -68,15 +99,15 @@ def mesh_errors(drive: Drive, running: Running, elements: int | None = None) -> 
         The drive.
     running : Running
         Its tension, which must be above what its speed takes from the pulleys.
-    elements : int, optional
-        Number of elements; by default that of the drive.
+    elements : int
+        Number of elements.
 
     Returns
     -------
     dict of str to float
         Relative error of each of `ERROR_LIMITS`, without sign.
     """
-    angles, radii = element_angles(drive, elements or drive.belt.elements), drive.radii
+    angles, radii = element_angles(drive, elements), drive.radii
     bending, sinking = layer_lengths(drive, running.tension - running.lifted)
     fineness = angles * radii / np.sqrt(sinking * max(sinking, bending))
     strain = float(drive.belt.stretch_parameters.stretch(running.tension)) - 1.0
@@ -89,7 +120,7 @@ def mesh_errors(drive: Drive, running: Running, elements: int | None = None) -> 
     return dict(zip(ERROR_LIMITS, errors, strict=True))
 
 
-def elements_needed(drive: Drive, running: Running) -> dict[str, int]:
+def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
     """Number of elements from which twice the estimated error of each quantity keeps to its limit.
 
     Twice, since hardly any error is more.
@@ -109,7 +140,7 @@ def elements_needed(drive: Drive, running: Running) -> dict[str, int]:
     return {name: _fewest(drive, running, name, limit / _SURE) for name, limit in ERROR_LIMITS.items()}
 
 
-def _fewest(drive: Drive, running: Running, name: str, limit: float) -> int:
+def _fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
     """Fewest elements for one error, by halving: errors fall with the number."""
     few, many = 0, _MOST
     while many - few > 1:

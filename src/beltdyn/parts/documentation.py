@@ -68,7 +68,9 @@ def _section(title: str, fields: Mapping[str, FieldInfo]) -> str:
 
 def _argument(name: str, field: FieldInfo) -> str:
     """One entry: name, type and default, then the description with its limits."""
-    optional = ", optional" if field.default in (None, ()) else f", default {_literal(field.default)}"
+    optional = (
+        ", optional" if field.default_factory or field.default in (None, ()) else f", default {_literal(field.default)}"
+    )
     described = field.description or f"always {_literal(field.default)}"
     limits = " and ".join(limit for limit in map(_limit, field.metadata) if limit)
     sentence = f"{described[0].upper()}{described[1:]}." + (f"  {limits.capitalize()}." if limits else "")

@@ -93,7 +93,7 @@ def contact_forces(
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(instant['time']):.4g} s")
     if not run.resolution.resolves("peak pressure"):
-        reserve(ax, f"peaks not resolved by {run.drive.belt.elements} elements")
+        reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
     return ax
 
 
@@ -137,7 +137,7 @@ def contact_pressure(
     ax.set(xlabel="Angle from the inlet [°]", ylabel="On the belt [kPa]")
     ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(arc['time']):.4g} s")
     if not run.resolution.resolves("peak pressure"):
-        reserve(ax, f"peaks not resolved by {run.drive.belt.elements} elements")
+        reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
     return ax
 
 

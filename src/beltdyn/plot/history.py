@@ -94,7 +94,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """
     ax = lines(run.dataset["span_tension"], axes_or_new(ax))
     if not run.resolution.resolves("tension"):
-        reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.belt.elements} elements")
+        reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.elements} elements")
     return ax
 
 

@@ -182,7 +182,7 @@ def better(drive: Drive, elements: int | None = None, **simulation: Any) -> Driv
     Drive
     """
     return drive.replace(
-        belt=drive.belt.replace(elements=elements or drive.belt.elements),
+        belt=drive.belt.replace(elements=elements or drive.elements),
         contact=drive.contact.replace(integration="zone", normal_law="no_pull"),
         simulation=drive.simulation.replace(**{"start": "equilibrium"} | simulation),
     )

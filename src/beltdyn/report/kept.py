@@ -119,7 +119,7 @@ def sliding(run: Run) -> BoolArray:
     """
     data, drive = run.dataset, run.drive
     friction = drive.frictions[data["contact_pulley"].values]
-    creep = drive.contact.friction_parameters.saturation(data["normal_force"].values, friction)
+    creep = drive.friction_parameters.saturation(data["normal_force"].values, friction, 0.0)
     return np.asarray(np.abs(data["slip_velocity"].values) >= creep)
 
 

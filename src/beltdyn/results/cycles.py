@@ -75,7 +75,7 @@ def turn_window(recorded: Recorded, drive: Drive) -> Window:
         since_change = max(SHORTEST * elapsed, float(time[-1]) - _last_change(drive, time))
         longest = min(LONGEST * elapsed, since_change)
         turn = _belt_turns(recorded, drive, time)
-        element = Cycle(turn.phase * (drive.belt.element_kind.curves * drive.belt.elements), 1)
+        element = Cycle(turn.phase * (drive.belt.element_kind.curves * drive.elements), 1)
         waves = tuple(_waves(recorded, drive, turn))
         for cycles, turns in (((turn, *waves), 1), ((element, *waves), 0), ((turn,), 1), ((element,), 0)):
             window = Window(time, cycles, turns)

@@ -130,7 +130,9 @@ def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
     return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
 
 
-def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, drive: Drive) -> FloatArray:
+def sliding_velocity(
+    slip_velocity: FloatArray, normal: FloatArray, touched: IntArray, pulley_speed: FloatArray, drive: Drive
+) -> FloatArray:
     """Slip velocity beyond creep: what is left of it when the friction law's creep v_c is taken away.
 
     v_c is the slip velocity at which |f_t| reaches mu f_n, which the friction law knows.
@@ -142,10 +144,13 @@ def sliding_velocity(slip_velocity: FloatArray, normal: FloatArray, touched: Int
         v_t (m/s) and f_n (N/m).
     touched : ndarray of int, shape (..., points)
         Number of the pulley that a point touches, -1 where it is free.
+    pulley_speed : ndarray, shape (..., pulleys)
+        rad/s.
     drive : Drive
         Friction.
     """
-    creep = drive.contact.friction_parameters.saturation(normal, drive.frictions[touched])
+    rim = np.take_along_axis(pulley_speed * drive.radii, touched, axis=-1)
+    creep = drive.friction_parameters.saturation(normal, drive.frictions[touched], rim)
     beyond = np.sign(slip_velocity) * np.maximum(np.abs(slip_velocity) - creep, 0.0)
     return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
 

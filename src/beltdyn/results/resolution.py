@@ -98,7 +98,10 @@ def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:
     if not running.tension > running.lifted:
         return Resolution(dict.fromkeys(ERROR_LIMITS, math.nan), {}, (math.nan, math.nan))
     still = _MOVING if square == 0.0 else frozenset[str]()
-    errors = {name: math.nan if name in still else error for name, error in mesh_errors(drive, running).items()}
+    errors = {
+        name: math.nan if name in still else error
+        for name, error in mesh_errors(drive, running, drive.elements).items()
+    }
     return Resolution(errors, elements_needed(drive, running), layer_lengths(drive, tension))
 
 

@@ -99,8 +99,8 @@ def require_room(drive: Drive, path: Path | None) -> None:
 
 def _sizes(drive: Drive) -> dict[str, int]:
     """Size of every dimension but times."""
-    belt, pulleys = drive.belt, len(drive.pulleys)
-    kind, curves = belt.element_kind, belt.element_kind.curves * belt.elements
+    belt, pulleys = drive.completed.belt, len(drive.pulleys)
+    kind, curves = belt.element_kind, belt.element_kind.curves * belt.given_elements
     points = 2 if drive.contact.sampling == "nodal" else drive.contact.quadrature_points
     return {
         "pulley": pulleys,
@@ -108,7 +108,7 @@ def _sizes(drive: Drive) -> dict[str, int]:
         "tensioner": len(drive.moving_tensioners),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),
-        "node": kind.points * (belt.elements + (bool(drive.ends) or drive.simulation.joint == "multipliers")),
+        "node": kind.points * (belt.given_elements + (bool(drive.ends) or drive.simulation.joint == "multipliers")),
         "element": curves,
         "contact_point": points * curves,
         "arc_part": ARC_PARTS,

@@ -6,7 +6,12 @@ from beltdyn.results.mechanics import cells, gross_sliding, pressing, sliding_sh
 
 
 def sliding_of_pulleys(
-    drive: Drive, belt_coordinate: FloatArray, touched: IntArray, normal: FloatArray, slip_velocity: FloatArray
+    drive: Drive,
+    belt_coordinate: FloatArray,
+    touched: IntArray,
+    normal: FloatArray,
+    slip_velocity: FloatArray,
+    pulley_speed: FloatArray,
 ) -> dict[str, FloatArray]:
     """Sum up sliding along the belt.
 
@@ -20,13 +25,15 @@ def sliding_of_pulleys(
         Number of the pulley that each touches, -1 where it is free.
     normal, slip_velocity : ndarray, shape (k, points)
         N/m and m/s.
+    pulley_speed : ndarray, shape (k, pulleys)
+        rad/s.
 
     Returns
     -------
     dict
         ``sliding_speed`` (m/s, see `mechanics.gross_sliding`) and ``sliding_share``, shape (k, pulleys).
     """
-    sliding = sliding_velocity(slip_velocity, normal, touched, drive)
+    sliding = sliding_velocity(slip_velocity, normal, touched, pulley_speed, drive)
     pressed = pressing(normal, touched, len(drive.pulleys))
     return {
         "sliding_speed": gross_sliding(sliding, pressed, drive),

@@ -112,7 +112,7 @@ def _longest_first(drives: Mapping[Path, Drive]) -> list[tuple[Path, Drive]]:
 
     def size(item: tuple[Path, Drive]) -> float:
         drive = item[1]
-        return drive.belt.elements * drive.contact.quadrature_points * drive.simulation.duration
+        return drive.elements * drive.contact.quadrature_points * drive.simulation.duration
 
     return sorted(drives.items(), key=size, reverse=True)
 

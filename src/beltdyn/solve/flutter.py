@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import System
+from beltdyn.system.pulley_state import pulley_speeds
 
 _ELEMENTS = 1
 """Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
@@ -123,8 +124,10 @@ class FlutterWatch:
     def _transit_time(self, velocity: FloatArray, seen: Mapping[str, NDArray[Any]]) -> FloatArray:
         """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""
         system = self._system
-        normal, friction = seen["normal_force"], system.pulleys.friction[seen["contact_pulley"]]
-        saturation = system.law.friction.saturation(normal, friction)
+        normal, touched = seen["normal_force"], seen["contact_pulley"]
+        friction = system.pulleys.friction[touched]
+        rim = np.take_along_axis(pulley_speeds(system, velocity) * system.rims.radius, touched, axis=-1)
+        saturation = system.law.friction.saturation(normal, friction, rim)
         points = (normal > 0.0) & (friction > 0.0) & (np.abs(seen["slip_velocity"]) >= saturation)
         result = np.zeros(len(points))
         needed = _ELEMENTS * system.control.shape[1] * system.contact.points.size

@@ -180,7 +180,7 @@ def _shortened(drive: Drive, done: float, change: float, at_rest: Callable[[Driv
 
 def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
     return ConvergenceError(
-        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N is not reached with {drive.belt.elements} "
+        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N is not reached with {drive.elements} "
         f"elements: {reason} Change the tension, or give belt.length in its place."
     )
 

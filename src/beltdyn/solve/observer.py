@@ -19,6 +19,7 @@ from beltdyn.system.arrays import ENERGY_WORKS, System
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
+from beltdyn.system.pulley_state import pulley_speeds
 
 Arrays = dict[str, NDArray[Any]]
 
@@ -94,6 +95,7 @@ class Observer:
                 rows["contact_pulley"],
                 rows["normal_force"],
                 rows["slip_velocity"],
+                pulley_speeds(self._system, states.velocity[shown]),
             ),
             **dict(zip(WORKS, works, strict=True)),
             **dict(zip(ENERGY_WORKS, states.work[shown].T, strict=True)),

@@ -8,7 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.graded_mesh import Arc, graded_mesh, layer_length
-from beltdyn.model.installation import layer_lengths
+from beltdyn.model.resolution import layer_lengths
 from beltdyn.solve.installation import looked_at, tighten
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System

@@ -128,7 +128,7 @@ class SteadySearch:
     def _gentle(self, speed: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""
         pulleys = self._system.pulleys
-        limits = self._system.law.friction.saturation(self._rest.tension / self.drive.radii, pulleys.friction)
+        limits = self._system.law.friction.saturation(self._rest.tension / self.drive.radii, pulleys.friction, speed)
         least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
         return max(1.0, _GENTLE * abs(speed) / least)
 

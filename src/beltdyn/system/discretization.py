@@ -52,11 +52,13 @@ def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
     """
     kind, section = belt.element_kind, belt_section(belt)
     whole = belt.given_length
-    length = np.full(belt.elements, whole / belt.elements) if lengths is None else np.asarray(lengths, float)
-    if length.size != belt.elements or length.min() <= 0.0 or not np.isclose(length.sum(), whole, rtol=1e-9):
+    length = (
+        np.full(belt.given_elements, whole / belt.given_elements) if lengths is None else np.asarray(lengths, float)
+    )
+    if length.size != belt.given_elements or length.min() <= 0.0 or not np.isclose(length.sum(), whole, rtol=1e-9):
         raise ModelError(
             f"{length.size} elements, the shortest {length.min():g} m long and {length.sum():.10g} m in all, do not "
-            f"make a belt with belt.elements = {belt.elements} and belt.length = {whole:.10g} m. "
+            f"make a belt with belt.given_elements = {belt.given_elements} and belt.length = {whole:.10g} m. "
             "Give each element a positive length, so that they add up to that of the belt."
         )
     return Discretization(

@@ -46,3 +46,8 @@ def pulley_center(system: System, pulley: int, position: FloatArray) -> tuple[fl
     place = position[interpreted(tensioner_coordinate)(system, item.carrier)]
     center = interpreted(tensioner_center)(system.tensioners[item.carrier], place)
     return float(center.x), float(center.y)
+
+
+def pulley_speeds(system: System, velocity: FloatArray) -> FloatArray:
+    """Speeds of all rims, rad/s, shape (..., pulleys), from the rates of states, shape (..., n N + D)."""
+    return velocity[..., system.first_body : system.first_body + len(system.pulleys)]

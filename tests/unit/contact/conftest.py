@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import fill_bernstein
-from beltdyn.contact.friction import LAWS, CoefficientSlope, ForceSlope, FrictionParameters
+from beltdyn.contact.friction import LAWS, CoefficientSlope, ForceSlope, FrictionParameters, RelativeCreep
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPE, Round, ShapedRims, surface_at
@@ -34,6 +34,7 @@ def eccentric() -> Callable[[float], PulleyState]:
 FRICTION: dict[str, FrictionParameters] = {
     "force_slope": ForceSlope(300.0),
     "coefficient_slope": CoefficientSlope(0.4),
+    "relative_creep": RelativeCreep(0.5, 0.1),
 }
 
 

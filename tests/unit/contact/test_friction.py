@@ -1,30 +1,34 @@
-"""Both friction laws (Eq. 20, Fig. 3; Leamy and Wasfy 2002): odd, capped, continuous, with exact derivatives."""
+"""Friction laws (Eq. 20, Fig. 3; Leamy and Wasfy 2002; relative creep): odd, capped, continuous, exact derivatives."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import FrictionParameters, friction_force
+from beltdyn.contact.friction import FrictionParameters, RelativeCreep, friction_force
 
 MU = 0.5
+RIM = 0.8
+"""Speed of the rim, m/s."""
 SLIPS = st.floats(-5.0, 5.0)
 NORMALS = st.floats(0.0, 1e4)
 
 
-def force_at(law: FrictionParameters, slip: float, normal: float) -> tuple[float, float, float]:
-    return friction_force(law, slip, normal, MU)
+def force_at(
+    law: FrictionParameters, slip: float, normal: float, rim: float = RIM
+) -> tuple[float, float, float, float]:
+    return friction_force(law, slip, normal, MU, rim)
 
 
 def break_away(law: FrictionParameters, normal: float) -> float:
     """Slip velocity at which the Coulomb limit is reached, as the law tells it."""
-    return float(law.saturation(normal, MU))
+    return float(law.saturation(normal, MU, RIM))
 
 
 @given(SLIPS, NORMALS)
 def test_is_odd(friction: FrictionParameters, slip: float, normal: float) -> None:
     there, back = force_at(friction, slip, normal), force_at(friction, -slip, normal)
-    assert back == (-there[0], there[1], -there[2])
+    assert back == (-there[0], there[1], -there[2], -there[3])
 
 
 @given(SLIPS, NORMALS)
@@ -51,17 +55,18 @@ def test_has_no_jump_at_break_away(friction: FrictionParameters, side: float) ->
 def test_derivatives(friction: FrictionParameters, ratio: float) -> None:
     normal, share = 200.0, 1e-6
     slip = ratio * break_away(friction, normal)
-    _, by_slip, by_normal = force_at(friction, slip, normal)
+    _, by_slip, by_normal, by_rim = force_at(friction, slip, normal)
 
-    def difference(d_slip: float, d_normal: float) -> float:
+    def difference(d_slip: float, d_normal: float, d_rim: float = 0.0) -> float:
         return (
-            force_at(friction, slip + d_slip, normal + d_normal)[0]
-            - force_at(friction, slip - d_slip, normal - d_normal)[0]
+            force_at(friction, slip + d_slip, normal + d_normal, RIM + d_rim)[0]
+            - force_at(friction, slip - d_slip, normal - d_normal, RIM - d_rim)[0]
         )
 
     rounding = 1e-8  # 1e-16 over the step
     assert difference(share, 0.0) / (2 * share) == pytest.approx(by_slip, rel=rounding, abs=1e-5)
     assert difference(0.0, share) / (2 * share) == pytest.approx(by_normal, rel=rounding, abs=1e-5)
+    assert difference(0.0, 0.0, share) / (2 * share) == pytest.approx(by_rim, rel=rounding, abs=1e-5)
 
 
 @given(SLIPS, NORMALS)
@@ -71,3 +76,19 @@ def test_depends_on_the_magnitude_of_the_normal_force(friction: FrictionParamete
     assert abs(pulled[2]) == abs(pushed[2])
     if normal > 0.0:
         assert pulled[2] == -pushed[2]
+
+
+@given(st.floats(1e-3, 1e2), st.floats(-2.0, 2.0))
+def test_relative_creep_scales_with_the_speed(speed: float, ratio: float) -> None:
+    """Where a pulley runs, slip over its speed makes the force; either way alike."""
+    law = RelativeCreep(creep_ratio=0.01, standstill_creep=0.0)
+    force = friction_force(law, 0.01 * ratio * speed, 200.0, MU, speed)
+    back = friction_force(law, 0.01 * ratio * speed, 200.0, MU, -speed)
+    assert force[0] == pytest.approx(-MU * 200.0 * np.clip(ratio, -1, 1), rel=1e-12)
+    assert back == (*force[:3], -force[3])
+
+
+def test_relative_creep_at_rest() -> None:
+    """A pulley that stands still is held by a slope of its own."""
+    law = RelativeCreep(creep_ratio=0.01, standstill_creep=1e-4)
+    assert friction_force(law, 5e-5, 200.0, MU, 0.0) == pytest.approx((-50.0, -1e6, -0.25, 0.0), rel=1e-12)

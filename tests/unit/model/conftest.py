@@ -46,7 +46,8 @@ def make_drive() -> MakeDrive:
                 {"name": name, "center": (x, y), "radius": radius, "side": side, "inertia": 0.01}
                 for name, x, y, radius, side in circles
             ],
-            contact={"friction": 0.5, "creep_rate_factor": 1e4} | (contact or {"stiffness": 1e9}),
+            contact={"friction": 0.5, "creep_rate_factor": 1e4, "friction_law": "force_slope"}
+            | (contact or {"stiffness": 1e9}),
             tensioner=tensioner,
             simulation={"duration": 0.1, "output_interval": 1e-3},
         )

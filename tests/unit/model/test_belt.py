@@ -49,7 +49,7 @@ def test_the_constructor_tells_all_that_is_wrong() -> None:
 def test_curves(drive: Drive, kind: str, curves: int) -> None:
     belt = drive.belt.replace(elements=12, discretization=kind)
     assert belt.element_kind.name == kind
-    assert belt.element_kind.curves * belt.elements == curves
+    assert belt.element_kind.curves * belt.given_elements == curves
 
 
 @pytest.mark.parametrize("kind", ["ancf", "truss", "three-node-beam"])

@@ -136,7 +136,12 @@ def arguments(draw: st.DrawFn) -> dict[str, Any]:
             {"name": name, "center": center, "radius": radius, "side": side, "inertia": 0.01}
             for name, (center, radius, side) in zip(("motor", "idler", "fan"), places, strict=True)
         ],
-        "contact": {"friction": draw(st.sampled_from([0.2, 0.5])), "creep_rate_factor": 1e4} | draw(CONTACTS),
+        "contact": {
+            "friction": draw(st.sampled_from([0.2, 0.5])),
+            "creep_rate_factor": 1e4,
+            "friction_law": "force_slope",
+        }
+        | draw(CONTACTS),
         "tensioner": list(tensioner),
         "simulation": {"duration": 0.1, "output_interval": 1e-3},
     }
@@ -232,7 +237,7 @@ def test_what_is_open_has_no_value_before_the_drive(make_drive: MakeDrive) -> No
     with pytest.raises(ModelError, match=r"belt\.length is open.* installed_tension = 200 N\. Take belt_length"):
         _ = drive.belt.given_length
     with pytest.raises(ModelError, match=r"contact\.stiffness is open.* = 1e-05 m\. Take contact_stiffness"):
-        _ = drive.contact.given_stiffness
+        _ = drive.contact.given("stiffness")
 
 
 def test_a_penetration_that_no_stiffness_keeps_to(make_drive: MakeDrive) -> None:

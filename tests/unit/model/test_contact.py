@@ -11,7 +11,13 @@ from beltdyn.contact.normal import NoPull
 from beltdyn.errors import ModelError
 from beltdyn.model import Contact
 
-GIVEN: dict[str, Any] = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2, "creep_rate_factor": 1e5}
+GIVEN: dict[str, Any] = {
+    "stiffness": 1e7,
+    "damping": 10.0,
+    "friction": 1.2,
+    "friction_law": "force_slope",
+    "creep_rate_factor": 1e5,
+}
 
 
 def test_the_laws_get_what_is_given() -> None:
@@ -19,7 +25,7 @@ def test_the_laws_get_what_is_given() -> None:
     assert contact.friction_parameters == ForceSlope(1e5)
     assert contact.normal_parameters == NoPull(1e7, 10.0)
     other = {key: value for key, value in GIVEN.items() if key != "creep_rate_factor"}
-    changed = Contact(**other, friction_law="coefficient_slope", creep_velocity=0.01)
+    changed = Contact(**other | {"friction_law": "coefficient_slope", "creep_velocity": 0.01})
     assert changed.friction_parameters == CoefficientSlope(0.01)
 
 

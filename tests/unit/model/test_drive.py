@@ -210,24 +210,6 @@ def test_tensioner_on_its_stop(make_drive: MakeDrive) -> None:
     assert not any("stop" in warning or "soft" in warning for warning in advise(free, install(free)))
 
 
-@pytest.mark.parametrize(
-    ("steep", "remedy"),
-    [
-        ({"creep_rate_factor": 1e9}, "lower contact.creep_rate_factor below"),
-        (
-            {"creep_rate_factor": None, "friction_law": "coefficient_slope", "creep_velocity": 1e-6},
-            "raise contact.creep_velocity to 0.0001 m/s",
-        ),
-    ],
-)
-def test_friction_too_steep_for_the_solver(drive: Drive, steep: dict[str, object], remedy: str) -> None:
-    case = drive.replace(contact=drive.contact.replace(**steep))
-    found = [warning for warning in advise(case, install(case)) if "slip velocity" in warning]
-    assert len(found) == 1
-    assert remedy in found[0]
-    assert not any("slip velocity" in warning for warning in advise(drive, install(drive)))
-
-
 @pytest.mark.parametrize("layout", ["open", "crossed", "flat", "serpentine"])
 def test_drives_of_any_layout_travel_between_processes(make_drive: MakeDrive, layout: str) -> None:
     drive = make_drive(layout, contact={"allowed_penetration": 1e-5}, pitch_offset=0.001)

@@ -27,7 +27,7 @@ def strap(*ends: dict[str, Any], **groups: Any) -> Drive:
             "mass_per_length": 0.02,
         },
         "pulley": [{"name": "drum", "center": (0.0, 0.0), "radius": 0.1, "speed": {"kind": "constant", "value": 5.0}}],
-        "contact": {"stiffness": 1e8, "friction": 0.3, "creep_rate_factor": 1e4},
+        "contact": {"stiffness": 1e8, "friction": 0.3, "creep_rate_factor": 1e4, "friction_law": "force_slope"},
         "simulation": {"duration": 0.1, "output_interval": 1e-3},
         "end": ends,
     }

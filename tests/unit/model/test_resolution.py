@@ -49,7 +49,7 @@ def test_a_link_counts_as_the_element_that_misses_the_circle_as_much(drive: Driv
     beams = with_belt(drive, elements=30, discretization="three-node-beam")
     link = drive.belt_length / (60 * drive.radii)
     for links in (trusses, beams):
-        angles = element_angles(links, links.belt.elements)
+        angles = element_angles(links, links.elements)
         assert angles**4 / 384 == pytest.approx(link**2 / 8)
 
 

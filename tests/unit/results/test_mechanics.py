@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.contact.friction import CoefficientSlope, ForceSlope, FrictionParameters
+from beltdyn.contact.friction import CoefficientSlope, ForceSlope, FrictionParameters, RelativeCreep
 from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.results.mechanics import (
@@ -36,7 +36,7 @@ def serpentine(friction: FrictionParameters | None = None) -> Any:
         radii=np.array([0.1, 0.05, 0.02]),
         rolling_radii=np.array([0.1, 0.05, 0.02]),
         frictions=np.array([0.5, 1.0, 0.3]),
-        contact=SimpleNamespace(friction_parameters=friction or ForceSlope(1e3)),
+        friction_parameters=friction or ForceSlope(1e3),
         belt=SimpleNamespace(mass_per_length=0.2),
     )
 
@@ -94,13 +94,20 @@ def test_cells_share_out_the_belt(drive: Drive) -> None:
     assert cell[7] == pytest.approx(0.5 * (coordinate[8] - coordinate[6]))
 
 
-@pytest.mark.parametrize(("friction", "creep"), [(ForceSlope(1e3), 0.5 * 200.0 / 1e3), (CoefficientSlope(0.02), 0.02)])
+@pytest.mark.parametrize(
+    ("friction", "creep"),
+    [
+        (ForceSlope(1e3), 0.5 * 200.0 / 1e3),
+        (CoefficientSlope(0.02), 0.02),
+        (RelativeCreep(0.03, 0.04), 0.05),
+    ],
+)
 def test_sliding_is_what_goes_beyond_creep(friction: FrictionParameters, creep: float) -> None:
-    """At mu f_n / nu_s with a slope of the force, at the creep velocity with one of the coefficient."""
+    """At mu f_n / nu_s with a slope of the force, at the creep velocity with one of it; at s v_r with a ratio."""
     velocity = np.array([[0.5 * creep, creep + 0.3, -creep - 0.2, 5.0, 5.0]])
     normal = np.array([[200.0, 200.0, 200.0, 0.0, 200.0]])
     touched = np.array([[0, 0, 0, 0, -1]])
-    found = sliding_velocity(velocity, normal, touched, serpentine(friction))
+    found = sliding_velocity(velocity, normal, touched, np.array([[-10.0, 0.0, 0.0]]), serpentine(friction))
     np.testing.assert_allclose(found, [[0.0, 0.3, -0.2, 0.0, 0.0]], atol=ROUNDING)
 
 

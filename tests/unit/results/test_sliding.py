@@ -14,10 +14,10 @@ PRESSED = np.where(TOUCHED >= 0, 200.0, 0.0)
 
 def summed(drive: Drive, beyond: list[float], normal: np.ndarray = PRESSED) -> tuple[list[float], list[float]]:
     """Speeds and shares where points are by so much faster than the belt creeps, m/s, in their sense; 0 sticks."""
-    creep = drive.contact.friction_parameters.saturation(normal, drive.frictions[TOUCHED])
+    creep = drive.friction_parameters.saturation(normal, drive.frictions[TOUCHED], 0.0)
     velocity = np.sign(beyond) * creep + np.array([beyond])
     coordinate = (np.arange(POINTS) + 0.5) * drive.belt_length / POINTS
-    found = sliding_of_pulleys(drive, coordinate, TOUCHED, normal, velocity)
+    found = sliding_of_pulleys(drive, coordinate, TOUCHED, normal, velocity, np.zeros((1, 2)))
     speed, share = found["sliding_speed"][0], found["sliding_share"][0]
     return speed.tolist(), share.tolist()
 

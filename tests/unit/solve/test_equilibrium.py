@@ -24,8 +24,8 @@ def rest(drive: Drive) -> StaticResult:
 
 
 def test_it_has_no_time(rest: StaticResult, drive: Drive) -> None:
-    along = {"node": drive.belt.elements, "element": drive.belt.elements}
-    sizes = along | {"contact_point": drive.belt.elements * drive.contact.quadrature_points}
+    along = {"node": drive.elements, "element": drive.elements}
+    sizes = along | {"contact_point": drive.elements * drive.contact.quadrature_points}
     sizes |= {"pulley": 2, "span": 2, "axis": 2, "coordinate": 6}
     assert dict(rest.dataset.sizes) == sizes
     assert (rest.kind, rest.status) == ("static", "completed")

@@ -46,7 +46,14 @@ def make(circles: tuple[Circle, ...], belt: dict[str, Any], stiffness: float = 1
     return Drive(
         belt=belt,
         pulley=pulleys,
-        contact={"stiffness": stiffness, "damping": 10.0, "friction": 0.8, "creep_rate_factor": 1e5},
+        contact={
+            "stiffness": stiffness,
+            "damping": 10.0,
+            "friction": 0.8,
+            "creep_rate_factor": 1e5,
+            "friction_law": "force_slope",
+            "moment_arm": "point",
+        },
         simulation={"duration": 1e-3, "output_interval": 1e-3},
         **groups,
     )

@@ -14,10 +14,11 @@ from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
 
 FRICTION: dict[str, dict[str, Any]] = {
-    "force_slope": {"creep_rate_factor": 300.0},
+    "force_slope": {"friction_law": "force_slope", "creep_rate_factor": 300.0},
     "coefficient_slope": {"friction_law": "coefficient_slope", "creep_velocity": 0.05},
+    "relative_creep": {"friction_law": "relative_creep", "creep_ratio": 0.05, "standstill_creep": 0.01},
 }
-CONTACT = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2}
+CONTACT = {"stiffness": 1e7, "damping": 10.0, "friction": 1.2, "moment_arm": "point"}
 PLACES: dict[str, dict[str, Any]] = {
     "zone": {"integration": "zone"},
     "fixed": {"integration": "fixed"},

@@ -45,7 +45,7 @@ def test_weight_joins_the_forces_on_the_nodes(drive: Drive) -> None:
 @pytest.mark.parametrize(("closure", "extra"), [("shared_node", 0), ("multipliers", 1), ("open", 1)])
 def test_nodes_by_closure(drive: Drive, closure: Closure, extra: int) -> None:
     system = belt_system(drive.belt, closure=closure)
-    assert system.nodes == drive.belt.elements + extra
+    assert system.nodes == drive.elements + extra
     assert system.closed == (closure == "shared_node")
     assert system.joint == (closure == "multipliers")
     assert system.supports.fixed.shape == system.supports.force.shape == (6 * system.nodes,)

@@ -61,7 +61,7 @@ def test_work_on_any_centreline(drive: Drive, closure: Closure) -> None:
 def test_gradients_of_a_closed_belt_feel_nothing(drive: Drive) -> None:
     """Equal elements pull on r_x of the node between them alike, against each other; r_y feels nothing anywhere."""
     mesh = discretize(drive.belt)
-    force = weight_forces(mesh, drive.belt.elements, GRAVITY).reshape(-1, 6)
+    force = weight_forces(mesh, drive.elements, GRAVITY).reshape(-1, 6)
     np.testing.assert_allclose(force[:, 2:], 0.0, atol=1e-15 * np.abs(force).max())
 
 

@@ -79,7 +79,7 @@ def test_a_weight_at_rest_gives_the_tension(brake: Drive, measured: Callable[...
     data, belt = run.dataset, run.drive.belt
     load = belt.mass_per_length * GRAVITY
     pulled = 10.0 * GRAVITY
-    element = run.drive.belt_length / belt.elements
+    element = run.drive.belt_length / belt.given_elements
     lowest = float(data["belt_tension"].values[-1])
     free, held = (float(length) for length in run.drive.path.span_lengths)
     hanging, anchored = data["span_tension"].values

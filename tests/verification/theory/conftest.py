@@ -82,7 +82,7 @@ def running() -> Callable[[Drive, float, float], RunningDrive]:
             rotary_inertia=section.rotary_inertia,
             distance=driven.center[0] - driver.center[0],
             radii=(driver.radius, driven.radius),
-            stiffness=contact.given_stiffness,
+            stiffness=contact.given("stiffness"),
             friction=float(drive.frictions[0]),
             creep_rate_factor=contact.creep_rate_factor,
             speed=speed,

@@ -116,7 +116,12 @@ def drive(velocity: float) -> Drive:
             ),
         ),
         contact=Contact(
-            stiffness=1e8, damping=1e3, friction=FRICTION, friction_law="coefficient_slope", creep_velocity=velocity
+            stiffness=1e8,
+            damping=1e3,
+            friction=FRICTION,
+            friction_law="coefficient_slope",
+            creep_velocity=velocity,
+            moment_arm="point",
         ),
         simulation=Simulation(duration=0.6, output_interval=1e-3, field_interval=1e-3),
     )

@@ -54,7 +54,7 @@ def ring_on_a_pulley(elements: int, contact: Contact, speed: float) -> tuple[flo
 def sliding_belt(drive: Drive, contact: Contact) -> SlidingBelt:
     section, radius = belt_section(drive.belt), drive.pulleys[0].radius
     return SlidingBelt(
-        section.mass, section.axial, radius, contact.given_stiffness, contact.damping, drive.frictions[0]
+        section.mass, section.axial, radius, contact.given("stiffness"), contact.given("damping"), drive.frictions[0]
     )
 
 

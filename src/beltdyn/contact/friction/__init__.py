@@ -5,13 +5,16 @@ from beltdyn.contact.friction.force_slope import ForceSlope as ForceSlope
 from beltdyn.contact.friction.law import LAWS as LAWS
 from beltdyn.contact.friction.law import FrictionLaw as FrictionLaw
 from beltdyn.contact.friction.law import FrictionParameters as FrictionParameters
+from beltdyn.contact.friction.relative_creep import RelativeCreep as RelativeCreep
 from beltdyn.kernel import by_type, kernel
 
 _pressed = by_type({law.record: law.force for law in LAWS.values()}, "friction_force")
 
 
 @kernel
-def friction_force(law: FrictionParameters, slip: float, normal: float, friction: float) -> tuple[float, float, float]:
+def friction_force(
+    law: FrictionParameters, slip: float, normal: float, friction: float, rim: float
+) -> tuple[float, float, float, float]:
     """Friction force along the tangent t and its derivatives (Eq. 20).
 
     Parameters
@@ -24,12 +27,14 @@ def friction_force(law: FrictionParameters, slip: float, normal: float, friction
         Normal force f_n, N/m; friction depends on its magnitude.
     friction
         Coulomb coefficient mu.
+    rim
+        Speed of the rim v_r = omega R, m/s.
 
     Returns
     -------
-    tuple of 3 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n.
+    tuple of 4 floats
+        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
     """
     pressure, sign = (normal, 1.0) if normal >= 0.0 else (-normal, -1.0)
-    force, by_slip, by_pressure = _pressed(law, slip, pressure, friction)
-    return force, by_slip, sign * by_pressure
+    force, by_slip, by_pressure, by_rim = _pressed(law, slip, pressure, friction, rim)
+    return force, by_slip, sign * by_pressure, by_rim

@@ -17,25 +17,19 @@ class CoefficientSlope(NamedTuple):
     creep_velocity: float
     """v_c, m/s."""
 
-    def saturation(self, normal: ArrayLike, friction: ArrayLike) -> FloatArray:
+    def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
         """Slip velocity v_c whatever the normal force, m/s."""
-        return np.full(np.broadcast_shapes(np.shape(normal), np.shape(friction)), self.creep_velocity)
+        return np.full(np.broadcast_shapes(*map(np.shape, (normal, friction, rim))), self.creep_velocity)
 
     def smoothed(self, factor: float) -> "CoefficientSlope":
         """Fully used at a slip velocity that is larger by a factor."""
         return CoefficientSlope(self.creep_velocity * factor)
 
-    def softened(self, limit: float, slip: float) -> str:
-        """Advice for full friction at a larger slip velocity."""
-        return f"raise contact.creep_velocity to {slip:g} m/s"
-
-    def steepened(self, slope: FloatArray, limit: FloatArray) -> str:
-        """Advice for a steeper slope."""
-        return f"lower contact.creep_velocity = {self.creep_velocity:g} to {(limit / slope).min():.1e} m/s"
-
 
 @kernel
-def coefficient_slope(law: CoefficientSlope, slip: float, normal: float, friction: float) -> tuple[float, float, float]:
+def coefficient_slope(
+    law: CoefficientSlope, slip: float, normal: float, friction: float, rim: float
+) -> tuple[float, float, float, float]:
     """Friction force and its derivatives.
 
     Parameters
@@ -48,18 +42,20 @@ def coefficient_slope(law: CoefficientSlope, slip: float, normal: float, frictio
         Normal force f_n, N/m, not negative.
     friction
         Coulomb coefficient mu.
+    rim
+        Speed of the rim, m/s, which does not matter here.
 
     Returns
     -------
-    tuple of 3 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n.
+    tuple of 4 floats
+        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
     """
     if slip > law.creep_velocity:
-        return -friction * normal, 0.0, -friction
+        return -friction * normal, 0.0, -friction, 0.0
     if slip < -law.creep_velocity:
-        return friction * normal, 0.0, friction
+        return friction * normal, 0.0, friction, 0.0
     ratio = friction / law.creep_velocity
-    return -ratio * slip * normal, -ratio * normal, -ratio * slip
+    return -ratio * slip * normal, -ratio * normal, -ratio * slip, 0.0
 
 
 _KEY = Parameter("creep_velocity", "m/s", "the slip velocity at which friction is fully used")

@@ -17,25 +17,20 @@ class ForceSlope(NamedTuple):
     creep_rate_factor: float
     """nu_s, kg/(m s)."""
 
-    def saturation(self, normal: ArrayLike, friction: ArrayLike) -> FloatArray:
+    def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
         """Slip velocity mu f_n / nu_s, m/s."""
-        return np.multiply(friction, normal) / self.creep_rate_factor
+        creep = np.multiply(friction, normal) / self.creep_rate_factor
+        return np.broadcast_to(creep, np.broadcast_shapes(np.shape(creep), np.shape(rim)))
 
     def smoothed(self, factor: float) -> "ForceSlope":
         """Fully used at a slip velocity that is larger by a factor."""
         return ForceSlope(self.creep_rate_factor / factor)
 
-    def softened(self, limit: float, slip: float) -> str:
-        """Advice for full friction at a larger slip velocity."""
-        return f"lower contact.creep_rate_factor below {limit / slip:.2g}"
-
-    def steepened(self, slope: FloatArray, limit: FloatArray) -> str:
-        """Advice for a steeper slope."""
-        return f"raise contact.creep_rate_factor = {self.creep_rate_factor:g} to {slope.max():.1e} kg/(m s)"
-
 
 @kernel
-def force_slope(law: ForceSlope, slip: float, normal: float, friction: float) -> tuple[float, float, float]:
+def force_slope(
+    law: ForceSlope, slip: float, normal: float, friction: float, rim: float
+) -> tuple[float, float, float, float]:
     """Friction force and its derivatives (Eq. 20).
 
     Parameters
@@ -48,17 +43,19 @@ def force_slope(law: ForceSlope, slip: float, normal: float, friction: float) ->
         Normal force f_n, N/m, not negative.
     friction
         Coulomb coefficient mu.
+    rim
+        Speed of the rim, m/s, which does not matter here.
 
     Returns
     -------
-    tuple of 3 floats
-        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n.
+    tuple of 4 floats
+        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
     """
     creep, limit = law.creep_rate_factor * slip, friction * normal
     if abs(creep) < limit:
-        return -creep, -law.creep_rate_factor, 0.0
+        return -creep, -law.creep_rate_factor, 0.0, 0.0
     sign = 1.0 if creep > 0.0 else -1.0 if creep < 0.0 else 0.0
-    return -sign * limit, 0.0, -sign * friction
+    return -sign * limit, 0.0, -sign * friction, 0.0
 
 
 _KEY = Parameter("creep_rate_factor", "kg/(m*s)", "the slope of the friction force over the slip velocity")

@@ -10,9 +10,9 @@ from beltdyn.contact.parameter import Parameter
 
 
 class FrictionParameters(Protocol):
-    """Parameters of a friction law: a named tuple of numbers, which knows where the law saturates and gives advice."""
+    """Parameters of a friction law: a named tuple of numbers, which knows where the law saturates."""
 
-    def saturation(self, normal: ArrayLike, friction: ArrayLike) -> FloatArray:
+    def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
         """Slip velocity at which friction is fully used, m/s.
 
         Parameters
@@ -21,32 +21,12 @@ class FrictionParameters(Protocol):
             Normal force, N/m.
         friction
             Coulomb coefficient mu.
+        rim
+            Speed of the rim, m/s.
         """
 
     def smoothed(self, factor: float) -> Any:
         """The same law, with friction fully used at a slip velocity that is larger by a factor."""
-
-    def softened(self, limit: float, slip: float) -> str:
-        """What to change in a drive file so that friction is fully used at a larger slip velocity.
-
-        Parameters
-        ----------
-        limit
-            Largest friction force, N/m.
-        slip
-            The slip velocity wanted, m/s.
-        """
-
-    def steepened(self, slope: FloatArray, limit: FloatArray) -> str:
-        """What to change in a drive file so that the friction force grows more steeply with the slip velocity.
-
-        Parameters
-        ----------
-        slope
-            Slopes wanted, kg/(m s), one of each pulley.
-        limit
-            Largest friction forces, N/m.
-        """
 
 
 class FrictionLaw(NamedTuple):
@@ -56,9 +36,9 @@ class FrictionLaw(NamedTuple):
     """Its name in a drive file."""
     record: type[Any]
     """Class of its parameters, a named tuple."""
-    force: Callable[[Any, float, float, float], tuple[float, float, float]]
-    """Kernel: from parameters, slip velocity v_t (m/s), normal force f_n >= 0 (N/m) and coefficient mu the force f_t
-    (N/m) and its derivatives df_t/dv_t (N s/m^2) and df_t/df_n."""
+    force: Callable[[Any, float, float, float, float], tuple[float, float, float, float]]
+    """Kernel: from parameters, slip velocity v_t (m/s), normal force f_n >= 0 (N/m), coefficient mu and speed of the
+    rim v_r (m/s) the force f_t (N/m) and its derivatives df_t/dv_t (N s/m^2), df_t/df_n and df_t/dv_r (N s/m^2)."""
     parameters: tuple[Parameter, ...]
     """Its keys in a drive file, in the order of the fields of the record."""
 

@@ -70,7 +70,7 @@ def _friction_coefficient() -> float:
 def _friction(slip: FloatArray, factor: float) -> FloatArray:
     """Friction force of the kernel, N/m."""
     law, friction = ForceSlope(factor), _friction_coefficient()
-    return np.array([friction_force(law, float(value), _NORMAL, friction)[0] for value in slip])
+    return np.array([friction_force(law, float(value), _NORMAL, friction, 0.0)[0] for value in slip])
 
 
 @picture("Friction force on the belt over its slip velocity, for the two creep-rate factors of the paper.")

@@ -172,7 +172,7 @@ def _unknowns() -> Statement:
 def _on_half_a_pulley(drive: Drive, expected: int) -> Finding:
     """Whole elements on the wrapped half circle, and the unknowns of their nodes."""
     arc = drive.path.wrap_angles[0] * float(drive.radii[0])
-    elements = float(arc / (drive.path.length / drive.belt.elements))
+    elements = float(arc / (drive.path.length / drive.elements))
     counted = 6 * (round(elements) + 1)
     numbers = [
         Number("laid elements on half a pulley", elements),

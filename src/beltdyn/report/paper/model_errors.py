@@ -106,7 +106,7 @@ def errors_of(run: Run, exact: Values, case: Case) -> Errors:
     """
     found, attributes = Values.of(run), run.dataset.attrs
     return Errors(
-        elements=run.drive.belt.elements,
+        elements=run.drive.elements,
         unknowns=unknowns(run.drive),
         half_pulley=half_pulley(run.drive),
         speed=rms(found.speed - exact.speed) / case.speed,
@@ -128,7 +128,7 @@ def unknowns(drive: Drive) -> int:
 def half_pulley(drive: Drive) -> int:
     """Nodal coordinates of the elements on half a pulley, the nodes at both ends included."""
     belt, arc = drive.belt, float(drive.path.wrap_angles[0]) * float(drive.radii[0])
-    elements = round(arc / (drive.path.length / belt.elements))
+    elements = round(arc / (drive.path.length / belt.given_elements))
     kind = belt.element_kind
     return len(kind.coordinates) * (kind.points * elements + 1)
 

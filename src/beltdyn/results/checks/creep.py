@@ -4,6 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from beltdyn.contact.friction import LAWS
+from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 
@@ -12,9 +14,6 @@ SLIP_DEFECT = 5e-4
 
 LEAST_SLIP = 1e-3
 """Slip up to which it does not matter what makes it."""
-
-_LAYERS = 3.0
-"""Lengths over which a slip velocity grows e-fold that an arc should have: regularisation adds a tenth then."""
 
 _TRANSMITS = 0.01
 """Part of the power put in above which a pulley counts as one that transmits power."""
@@ -49,7 +48,7 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
             f"{listing(faults)}: no belt can do that.",
             f"Speeds, speed ratios and slip are wrong by {worst:.2%} of the speed or more; tensions and torques are "
             "not concerned.",
-            f"The belt has too few elements: set belt.elements = {2 * evidence.drive.belt.elements} and compare.",
+            f"The belt has too few elements: set belt.elements = {2 * evidence.drive.elements} and compare.",
         )
 
 
@@ -74,7 +73,7 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
             "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, "
             f"{listing(parts)}.",
             f"Slip is too large by as much, and friction losses by about {losses:.2g} W.",
-            f"To have the slip of the belt, {_steeper(evidence)}.",
+            f"To have the slip of the belt, {_steeper(evidence.drive)}.",
         )
 
 
@@ -86,15 +85,11 @@ def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
     return abs(slip) * passed > float(np.ptp(stretch, axis=0).max()) * drive.belt_length
 
 
-def _steeper(evidence: Evidence) -> str:
-    """Say which slope makes arcs several layers long; see `theory.creep.layer_length`."""
-    drive, pulleys = evidence.drive, evidence.pulleys
-    tension, speed = (
-        float(np.mean(evidence.window.mean(evidence.recorded, name))) for name in ("span_tension", "belt_speed")
-    )
-    most = max(abs(pulley.power) for pulley in pulleys)
-    loaded = np.array([abs(pulley.power) > _TRANSMITS * most and pulley.wrap_angle > 0.0 for pulley in pulleys])
-    arcs = (drive.radii * np.array([pulley.wrap_angle for pulley in pulleys]))[loaded]
-    slopes = _LAYERS * drive.belt.local_stiffness(tension) / (abs(speed) * arcs)
-    pressing = (tension - drive.belt.mass_per_length * speed**2) / drive.radii[loaded]
-    return drive.contact.friction_parameters.steepened(slopes, drive.frictions[loaded] * pressing)
+def _steeper(drive: Drive) -> str:
+    """Say how to get a steeper slope."""
+    chosen = LAWS[drive.contact.friction_law]
+    if any(parameter.found for parameter in chosen.parameters):
+        ratio = drive.completed.contact.given("creep_ratio")
+        return f"lower contact.creep_ratio = {ratio:.1e} to {0.1 * ratio:.0e}"
+    keys = " and ".join(f"contact.{key}" for key in ("friction_law", *(one.name for one in chosen.parameters)))
+    return f"leave out {keys}: the friction law that is chosen without them creeps with the speed of the belt"

@@ -33,10 +33,10 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
     elif growth > 0.0 and share > DAMPING_LIMIT:
         fault = f"the belt flutters where it slides: {between} grow, and take {share:.1%} of the power."
     if fault:
-        critical = 2.0 * math.sqrt(drive.contact_stiffness * drive.belt.mass_per_length)
         yield Finding(
             fault,
             f"Contact forces are uncertain then, and speeds and slip by as much as a run with simulation.rtol = "
             f"{drive.simulation.rtol / 10.0:g} changes them; real belts rarely flutter so.",
-            f"Set contact.damping = {0.5 * critical:.2g} N s/m^2 in place of {drive.contact.damping:g}.",
+            f"Set contact.damping = {0.5 * drive.critical_damping:.2g} N s/m^2, half of critical, in place of "
+            f"{drive.contact_damping:.2g}.",
         )

@@ -1,6 +1,5 @@
 """Powers with the wrong sign, and losses that no belt has."""
 
-import math
 from collections.abc import Iterator
 
 from beltdyn.parts.finding import Finding, listing
@@ -53,13 +52,13 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     balance, share = power_balance(evidence.recorded, evidence.window), damping_share(evidence)
     power, drive = balance.losses["contact damping"], evidence.drive
     if share > DAMPING_LIMIT and not attribute(evidence.recorded, "flutter_growth", 0.0) > 0.0:
-        critical = 2.0 * math.sqrt(drive.contact_stiffness * drive.belt.mass_per_length)
-        growing = min(drive.contact.damping, critical)  # beyond it the loss no longer grows with the damping
+        # beyond critical damping the loss no longer grows with the damping
+        growing = min(drive.contact_damping, drive.critical_damping)
         yield Finding(
             f"the damping between belt and pulleys takes {power:.3g} W, {share:.1%} of the power put in: it steadies "
             "the computation, and is no loss of a belt.",
             _spoiled(balance, power),
-            f"Lower contact.damping = {drive.contact.damping:g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 "
+            f"Lower contact.damping = {drive.contact_damping:.2g} to {growing * _DAMPING_GOAL / share:.1g} N s/m^2 "
             "or less.",
         )
 

@@ -44,11 +44,12 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
     turning = drive.pulleys[number].turning
     place = instant["contact_position"].values[on] - centers[number]
     angle = angle_from_inlet(place, inlet[number], wrap[number], turning)
-    backwards = rim_speeds(instant["pulley_speed"].values, drive)[number] < 0.0
+    speed = instant["pulley_speed"].values
+    backwards = rim_speeds(speed, drive)[number] < 0.0
     forward = -turning if backwards else turning
     angle = wrap[number] - angle if backwards else angle
     normal, slip = instant["normal_force"].values, instant["slip_velocity"].values
-    sliding = sliding_velocity(slip, normal, touched, drive)[on] != 0.0
+    sliding = sliding_velocity(slip, normal, touched, speed, drive)[on] != 0.0
     normal, shear = normal[on], forward * instant["friction_force"].values[on]
     columns = {
         "normal_force": (normal, "N/m", "Normal force on the belt"),

@@ -192,7 +192,7 @@ def element_order(drive: Drive, pulley: int) -> float:
         Number of the pulley.
     """
     turn = 2.0 * np.pi * float(drive.radii[pulley])
-    return drive.belt.elements * turn / drive.path.length
+    return drive.elements * turn / drive.path.length
 
 
 def instants_of(values: xr.DataArray) -> FloatArray:

@@ -17,7 +17,7 @@ def sliding_on(run: Run, pulley: int, beyond: float) -> np.ndarray:
     """Slip velocities with which the whole arc of a pulley slides by this much beyond creep."""
     dataset, contact = run.dataset, run.drive.contact
     assert contact.creep_rate_factor is not None
-    creep = contact.friction * dataset["normal_force"].values / contact.creep_rate_factor
+    creep = run.drive.frictions[0] * dataset["normal_force"].values / contact.creep_rate_factor
     on = dataset["contact_pulley"].values == pulley
     return np.where(on, np.sign(beyond) * creep + beyond, dataset["slip_velocity"].values)
 

@@ -348,7 +348,7 @@ def test_elements_pass_a_pulley_as_often_as_its_turn_is_longer(run: Run) -> None
     path = run.drive.path
     share = 1.0 - path.span_lengths.sum() / path.length
     for pulley in (0, 1):
-        assert element_order(run.drive, pulley) == pytest.approx(run.drive.belt.elements * share)
+        assert element_order(run.drive, pulley) == pytest.approx(run.drive.elements * share)
 
 
 def test_the_pass_band_belongs_to_the_rate_of_the_outputs() -> None:

@@ -1,0 +1,76 @@
+"""Coulomb friction, used in part up to a creep velocity that grows with the speed of the rim.
+
+f_t = -mu f_n clip(v_t / v_c, -1, 1) with v_c = sqrt((s v_r)^2 + v_0^2), where v_r is the speed of the rim.  Elastic
+creep is a fraction of the belt's speed too, so that one creep ratio s serves from a crawl to full speed.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import FloatArray
+from beltdyn.contact.friction.law import FrictionLaw, register
+from beltdyn.contact.parameter import Parameter
+from beltdyn.kernel import kernel
+
+
+class RelativeCreep(NamedTuple):
+    """Parameters of friction with a creep ratio."""
+
+    creep_ratio: float
+    """s."""
+    standstill_creep: float
+    """v_0, m/s."""
+
+    def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
+        """Slip velocity v_c whatever the normal force, m/s."""
+        creep = np.hypot(np.multiply(self.creep_ratio, rim), self.standstill_creep)
+        return np.broadcast_to(creep, np.broadcast_shapes(np.shape(creep), np.shape(normal), np.shape(friction)))
+
+    def smoothed(self, factor: float) -> "RelativeCreep":
+        """Fully used at a slip velocity that is larger by a factor."""
+        return RelativeCreep(self.creep_ratio * factor, self.standstill_creep * factor)
+
+
+@kernel
+def relative_creep(
+    law: RelativeCreep, slip: float, normal: float, friction: float, rim: float
+) -> tuple[float, float, float, float]:
+    """Friction force and its derivatives.
+
+    Parameters
+    ----------
+    law
+        Parameters.
+    slip
+        Slip velocity v_t, m/s.
+    normal
+        Normal force f_n, N/m, not negative.
+    friction
+        Coulomb coefficient mu.
+    rim
+        Speed of the rim v_r, m/s.
+
+    Returns
+    -------
+    tuple of 4 floats
+        f_t (N/m), df_t/dv_t (N s/m^2), df_t/df_n, df_t/dv_r (N s/m^2).
+    """
+    scaled = law.creep_ratio * rim
+    creep = sqrt(scaled * scaled + law.standstill_creep * law.standstill_creep)
+    if slip > creep:
+        return -friction * normal, 0.0, -friction, 0.0
+    if slip < -creep:
+        return friction * normal, 0.0, friction, 0.0
+    share = friction / creep
+    force = -share * slip * normal
+    return force, -share * normal, -share * slip, -force * law.creep_ratio * scaled / (creep * creep)
+
+
+_RATIO = Parameter(
+    "creep_ratio", "", "the slip velocity over the speed of the rim at which friction is fully used", found=True
+)
+_STANDSTILL = Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at a standstill", default=1e-5)
+register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, (_RATIO, _STANDSTILL)))

@@ -1,0 +1,150 @@
+"""Numbers of computation that a drive leaves open: those of contact, and the number of elements.
+
+Contact is a penalty, and the creep of friction a regularisation: both belong to the computation, unless the belt's
+own compressibility is known.  They are chosen so that a result does not show them, and no run pays for more.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model.belt import Belt
+from beltdyn.model.path import Path
+from beltdyn.model.pulley import Pulley
+from beltdyn.model.resolution import Running, elements_needed
+
+TENSION_LOST = 0.005
+"""Part of the tension that penetration may take."""
+DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.005
+"""Largest penetrations at rest over the belt's thickness and over the effective radius."""
+DAMPING_RATIO = 0.1
+"""Damping of contact over the critical one."""
+CREEP_LENGTHS = 16.0
+"""Lengths over which a slip velocity grows e-fold that the smallest gripping arc has at the tension at rest."""
+RESOLVED = ("tension", "slip")
+"""What the mesh resolves; pressures and losses at the ends of arcs need more elements, of which a run warns."""
+FEWEST, MOST = 40, 2000
+"""Numbers of elements that are chosen at least and at most."""
+
+
+class Choice(NamedTuple):
+    """A number that a drive leaves open, as it is chosen."""
+
+    key: str
+    """Its key in a drive file, such as "contact.stiffness"."""
+    value: float
+    unit: str
+    """SI unit, empty for a ratio or a number."""
+    reason: str
+    """Why it is chosen so, in a few words."""
+
+
+class OnPath(NamedTuple):
+    """A belt on its path, which `beltdyn.model.resolution` asks for its mesh."""
+
+    belt: Belt
+    belt_length: float
+    """m."""
+    radii: FloatArray
+    """Effective radii, shape (n,), m."""
+    contact_stiffness: float
+    """N/m^2."""
+
+
+def stiffness_for_tension(path: Path, belt: Belt) -> float:
+    """Stiffness of contact with which penetration takes `TENSION_LOST`, N/m^2.
+
+    A belt under T sinks by d = T / (R k_p), which shortens its path by the wrap angle times d, and it loses the tension
+    E A / L times that.
+
+    Parameters
+    ----------
+    path : Path
+    belt : Belt
+    """
+    sinking = float(np.sum(path.wrap_angles / np.abs(path.radii)))
+    return belt.axial_stiffness * sinking / (TENSION_LOST * path.length)
+
+
+def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
+    """Choose the stiffness of contact.
+
+    Parameters
+    ----------
+    path : Path
+    belt : Belt
+    tension : float
+        At rest, N.
+    """
+    key, unit = "contact.stiffness", "N/m^2"
+    if belt.contact_stiffness is not None:
+        return Choice(key, belt.contact_stiffness, unit, "the belt's own compressibility")
+    radius = float(np.min(np.abs(path.radii)))
+    shallow, thin = DEPTH_OF_RADIUS * radius, DEPTH_OF_THICKNESS * belt.thickness
+    reasons = {
+        f"penetration takes {TENSION_LOST:.1%} of the tension": stiffness_for_tension(path, belt),
+        f"the belt sinks in by {DEPTH_OF_RADIUS:.1%} of the smallest radius": tension / (radius * shallow),
+        f"the belt sinks in by {DEPTH_OF_THICKNESS:.0%} of its thickness": tension / (radius * thin),
+    }
+    reason = max(reasons, key=lambda name: reasons[name])
+    return Choice(key, reasons[reason], unit, reason)
+
+
+def critical_damping(stiffness: float, mass_per_length: float) -> float:
+    """Damping 2 sqrt(k_p m) of contact with which a belt pressed on a pulley does not swing, N s/m^2.
+
+    Parameters
+    ----------
+    stiffness : float
+        k_p, N/m^2.
+    mass_per_length : float
+        m, kg/m.
+    """
+    return 2.0 * math.sqrt(stiffness * mass_per_length)
+
+
+def choose_damping(stiffness: float, belt: Belt) -> Choice:
+    """Choose the damping of contact of a stiffness, N/m^2."""
+    critical = critical_damping(stiffness, belt.mass_per_length)
+    return Choice("contact.damping", DAMPING_RATIO * critical, "N*s/m^2", f"{DAMPING_RATIO:.0%} of critical")
+
+
+def choose_creep_ratio(pulleys: Sequence[Pulley], grips: FloatArray, strain: float) -> Choice:
+    """Choose the creep ratio of friction.
+
+    Below the cap a slip velocity grows e-fold along an arc within the angle s E A / (mu T). The belt creeps at the
+    rim's entry by what is left of it there, which elastic creep does not know.
+
+    Parameters
+    ----------
+    pulleys : sequence of Pulley
+        Those without speed, torque, load and hub do not count, which carry next to nothing.
+    grips : ndarray, shape (n,)
+        Coefficients of friction, with the wedge, times the wrap angles.
+    strain : float
+        T / E A of the belt at rest.
+    """
+    working = np.array([bool(one.speed or one.torque or one.load or one.hub) for one in pulleys])
+    grip = float(np.min(grips[working & (grips > 0.0)], initial=math.pi))
+    return Choice(
+        "contact.creep_ratio", grip * strain / CREEP_LENGTHS, "", "adds less than 3% to the slip of elastic creep"
+    )
+
+
+def choose_elements(belt: OnPath, tension: float) -> Choice:
+    """Choose the number of elements.
+
+    Parameters
+    ----------
+    belt : OnPath
+    tension : float
+        At rest, N.
+    """
+    needed = elements_needed(belt, Running(tension))
+    name = max(RESOLVED, key=lambda name: needed[name])
+    number = min(max(needed[name], FEWEST), MOST)
+    reason = f"resolves {name}" if number == needed[name] else "at least" if number == FEWEST else "at most"
+    return Choice("belt.elements", number, "", reason)
