@@ -14,18 +14,18 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.resolution import Running, elements_needed
+from beltdyn.model.resolution import Running, fewest
 
 TENSION_LOST = 0.005
 """Part of the tension that penetration may take."""
 DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.005
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
-DAMPING_RATIO = 0.1
+DAMPING_RATIO = 0.3
 """Damping of contact over the critical one."""
 CREEP_LENGTHS = 16.0
 """Lengths over which a slip velocity grows e-fold that the smallest gripping arc has at the tension at rest."""
-RESOLVED = ("tension", "slip")
-"""What the mesh resolves; pressures and losses at the ends of arcs need more elements, of which a run warns."""
+RESOLVED = {"tension": 0.005, "slip": 0.015}
+"""What the mesh resolves, and the largest estimates of its errors; pressures at the ends of arcs need more elements."""
 FEWEST, MOST = 40, 2000
 """Numbers of elements that are chosen at least and at most."""
 
@@ -143,8 +143,14 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
     tension : float
         At rest, N.
     """
-    needed = elements_needed(belt, Running(tension))
-    name = max(RESOLVED, key=lambda name: needed[name])
+    needed = {name: fewest(belt, Running(tension), name, limit) for name, limit in RESOLVED.items()}
+    name = max(needed, key=lambda name: needed[name])
     number = min(max(needed[name], FEWEST), MOST)
-    reason = f"resolves {name}" if number == needed[name] else "at least" if number == FEWEST else "at most"
+    reason = (
+        f"estimated error of {name} {RESOLVED[name]:.1%}"
+        if number == needed[name]
+        else f"{needed[name]} would do for speeds and tensions"
+        if number == FEWEST
+        else f"no more; {needed[name]} would resolve {name}"
+    )
     return Choice("belt.elements", number, "", reason)

@@ -137,11 +137,11 @@ def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
     dict of str to int
         For each of `ERROR_LIMITS`.
     """
-    return {name: _fewest(drive, running, name, limit / _SURE) for name, limit in ERROR_LIMITS.items()}
+    return {name: fewest(drive, running, name, limit / _SURE) for name, limit in ERROR_LIMITS.items()}
 
 
-def _fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
-    """Fewest elements for one error, by halving: errors fall with the number."""
+def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
+    """Fewest elements whose estimate of one of `ERROR_LIMITS` keeps to a limit, by halving: errors fall with them."""
     few, many = 0, _MOST
     while many - few > 1:
         middle = (few + many) // 2
