@@ -76,6 +76,9 @@ def check(
             ("", "position", "spring", "stops", "other balances"),
             _tensioners(drive, installation),
         )
+    if given.completed.choices:
+        show("\nChosen, since the file leaves it open")
+        show_facts(_choices(given))
     show()
     show_warnings([*([str(unstable_balance(unstable))] if unstable else []), *advise(given, estimate)])
     if figure is None:
@@ -169,6 +172,14 @@ def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str,
             )
         )
     return rows
+
+
+def _choices(drive: "Drive") -> list[tuple[str, str]]:
+    """Numbers that the file leaves open, as they are chosen, with their reasons."""
+    return [
+        (choice.key, f"{choice.value:.4g} {choice.unit.replace('*', ' ')}".strip() + f": {choice.reason}")
+        for choice in drive.completed.choices
+    ]
 
 
 def other_balances(drive: "Drive", installation: "Installation") -> list[str]:

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from beltdyn.contact.friction import LAWS as FRICTION_LAWS
-from beltdyn.contact.friction import CoefficientSlope, ForceSlope
+from beltdyn.contact.friction import CoefficientSlope, ForceSlope, RelativeCreep
 from beltdyn.contact.normal import LAWS as NORMAL_LAWS
 from beltdyn.contact.normal import NoPull
 from beltdyn.errors import ModelError
@@ -38,7 +38,6 @@ def test_every_law_of_the_normal_force_can_be_chosen(law: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"stiffness": None}, "stiffness is missing. Give it, or allowed_penetration in its place"),
         ({"allowed_penetration": 1e-4}, "stiffness and allowed_penetration exclude each other. Remove one of them"),
         ({"creep_rate_factor": None}, 'creep_rate_factor is missing: the friction law "force_slope" needs it'),
         (
@@ -63,3 +62,14 @@ def test_a_law_that_is_not_chosen_leaves_its_parameters_open() -> None:
     for law in FRICTION_LAWS.values():
         for parameter in law.parameters:
             assert (getattr(contact, parameter.name) is None) == (parameter.name not in chosen)
+
+
+def test_numbers_of_computation_may_be_left_open() -> None:
+    contact = Contact(friction=0.4)
+    assert contact.open_keys == ("stiffness", "damping", "creep_ratio")
+    with pytest.raises(ModelError, match=r"contact\.creep_ratio is open\. Take the contact that a drive completes"):
+        _ = contact.friction_parameters
+    with pytest.raises(ModelError, match=r"contact\.stiffness is open"):
+        _ = contact.normal_parameters
+    assert Contact(**GIVEN).open_keys == ()
+    assert Contact(stiffness=1e8, damping=0.0, creep_ratio=1e-3).friction_parameters == RelativeCreep(1e-3, 1e-5)

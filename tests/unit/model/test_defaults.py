@@ -1,0 +1,133 @@
+"""Numbers of computation that a drive chooses: what they are for, they keep."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.model import Belt, Contact, Drive, dumps, install, loads, mesh_errors
+from beltdyn.model.defaults import critical_damping
+from beltdyn.model.resolution import Running
+from beltdyn.theory.stretch import tension
+
+MOTOR = {"name": "motor", "center": (0.0, 0.0), "radius": 0.05, "speed": {"kind": "constant", "value": 100.0}}
+FAN: dict[str, Any] = {"name": "fan", "center": (0.5, 0.0), "radius": 0.1, "inertia": 0.01}
+FAN["load"] = [{"kind": "resistance", "constant": 5.0}]
+BELT = {
+    "width": 0.02,
+    "thickness": 4e-3,
+    "axial_stiffness": 2e5,
+    "bending_stiffness": 1e-2,
+    "mass_per_length": 0.1,
+    "installed_tension": 400.0,
+}
+RUN = {"duration": 1.0, "output_interval": 1e-3}
+
+
+def drive(belt: dict[str, Any] | None = None, **parts: Any) -> Drive:
+    given: dict[str, Any] = {
+        "belt": BELT | (belt or {}),
+        "pulley": [MOTOR, FAN],
+        "contact": {"friction": 0.4},
+        "simulation": RUN,
+    }
+    return Drive(**given | parts)
+
+
+def test_nothing_but_friction_is_needed() -> None:
+    assert drive(contact=Contact(friction=0.4)) == drive()
+    belt = Belt(**BELT, friction=0.4)
+    own = Drive(belt=belt, pulley=[MOTOR, FAN], simulation=RUN)
+    assert own.completed.contact.replace(friction=0.4) == drive().completed.contact
+    assert own.contact == Contact()
+    assert loads(dumps(own)) == own
+
+
+def test_what_is_given_is_not_chosen() -> None:
+    given = drive({"elements": 50}, contact={"friction": 0.4, "stiffness": 1e8, "damping": 7.0, "creep_ratio": 1e-3})
+    assert given.completed.choices == ()
+    assert (given.elements, given.contact_stiffness, given.contact_damping) == (50, 1e8, 7.0)
+    assert given.friction_parameters.saturation(1.0, 0.4, 10.0) == pytest.approx(1e-2, rel=1e-5)
+    some = drive({"elements": 50}, contact={"friction": 0.4, "stiffness": 1e8})
+    assert [choice.key for choice in some.completed.choices] == ["contact.damping", "contact.creep_ratio"]
+
+
+def test_every_choice_has_its_reason() -> None:
+    chosen = {choice.key: choice for choice in drive().completed.choices}
+    assert list(chosen) == ["contact.stiffness", "contact.damping", "contact.creep_ratio", "belt.elements"]
+    assert all(choice.reason for choice in chosen.values())
+    assert chosen["contact.stiffness"].value == drive().contact_stiffness
+    assert chosen["belt.elements"].value == drive().elements
+
+
+@pytest.mark.parametrize("thickness", [4e-3, 1e-4])
+@pytest.mark.parametrize("load", [4.0, 400.0, 1000.0])
+def test_penetration_takes_little(load: float, thickness: float) -> None:
+    """At most 0.5 % of the tension, 0.5 % of the smallest radius and 2 % of the thickness; one of them is reached."""
+    given = drive({"installed_tension": load, "thickness": thickness})
+    here = install(given)
+    lost = 1.0 - here.tension / here.laid_tension
+    deepest = float(here.penetrations.max())
+    shares = np.array([lost / 0.005, deepest / (0.005 * 0.05), deepest / (0.02 * thickness)])
+    assert shares.max() == pytest.approx(1.0, rel=0.03)  # stretch, here up to 0.5 %, is left out
+
+
+def test_a_belt_of_given_length_sinks_in_as_little() -> None:
+    """The tension on hard pulleys follows from the length, and 0.5 % of it is lost."""
+    long = drive()
+    given = drive({"installed_tension": None, "length": long.belt_length})
+    here = install(given)
+    assert here.tension == pytest.approx(0.995 * here.laid_tension, rel=1e-3)
+    assert here.laid_tension == pytest.approx(
+        tension(given.path.length / long.belt_length, given.belt.axial_stiffness), rel=1e-9
+    )
+
+
+def test_the_belts_own_compressibility_counts() -> None:
+    assert drive({"contact_stiffness": 3e7}).contact_stiffness == 3e7
+
+
+def test_damping_is_a_share_of_critical() -> None:
+    """A mass m on a spring k_p and a damper 2 sqrt(k_p m) has a double root: it does not swing."""
+    given = drive()
+    damping, mass = critical_damping(given.contact_stiffness, 0.1), 0.1
+    roots = np.roots([mass, damping, given.contact_stiffness])
+    assert roots[0] == pytest.approx(roots[1], rel=1e-6)
+    assert given.critical_damping == damping
+    assert 0.0 < given.contact_damping < damping
+
+
+def test_creep_lengths_fill_the_smallest_gripping_arc() -> None:
+    """T mu / (s E A) e-folds a radian, 16 of them on the arc of the motor; an idler without load does not count."""
+    given = drive()
+    (choice,) = (one for one in given.completed.choices if one.key == "contact.creep_ratio")
+    folds = 0.4 * 400.0 / (choice.value * 2e5)
+    assert folds * given.path.wrap_angles[0] == pytest.approx(16.0)
+    idler = {"name": "idler", "center": (0.25, -0.08), "radius": 0.02, "inertia": 1e-4, "side": "outside"}
+    with_idler = drive(pulley=[MOTOR, idler, FAN])
+    ratios = [one.completed.contact.given("creep_ratio") for one in (given, with_idler)]
+    wraps = [one.path.wrap_angles[[0, -1]].min() for one in (given, with_idler)]
+    assert ratios[0] / ratios[1] == pytest.approx(wraps[0] / wraps[1])
+
+
+def test_the_mesh_resolves_tension_and_slip() -> None:
+    given = drive()
+    errors = mesh_errors(given, Running(400.0), given.elements)
+    coarser = mesh_errors(given, Running(400.0), given.elements - 1)
+    assert errors["tension"] <= 0.005
+    assert errors["slip"] <= 0.015
+    assert coarser["tension"] > 0.005 or coarser["slip"] > 0.015
+
+
+def test_a_settled_drive_keeps_what_was_chosen() -> None:
+    """Its length changes a little, and the numbers of computation stay."""
+    given = drive()
+    settled = given.tightened(1e-6)
+    assert settled.completed.choices == ()
+    assert settled.completed.contact == given.completed.contact
+    assert settled.elements == given.elements
+
+
+def test_a_belt_that_does_not_slide_has_numbers_too() -> None:
+    """Without friction nothing grips, and any creep ratio will do."""
+    assert drive(contact={"friction": 0.0}).friction_parameters.saturation(1.0, 0.0, 1.0) > 0.0
