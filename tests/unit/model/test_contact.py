@@ -72,4 +72,4 @@ def test_numbers_of_computation_may_be_left_open() -> None:
     with pytest.raises(ModelError, match=r"contact\.stiffness is open"):
         _ = contact.normal_parameters
     assert Contact(**GIVEN).open_keys == ()
-    assert Contact(stiffness=1e8, damping=0.0, creep_ratio=1e-3).friction_parameters == RelativeCreep(1e-3, 1e-5)
+    assert Contact(stiffness=1e8, damping=0.0, creep_ratio=1e-3).friction_parameters == RelativeCreep(1e-3, 1e-6)
