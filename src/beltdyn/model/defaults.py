@@ -18,9 +18,9 @@ from beltdyn.model.resolution import Running, fewest
 
 TENSION_LOST = 0.005
 """Part of the tension that penetration may take."""
-DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.005
+DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.002
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
-DAMPING_RATIO = 0.3
+DAMPING_RATIO = 0.1
 """Damping of contact over the critical one."""
 CREEP_LENGTHS = 16.0
 """Lengths over which a slip velocity grows e-fold that the smallest gripping arc has at the tension at rest."""
@@ -70,7 +70,9 @@ def stiffness_for_tension(path: Path, belt: Belt) -> float:
 
 
 def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
-    """Choose the stiffness of contact.
+    """Choose the stiffness of contact: the belt's own where it is known and hard enough.
+
+    Slip is taken at the rim, and penetration does not change the radius at which a belt runs: softer contact spoils slip.
 
     Parameters
     ----------
@@ -79,18 +81,16 @@ def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
     tension : float
         At rest, N.
     """
-    key, unit = "contact.stiffness", "N/m^2"
-    if belt.contact_stiffness is not None:
-        return Choice(key, belt.contact_stiffness, unit, "the belt's own compressibility")
     radius = float(np.min(np.abs(path.radii)))
     shallow, thin = DEPTH_OF_RADIUS * radius, DEPTH_OF_THICKNESS * belt.thickness
     reasons = {
         f"penetration takes {TENSION_LOST:.1%} of the tension": stiffness_for_tension(path, belt),
         f"the belt sinks in by {DEPTH_OF_RADIUS:.1%} of the smallest radius": tension / (radius * shallow),
         f"the belt sinks in by {DEPTH_OF_THICKNESS:.0%} of its thickness": tension / (radius * thin),
+        "the belt's own compressibility": belt.contact_stiffness or 0.0,
     }
     reason = max(reasons, key=lambda name: reasons[name])
-    return Choice(key, reasons[reason], unit, reason)
+    return Choice("contact.stiffness", reasons[reason], "N/m^2", reason)
 
 
 def critical_damping(stiffness: float, mass_per_length: float) -> float:

@@ -62,12 +62,12 @@ def test_every_choice_has_its_reason() -> None:
 @pytest.mark.parametrize("thickness", [4e-3, 1e-4])
 @pytest.mark.parametrize("load", [4.0, 400.0, 1000.0])
 def test_penetration_takes_little(load: float, thickness: float) -> None:
-    """At most 0.5 % of the tension, 0.5 % of the smallest radius and 2 % of the thickness; one of them is reached."""
+    """At most 0.5 % of the tension, 0.2 % of the smallest radius and 2 % of the thickness; one of them is reached."""
     given = drive({"installed_tension": load, "thickness": thickness})
     here = install(given)
     lost = 1.0 - here.tension / here.laid_tension
     deepest = float(here.penetrations.max())
-    shares = np.array([lost / 0.005, deepest / (0.005 * 0.05), deepest / (0.02 * thickness)])
+    shares = np.array([lost / 0.005, deepest / (0.002 * 0.05), deepest / (0.02 * thickness)])
     assert shares.max() == pytest.approx(1.0, rel=0.03)  # stretch, here up to 0.5 %, is left out
 
 
@@ -81,8 +81,9 @@ def test_a_belt_of_given_length_sinks_in_as_little() -> None:
     assert here.laid_tension == pytest.approx(float(laid), rel=1e-9)
 
 
-def test_the_belts_own_compressibility_counts() -> None:
-    assert drive({"contact_stiffness": 3e7}).contact_stiffness == 3e7
+def test_the_belts_own_compressibility_counts_where_it_is_hard() -> None:
+    assert drive({"contact_stiffness": 3e11}).contact_stiffness == 3e11
+    assert drive({"contact_stiffness": 3e7}).contact_stiffness == drive().contact_stiffness > 3e7
 
 
 def test_damping_is_a_share_of_critical() -> None:
