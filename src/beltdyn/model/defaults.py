@@ -72,7 +72,7 @@ def stiffness_for_tension(path: Path, belt: Belt) -> float:
 def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
     """Choose the stiffness of contact: the belt's own where it is known and hard enough.
 
-    Slip is taken at the rim, and penetration does not change the radius at which a belt runs: softer contact spoils slip.
+    Slip is taken at the rim, and penetration does not change the radius at which a belt runs: a soft one spoils slip.
 
     Parameters
     ----------
