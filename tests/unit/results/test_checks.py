@@ -105,18 +105,24 @@ def test_the_driver_need_not_come_first(turning: Callable[..., Run], run: Run) -
     assert not said(turning(**changed, **with_slip(run, -0.005)), "faster")
 
 
+LAW = 'friction_law = "force_slope"\ncreep_rate_factor = 1e5'
+LEAVE_OUT = "leave out contact.friction_law and contact."
+
+
 @pytest.mark.parametrize(
     ("change", "remedy"),
     [
-        ("creep_rate_factor = 1e5", "raise contact.creep_rate_factor = 100000 to"),
-        ('friction_law = "coefficient_slope"\ncreep_velocity = 0.1', "lower contact.creep_velocity = 0.1 to"),
+        (LAW, f"{LEAVE_OUT}creep_rate_factor:"),
+        ('friction_law = "coefficient_slope"\ncreep_velocity = 0.1', f"{LEAVE_OUT}creep_velocity:"),
+        ("creep_ratio = 0.05", "lower contact.creep_ratio = 5.0e-02 to 5e-03"),
     ],
 )
 def test_slip_of_the_friction_law(
     turning: Callable[..., Run], run: Run, drive_text: str, change: str, remedy: str
 ) -> None:
     """Of a slip of 20 % the slope makes all but 0.29 %."""
-    drive = loads(drive_text.replace("creep_rate_factor = 1e5", change))
+    assert LAW in drive_text
+    drive = loads(drive_text.replace(LAW, change))
     (finding,) = turning(drive, **with_slip(run, 0.2)).findings
     assert finding.fault.endswith("it makes more slip than the belt's stretch does, 19.71% of 20.00% on driven.")
     assert "friction losses by about 5.8 W" in finding.spoils  # of 29.25 W put in
@@ -132,12 +138,6 @@ def test_slip_of_the_friction_law_within_a_part_of_a_turn(make_run: MakeRun, run
     rising = run.dataset["span_tension"].values + np.linspace(0.0, 170.0, 101)[:, None]
     assert said(make_run(span_tension=rising, **with_slip(run, 0.2)), "builds up too slowly")
     assert not said(make_run(span_tension=rising, **with_slip(run, 0.02)), "builds up too slowly")
-
-
-def test_slope_that_is_asked_for(turning: Callable[..., Run], run: Run) -> None:
-    """Three lengths EA / (nu v) fill the arc of pi R: nu = 3 * 10 kN / (4.24 m/s * 0.255 m) = 2.77e4 kg/(m s)."""
-    (finding,) = turning(**with_slip(run, 0.2)).findings
-    assert finding.remedy.endswith("to 2.8e+04 kg/(m s).")
 
 
 def test_load_that_drives(turning: Callable[..., Run], run: Run) -> None:
@@ -169,7 +169,7 @@ def test_vibrations_that_grow_are_said_to_take_the_power_of_contact_damping(
     (finding,) = fluttering.findings
     assert finding.fault.startswith("the belt flutters where it slides")
     assert "take 16.4% of the power" in finding.fault
-    assert finding.remedy == "Set contact.damping = 1e+03 N s/m^2 in place of 10."  # half of critical
+    assert finding.remedy == "Set contact.damping = 1e+03 N s/m^2, half of critical, in place of 10."
 
 
 def test_contact_damping_that_takes_power(turning: Callable[..., Run], run: Run) -> None:
