@@ -57,4 +57,4 @@ def test_forms_of_a_belt_are_arguments_too() -> None:
     parameters = inspect.signature(Belt).parameters
     assert {"profile", "ribs", "axial_stiffness", "mass_per_length"} <= parameters.keys()
     assert parameters["density"].default is None  # a profile stands in for it
-    assert inspect.signature(Contact).parameters["friction"].default is inspect.Parameter.empty
+    assert inspect.signature(Pulley).parameters["name"].default is inspect.Parameter.empty
