@@ -53,7 +53,7 @@ def test_a_motor_runs_up_in_the_time_of_its_closed_form() -> None:
     _, machines = pulley(inertia=0.3, load=[motor])
 
     def rates(time: float, state: FloatArray) -> list[float]:
-        torque = shaft_torque(machines.profiles, machines.shaft_loads, 0, time, state[0], state[1]).torque
+        torque = shaft_torque(machines.profiles, machines.shaft_loads, 0, time, state[0], state[1], np.zeros(0)).torque
         return [state[1], torque / 0.3]
 
     slip = 0.01

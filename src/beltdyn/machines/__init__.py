@@ -20,6 +20,7 @@ from beltdyn.machines.loads.kinds import (
     Motor,
     Pump,
     Resistance,
+    ServoMotor,
 )
 from beltdyn.machines.loads.load import Load
 from beltdyn.machines.profiles.harmonic import Harmonic
@@ -55,6 +56,7 @@ __all__ = [
     "Ramp",
     "Resistance",
     "RotaryTensioner",
+    "ServoMotor",
     "SlidingTensioner",
     "Step",
     "Table",

@@ -90,7 +90,8 @@ def _lag_of_shaft(system: System, method: Method, state: IntegratorState, pulley
         schedule, command = loads.table[load].schedule, loads.table[load].command
         if schedule != NO_SCHEDULE or command != NO_SCHEDULE:
             time = after_jump(state.clock.time)
-            full = load_torque(system.profiles, loads, load, time, state.position[i], state.velocity[i])
+            states = state.position[system.first_body :]
+            full = load_torque(system.profiles, loads, load, time, state.position[i], state.velocity[i], states)
             if schedule != NO_SCHEDULE:
                 impulse += full.torque * lag_of(system, method, state, schedule, length)
             if command != NO_SCHEDULE:

@@ -1,8 +1,8 @@
 """What the kernels of the system work on: named tuples of arrays and scalars, nothing else.
 
 The state of a system with N nodes is the vector of n N nodal coordinates, n to a node (six of the paper's element),
-followed by D coordinates of bodies: the angles of the P rims, those of the bodies behind the rims in hub chains, and
-the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a
+followed by D coordinates of bodies: the angles of the P rims, those of the bodies behind the rims in hub chains, the
+states of controllers, and the places of tensioners.  Velocities and accelerations are ordered alike.  Elements couple a
 node with the next one only, and the centreline of an element is made of one or several curves; beyond that the system
 does not ask how a belt is discretised.
 """
@@ -30,11 +30,12 @@ PULLEY = record(
 """A pulley."""
 
 BODY = record(
-    inertia="f8",  # kg m^2, or kg of a sliding tensioner
+    inertia="f8",  # kg m^2, or kg of a sliding tensioner; the lag of a controller's state, s
+    kinetic="f8",  # inertia that has kinetic energy: the same, but zero of a controller's state
     unknown="i8",  # place in the border of the ring's matrix, -1 where the motion is prescribed
     reach="f8",  # what turns a change of the coordinate into a length of belt: a radius or an arm in m, or 1
 )
-"""A body beside the belt: first come the rims, then the bodies of hub chains, then tensioners."""
+"""A body beside the belt: first come the rims, then bodies of hub chains, states of controllers, tensioners."""
 
 
 class Supports(NamedTuple):

@@ -6,7 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.contact_force import ContactTotals
 from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import link_torque
-from beltdyn.machines.loads.shaft import shaft_torque
+from beltdyn.machines.loads.shaft import shaft_torque, state_rate
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
 from beltdyn.system.arrays import (
     COUPLING_LOSS,
@@ -169,7 +169,8 @@ def _add_links(system: System, motion: Motion, factors: TangentFactors, corner: 
 def _take_shafts(
     system: System, motion: Motion, factors: TangentFactors, corner: FloatArray, forces: BodyForces
 ) -> None:
-    """Torques on the shafts from outside, and their powers."""
+    """Torques on the shafts from outside, and their powers; what moves the states of controllers."""
+    states = motion.position[system.first_body :]
     for p in range(system.pulleys.size):
         body = system.pulleys[p].shaft
         at, unknown = system.first_body + body, system.bodies[body].unknown
@@ -178,9 +179,35 @@ def _take_shafts(
             forces.shaft[p] = system.bodies[body].inertia * motion.acceleration[at] - forces.force[body]
             forces.power[DRIVER_WORK] += forces.shaft[p] * speed
             continue
-        load = shaft_torque(system.profiles, system.shaft_loads, p, motion.time, angle, speed)
+        load = shaft_torque(system.profiles, system.shaft_loads, p, motion.time, angle, speed, states)
         forces.shaft[p] = load.torque
         forces.force[body] += load.torque
         forces.power[TORQUE_WORK] += load.torque * speed
         if differentiates_forces(factors):
             corner[unknown, unknown] -= factors.by_position * load.by_angle + factors.by_velocity * load.by_speed
+        for number in range(system.shaft_loads.first[p], system.shaft_loads.first[p + 1]):
+            if system.shaft_loads.table[number].state >= 0:
+                _move_state(system, motion, factors, number, body, corner, forces)
+
+
+@kernel
+def _move_state(
+    system: System,
+    motion: Motion,
+    factors: TangentFactors,
+    number: int,
+    shaft: int,
+    corner: FloatArray,
+    forces: BodyForces,
+) -> None:
+    """Let the state z of a load's controller follow its rate r: lag d2z/dt2 = r - dz/dt."""
+    loads, first = system.shaft_loads, system.first_body
+    angle, speed, states = motion.position[first + shaft], motion.velocity[first + shaft], motion.position[first:]
+    found = state_rate(system.profiles, loads, number, motion.time, angle, speed, states)
+    place = loads.table[number].state
+    forces.force[place] += found.rate - motion.velocity[first + place]
+    i, j = system.bodies[place].unknown, system.bodies[shaft].unknown
+    if i >= 0 and j >= 0 and differentiates_forces(factors):
+        corner[i, i] += factors.by_velocity - factors.by_position * found.by_state
+        corner[i, j] -= factors.by_velocity * found.by_speed
+        corner[j, i] -= factors.by_position * found.torque_by_state

@@ -61,7 +61,7 @@ def machine_arrays(
     of_loads, of_links = _switching_numbers(pulleys)
     return Machines(
         profile_rows([*own, *switching], [*(pulley.harmonics for pulley in pulleys), *([()] * len(switching))]),
-        shaft_loads([pulley.load for pulley in pulleys], of_loads),
+        shaft_loads([pulley.load for pulley in pulleys], of_loads, body_inertias(pulleys).size),
         link_rows(_placed(pulleys, of_links)),
         _tensioners(pulleys, tensioners, path, gravity),
     )
@@ -88,16 +88,20 @@ def body_arrays(
     radii: FloatArray,
     tensioners: Sequence[Tensioner],
 ) -> Records:
-    """Arrays of what moves: inertia and unknowns of rims, then of hub chains, then of tensioners."""
-    inertia = np.concatenate([body_inertias(pulleys), tensioner_inertias(pulleys, tensioners)])
+    """Arrays of what moves: inertia and unknowns of rims, hub chains, states of controllers and tensioners."""
+    masses, carried = body_inertias(pulleys), tensioner_inertias(pulleys, tensioners)
+    lags = [[load.state_lag for load in pulley.load if load.state_lag is not None] for pulley in pulleys]
+    inertia = np.concatenate([masses, *lags, carried])
     free = np.ones(inertia.size, dtype=bool)
     free[[shaft for shaft, pulley in zip(shaft_bodies(pulleys), pulleys, strict=True) if pulley.prescribed]] = False
     chains = [radius for radius, pulley in zip(radii, pulleys, strict=True) for _ in pulley.hub]
+    states = [radius for radius, own in zip(radii, lags, strict=True) for _ in own]
     return records(
         BODY,
         inertia=inertia,
+        kinetic=np.concatenate([masses, *(np.zeros(len(one)) for one in lags), carried]),
         unknown=np.where(free, np.cumsum(free) - 1, -1).astype(np.int64),
-        reach=np.concatenate([radii, chains, tensioner_reaches(pulleys, tensioners)]),
+        reach=np.concatenate([radii, chains, states, tensioner_reaches(pulleys, tensioners)]),
     )
 
 

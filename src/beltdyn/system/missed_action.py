@@ -182,7 +182,8 @@ def extrapolated_torque(system: System, pulley: int, motion: Motion, time: float
     i, since = system.first_body + system.pulleys[pulley].shaft, time - motion.time
     speed = motion.velocity[i] + since * motion.acceleration[i]
     angle = motion.position[i] + 0.5 * since * (motion.velocity[i] + speed)
-    return shaft_torque(system.profiles, system.shaft_loads, pulley, time, angle, speed).torque
+    states = motion.position[system.first_body :]
+    return shaft_torque(system.profiles, system.shaft_loads, pulley, time, angle, speed, states).torque
 
 
 @kernel

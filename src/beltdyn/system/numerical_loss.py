@@ -59,5 +59,5 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
             inertia = 0.5 * (after.acceleration[i] + before.acceleration[i]) * (after.position[i] - before.position[i])
             momentum = 0.5 * (after.velocity[i] ** 2 - before.velocity[i] ** 2)
             given = 0.5 * (impulse[0, i] + impulse[1, i]) * (before.velocity[i] + after.velocity[i])
-            total += system.bodies[body].inertia * (inertia - momentum) + given
+            total += system.bodies[body].kinetic * (inertia - momentum) + given
     return total

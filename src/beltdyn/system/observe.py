@@ -92,7 +92,7 @@ def fill_observations(
         if shown[k]:
             for body in range(system.bodies.size):
                 speed = velocity[k, system.first_body + body]
-                result.kinetic_energy[show] += 0.5 * system.bodies[body].inertia * speed**2
+                result.kinetic_energy[show] += 0.5 * system.bodies[body].kinetic * speed**2
 
 
 @kernel(inline=True)

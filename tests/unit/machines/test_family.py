@@ -18,7 +18,7 @@ from beltdyn.model import Pulley
 
 LOADS = {
     *("angle_speed_table", "angle_table", "band_brake", "brake", "fan", "function", "generator"),
-    *("induction_motor", "motor", "pump", "resistance", "table"),
+    *("induction_motor", "motor", "pump", "resistance", "servo_motor", "table"),
 }
 FREE: dict[str, Any] = {"name": "free", "center": (0, 0), "radius": 1, "inertia": 1}
 

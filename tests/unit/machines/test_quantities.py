@@ -100,7 +100,9 @@ def test_a_motor_may_have_its_largest_torque_at_standstill() -> None:
 def test_dry_friction_builds_up_over_little_speed_unless_another_is_given() -> None:
     """To tanh(1) = 76 % of itself: 0.1 rad/s at a shaft, 0.01 rad/s at an arm, 1 mm/s at a slide."""
     load = row(RESISTANCE, constant=1.0, creep_speed=MACHINES["dry resistance"].creep_speed)
-    assert resistance(load, np.zeros(0), ShaftState(0.0, 0.0, 0.1, 0.0)).torque == pytest.approx(-tanh(1.0), rel=1e-15)
+    assert resistance(load, np.zeros(0), ShaftState(0.0, 0.0, 0.1, 0.0, 0.0)).torque == pytest.approx(
+        -tanh(1.0), rel=1e-15
+    )
     for machine, speed in (("arm", 0.01), ("slide", 1e-3)):
         spring = row(SPRING, tensioning_friction=1.0, creep_speed=MACHINES[machine].creep_speed)
         assert dry_friction(spring, speed)[0] == pytest.approx(tanh(1.0), rel=1e-15)

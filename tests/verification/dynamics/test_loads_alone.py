@@ -3,15 +3,18 @@
 Local errors of 0.01 m/s at a radius of 0.1 m are allowed.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Pulley
+from beltdyn.solve.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.system.arrays import POWERS
 from beltdyn.system.build_machines import machine_arrays
 
@@ -40,7 +43,7 @@ def time_between(load: dict[str, Any], start: float, end: float) -> float:
     machines = machine_arrays([Pulley(name="one", center=(0, 0), radius=0.1, inertia=INERTIA, load=[load])])
 
     def pace(speed: float) -> float:
-        return INERTIA / shaft_torque(machines.profiles, machines.shaft_loads, 0, 0.0, 0.0, speed).torque
+        return INERTIA / shaft_torque(machines.profiles, machines.shaft_loads, 0, 0.0, 0.0, speed, np.zeros(0)).torque
 
     return float(quad(pace, start, end, limit=500)[0])
 
@@ -155,3 +158,68 @@ def test_a_band_brake_brings_the_pulley_to_rest(follow: Follow, sense: float) ->
     still = follow((sense * 60.0,), load=[load], until=8.0)
     assert still.speeds[0] == pytest.approx(0.0, abs=ALLOWED)
     assert still.work[TORQUE_WORK] == pytest.approx(-0.5 * INERTIA * 60.0**2, rel=1e-4)
+
+
+SERVO: dict[str, Any] = {
+    "kind": "servo_motor",
+    "speed": {"kind": "step", "time": 0.1, "value": 60.0},
+    "proportional_gain": 4.0,
+    "integral_time": 0.2,
+    "torque_limit": 50.0,
+    "lag": 2e-3,
+}
+
+
+def controlled(end: float, drag: float) -> Any:
+    """Speed of the pulley under the controller, integrated by itself from the step on."""
+    gain, integral, limit, lag = 4.0, 4.0 / 0.2, 50.0, 2e-3
+
+    def rates(_: float, state: Any) -> list[float]:
+        speed, z, follow = state
+        torque = float(np.clip(gain * (60.0 - speed) + integral * z, -limit, limit))
+        return [(torque - drag * speed) / INERTIA, follow, ((torque - integral * z) / gain - follow) / lag]
+
+    return solve_ivp(rates, (0.0, end - 0.1), [0.0, 0.0, 0.0], method="LSODA", rtol=1e-9, atol=1e-9).y
+
+
+@pytest.mark.parametrize("until", [0.3, 0.6, 0.9, 2.0])
+@pytest.mark.parametrize("drag", [0.0, 0.4])
+def test_a_servo_runs_up_at_its_limit_and_settles(follow: Follow, drag: float, until: float) -> None:
+    """At the limit for half a second, then as its own integration has it; work is energy and drag."""
+    loads = [SERVO, *([{"kind": "resistance", "linear": drag}] if drag else [])]
+    end = follow((0.0, 0.0), load=loads, until=until)
+    exact = controlled(until, drag)
+    assert end.speeds[0] == pytest.approx(exact[0, -1], abs=ALLOWED)
+    assert end.angles[1] == pytest.approx(exact[1, -1], abs=0.01 * max(np.abs(exact[1])))
+    if not drag:
+        assert end.work[TORQUE_WORK] == pytest.approx(0.5 * INERTIA * end.speeds[0] ** 2, rel=1e-3)
+
+
+def test_a_servo_does_not_wind_up(follow: Follow) -> None:
+    """Its integral part alone would pass the set speed by what a time of 0.5 s at the limit has gathered."""
+    passed = max(follow((0.0, 0.0), load=[SERVO], until=until).speeds[0] for until in (0.6, 0.7, 0.8, 1.0, 1.2))
+    wound_up = 0.5 * 60.0 * 0.48 * (4.0 / 0.2) / 4.0  # integral of the error over the run-up, as a speed
+    assert passed - 60.0 < 0.15 * wound_up
+
+
+@pytest.mark.parametrize("name", ["bdf", "radau"])
+def test_standard_integrators_solve_for_the_state_of_a_controller(follow: Follow, name: Any) -> None:
+    end = follow((0.0, 0.0), StandardIntegrator(name, 1e-3), load=[SERVO], until=0.9)
+    assert end.speeds[0] == pytest.approx(controlled(0.9, 0.0)[0, -1], abs=ALLOWED)
+
+
+def test_a_function_is_resolved_to_its_highest_order(follow: Follow) -> None:
+    """A stroke of a twentieth of a turn, which steps may pass; errors of steps add up, so that they are a tenth."""
+    width = 0.3
+
+    def stroke(_time: float, angle: float, _speed: float) -> float:
+        phase = (angle % 6.283185307179586 - 3.0) / width
+        return -40.0 * (1.0 - math.cos(6.283185307179586 * phase)) if 0.0 < phase < 1.0 else 0.0
+
+    load = {"kind": "function", "function": stroke, "highest_order": 40}
+    end = follow((300.0,), GeneralizedAlpha(0.6, 1e-4), load=[load], until=1.0)
+    turns, angle = np.divmod(float(end.angles[0]), 2 * np.pi)
+    phase = float(np.clip((angle - 3.0) / width, 0.0, 1.0))
+    work = -40.0 * width * (turns + phase - np.sin(2 * np.pi * phase) / (2 * np.pi))
+    assert end.work[TORQUE_WORK] == pytest.approx(work, rel=5e-3)
+    assert end.speeds[0] == pytest.approx(np.sqrt(300.0**2 + 2 * work / INERTIA), abs=ALLOWED)

@@ -11,4 +11,5 @@ from beltdyn.machines.loads.induction_motor import InductionMotor as InductionMo
 from beltdyn.machines.loads.motor import Motor as Motor
 from beltdyn.machines.loads.pump import Pump as Pump
 from beltdyn.machines.loads.resistance import Resistance as Resistance
+from beltdyn.machines.loads.servo_motor import ServoMotor as ServoMotor
 from beltdyn.machines.loads.table import LoadTable as LoadTable

@@ -25,6 +25,8 @@ class ShaftState(NamedTuple):
     """rad/s."""
     command: float
     """Value of the load's profile `command`, in its unit; zero without."""
+    state: float
+    """State of the load's controller, rad; zero without."""
 
 
 class LoadTorque(NamedTuple):
@@ -38,6 +40,25 @@ class LoadTorque(NamedTuple):
     """N m s/rad."""
     by_command: float
     """N m over the unit of the command; zero without."""
+
+
+class StateRate(NamedTuple):
+    """Rate of the state of a load's controller, rad/s, and derivatives."""
+
+    rate: float
+    """rad/s."""
+    by_speed: float
+    """Of the rate with respect to the speed of the shaft, 1."""
+    by_state: float
+    """Of the rate with respect to the state, 1/s."""
+    torque_by_state: float
+    """Of the torque with respect to the state, N m/rad."""
+
+
+@kernel
+def no_state(_constants: np.record, _numbers: FloatArray, _shaft: ShaftState) -> StateRate:
+    """Rate of the state of a load that has none."""
+    return StateRate(0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -79,6 +100,9 @@ class Load(Part):
     """Kernel: the next speed at which the torque has a kink, rad/s, infinite without any, from constants, numbers, the
     state of the shaft and whether its speed rises."""
 
+    rate_at: ClassVar[Callable[[np.record, FloatArray, ShaftState], StateRate]] = no_state
+    """Kernel: the rate of the state of its controller, from constants, numbers and the state of the shaft."""
+
     if TYPE_CHECKING:
         kind: str
 
@@ -102,6 +126,11 @@ class Load(Part):
     @property
     def command(self) -> Profile | None:
         """The profile whose value its kernels get, such as a set speed; None without."""
+        return None
+
+    @property
+    def state_lag(self) -> float | None:
+        """Time constant with which the state of its controller follows its rate, s; None without a state."""
         return None
 
     @property

@@ -7,8 +7,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.kernel import kernel
-from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState
-from beltdyn.machines.loads.registry import KINDS, SHAFT_LOAD, kink_of_kind, torque_of_kind
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate
+from beltdyn.machines.loads.registry import KINDS, NO_STATE, SHAFT_LOAD, kink_of_kind, rate_of_kind, torque_of_kind
 from beltdyn.machines.profiles.functions import Profiles, command_value, profile_bend, profile_value, schedule_value
 from beltdyn.machines.profiles.harmonic import harmonic_factor, harmonic_rows
 from beltdyn.records import Records, fill, offsets, records
@@ -27,7 +27,7 @@ class ShaftLoads(NamedTuple):
     """Rows of `HARMONIC`."""
 
 
-def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, int]]) -> ShaftLoads:
+def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, int]], first_state: int) -> ShaftLoads:
     """Loads of all pulleys laid end to end.
 
     Parameters
@@ -36,6 +36,8 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
         Those of each pulley.
     profiles
         Numbers of the profiles that are the factor and the command of each load, or `NO_SCHEDULE`.
+    first_state
+        Place of the first state of a controller among the bodies.
     """
     found = [load for group in loads for load in group]
     first, harmonic = harmonic_rows([load.harmonics for load in found])
@@ -44,14 +46,16 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
     names = list(KINDS)
     for row, load, (factor, command) in zip(table[:-1], found, profiles, strict=True):
         row.kind, row.schedule, row.command = names.index(load.kind), factor, command
-        row.order = max(load.orders, default=0.0)
+        row.order, row.state = max(load.orders, default=0.0), NO_STATE
+        if load.state_lag is not None:
+            row.state, first_state = first_state, first_state + 1
         fill(row[load.kind], load.values())
     return ShaftLoads(offsets(map(len, loads)), table, np.concatenate([np.zeros(0), *own]), harmonic)
 
 
 @kernel
 def shaft_torque(
-    profiles: Profiles, loads: ShaftLoads, pulley: int, time: float, angle: float, speed: float
+    profiles: Profiles, loads: ShaftLoads, pulley: int, time: float, angle: float, speed: float, states: FloatArray
 ) -> LoadTorque:
     """Torque on the shaft of a free pulley: its profile over time, and its loads.
 
@@ -67,11 +71,13 @@ def shaft_torque(
         s.
     angle, speed
         Angle theta and speed omega of the shaft, rad and rad/s, counter-clockwise.
+    states : ndarray, shape (D,)
+        Coordinates of the bodies, among them the states of controllers.
     """
     total, by_angle, by_speed = profile_value(profiles, pulley, time)[0], 0.0, 0.0
     for number in range(loads.first[pulley], loads.first[pulley + 1]):
         scale = schedule_value(profiles, loads.table[number].schedule, time)
-        load = load_torque(profiles, loads, number, time, angle, speed)
+        load = load_torque(profiles, loads, number, time, angle, speed, states)
         total += scale * load.torque
         by_angle += scale * load.by_angle
         by_speed += scale * load.by_speed
@@ -80,15 +86,37 @@ def shaft_torque(
 
 @kernel
 def load_torque(
-    profiles: Profiles, loads: ShaftLoads, number: int, time: float, angle: float, speed: float
+    profiles: Profiles, loads: ShaftLoads, number: int, time: float, angle: float, speed: float, states: FloatArray
 ) -> LoadTorque:
     """Torque of a load without its schedule; arguments as for `shaft_torque`."""
     item, following = loads.table[number], loads.table[number + 1]
-    shaft = ShaftState(time, angle, speed, command_value(profiles, item.command, time))
+    shaft = ShaftState(time, angle, speed, command_value(profiles, item.command, time), _state(item, states))
     plain = torque_of_kind(item, loads.numbers[item.number : following.number], shaft)
     factor, change = harmonic_factor(loads.harmonic, item.harmonic, following.harmonic, angle)
     by_angle = plain.by_angle * factor + plain.torque * change
     return LoadTorque(plain.torque * factor, by_angle, plain.by_speed * factor, plain.by_command * factor)
+
+
+@kernel(inline=True)
+def _state(item: np.record, states: FloatArray) -> float:
+    """State of the controller of a load."""
+    return float(states[item.state]) if item.state >= 0 else 0.0
+
+
+@kernel
+def state_rate(
+    profiles: Profiles, loads: ShaftLoads, number: int, time: float, angle: float, speed: float, states: FloatArray
+) -> StateRate:
+    """Rate of the state of a load's controller, with what its torque on the shaft feels of it.
+
+    Arguments are those of `shaft_torque`; the load has such a state.
+    """
+    item, following = loads.table[number], loads.table[number + 1]
+    shaft = ShaftState(time, angle, speed, command_value(profiles, item.command, time), _state(item, states))
+    plain = rate_of_kind(item, loads.numbers[item.number : following.number], shaft)
+    factor = harmonic_factor(loads.harmonic, item.harmonic, following.harmonic, angle)[0]
+    scale = factor * schedule_value(profiles, item.schedule, time)
+    return StateRate(plain.rate, plain.by_speed, plain.by_state, scale * plain.torque_by_state)
 
 
 @kernel
@@ -120,7 +148,7 @@ def load_bend(
             at, wave = profile_bend(profiles, profile, time)
             kink, frequency = min(kink, at), max(frequency, wave)
     if rate != 0.0:
-        shaft = ShaftState(time, 0.0, speed, command_value(profiles, item.command, time))
+        shaft = ShaftState(time, 0.0, speed, command_value(profiles, item.command, time), 0.0)
         ahead = kink_of_kind(item, loads.numbers[item.number : following.number], shaft, rate > 0.0)
         if ahead < np.inf:
             kink = min(kink, time + (ahead - speed) / rate)

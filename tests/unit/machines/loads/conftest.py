@@ -23,9 +23,11 @@ def _machines(load: dict[str, Any]) -> Machines:
 def torque() -> Torque:
     """Torque of a load, given as its keys, at a speed, an angle and a time."""
 
-    def find(load: dict[str, Any], speed: float, angle: float = 0.0, time: float = 0.0) -> LoadTorque:
-        machines = _machines(load)
-        return shaft_torque(machines.profiles, machines.shaft_loads, 0, time, angle, speed)
+    def find(
+        load: dict[str, Any], speed: float, angle: float = 0.0, time: float = 0.0, state: float = 0.0
+    ) -> LoadTorque:
+        machines, states = _machines(load), np.array([0.0, state])
+        return shaft_torque(machines.profiles, machines.shaft_loads, 0, time, angle, speed, states)
 
     return find
 

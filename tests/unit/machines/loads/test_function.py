@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
@@ -70,7 +71,7 @@ def test_a_result_keeps_the_name_of_the_function(carrying: Drive) -> None:
 def test_a_drive_keeps_its_function(carrying: Drive) -> None:
     changed = carrying.replace(simulation=carrying.simulation.replace(duration=0.1))
     machines = machine_arrays(changed.pulleys)
-    found = shaft_torque(machines.profiles, machines.shaft_loads, 1, 1.5, 0.3, 40.0).torque
+    found = shaft_torque(machines.profiles, machines.shaft_loads, 1, 1.5, 0.3, 40.0, np.zeros(0)).torque
     assert found == pytest.approx(brake(1.5, 0.3, 40.0), rel=1e-14)
 
 

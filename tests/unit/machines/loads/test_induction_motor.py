@@ -90,7 +90,8 @@ def test_derivative_with_respect_to_the_frequency(frequency: float, speed: float
     constants = row(INDUCTION_MOTOR, **InductionMotor(**MOTOR).values())
     step = 1e-5
     before, here, after = (
-        induction_torque(constants, np.zeros(0), ShaftState(0.0, 0.0, speed, frequency + h)) for h in (-step, 0.0, step)
+        induction_torque(constants, np.zeros(0), ShaftState(0.0, 0.0, speed, frequency + h, 0.0))
+        for h in (-step, 0.0, step)
     )
     assert here.by_command == pytest.approx((after.torque - before.torque) / (2 * step), rel=1e-6, abs=1e-6)
 

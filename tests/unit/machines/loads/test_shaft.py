@@ -74,7 +74,7 @@ NO_NUMBERS = np.zeros(0)
 
 def kloss(speed: float, torque: float, slip: float, synchronous: float) -> LoadTorque:
     motor = row(MOTOR_CONSTANTS, breakdown_torque=torque, breakdown_slip=slip, synchronous_speed=synchronous)
-    return kloss_torque(motor, NO_NUMBERS, ShaftState(0.0, 0.0, speed, 0.0))
+    return kloss_torque(motor, NO_NUMBERS, ShaftState(0.0, 0.0, speed, 0.0, 0.0))
 
 
 def machines(*loads: dict[str, Any], **pulley: Any) -> Machines:
@@ -90,8 +90,11 @@ def machines(*loads: dict[str, Any], **pulley: Any) -> Machines:
 @pytest.mark.parametrize("harmonics", [[], HARMONICS], ids=["plain", "wavy"])
 def test_derivatives(kind: str, speed: float, harmonics: list[dict[str, float]]) -> None:
     found = machines((LOADS | CURVES)[kind] | {"harmonics": harmonics}, torque={"kind": "constant", "value": 2.0})
-    torque, by_angle, by_speed, _ = shaft_torque(*found, 1, 0.0, 0.7, speed)
-    around = [[shaft_torque(*found, 1, 0.0, 0.7 + a, speed + b)[0] for a, b in ((h, 0), (0, h))] for h in (-STEP, STEP)]
+    torque, by_angle, by_speed, _ = shaft_torque(*found, 1, 0.0, 0.7, speed, NO_NUMBERS)
+    around = [
+        [shaft_torque(*found, 1, 0.0, 0.7 + a, speed + b, NO_NUMBERS)[0] for a, b in ((h, 0), (0, h))]
+        for h in (-STEP, STEP)
+    ]
     numeric = np.diff(around, axis=0)[0] / (2 * STEP)
     assert (by_angle, by_speed) == pytest.approx(numeric, abs=FLOOR * (1 + abs(torque)))
 
@@ -99,7 +102,7 @@ def test_derivatives(kind: str, speed: float, harmonics: list[dict[str, float]])
 @pytest.mark.parametrize("speed", [-7.0, -0.01, 0.0, 0.01, 7.0])
 def test_resistance_opposes_the_motion(speed: float) -> None:
     given = row(RESISTANCE_CONSTANTS, constant=1.5, creep_speed=0.1, linear=0.2, quadratic=0.03)
-    torque, _, slope, _ = resistance_torque(given, NO_NUMBERS, ShaftState(0.0, 0.0, speed, 0.0))
+    torque, _, slope, _ = resistance_torque(given, NO_NUMBERS, ShaftState(0.0, 0.0, speed, 0.0, 0.0))
     assert torque * speed <= 0.0
     assert slope < 0.0
     if abs(speed) > 1.0:  # tanh is 1 to the last digit
@@ -143,30 +146,34 @@ def test_the_torque_of_a_motor_depends_on_its_slip_alone(synchronous: float) -> 
 @pytest.mark.parametrize("speed", [-9.0, -5.0, -2.0, 1.0, 2.0, 4.0, 11.0, 20.0, 50.0])
 def test_table_is_linear_between_its_points(speed: float) -> None:
     expected = float(np.interp(speed, [-5.0, 1.0, 4.0, 20.0], [2.0, 0.0, -3.0, -2.0]))
-    assert shaft_torque(*machines(TABLE), 1, 0.0, 0.0, speed)[0] == pytest.approx(expected, abs=1e-15)
+    assert shaft_torque(*machines(TABLE), 1, 0.0, 0.0, speed, NO_NUMBERS)[0] == pytest.approx(expected, abs=1e-15)
 
 
 def test_loads_add_up_with_the_torque_of_the_pulley() -> None:
     torque = {"kind": "ramp", "start": 0.0, "end": 1.0, "value": 4.0}
-    alone = [np.array(shaft_torque(*machines(load), 1, 0.5, 0.7, 3.0)) for load in LOADS.values()]
-    together = shaft_torque(*machines(*LOADS.values(), torque=torque), 1, 0.5, 0.7, 3.0)
+    alone = [np.array(shaft_torque(*machines(load), 1, 0.5, 0.7, 3.0, NO_NUMBERS)) for load in LOADS.values()]
+    together = shaft_torque(*machines(*LOADS.values(), torque=torque), 1, 0.5, 0.7, 3.0, NO_NUMBERS)
     assert together == pytest.approx(np.sum(alone, axis=0) + np.array([2.0, 0.0, 0.0, 0.0]), rel=1e-14)
 
 
 def test_a_schedule_switches_its_load_only() -> None:
     switched = MOTOR | {"schedule": {"kind": "step", "time": 0.5, "before": 0.25, "value": 1.0}}
     found = machines(RESISTANCE, switched, TABLE | {"schedule": {"kind": "constant", "value": 0.5}})
-    resist, table, motor = (np.array(shaft_torque(*machines(load), 1, 0.0, 0.7, 3.0)) for load in LOADS.values())
+    resist, table, motor = (
+        np.array(shaft_torque(*machines(load), 1, 0.0, 0.7, 3.0, NO_NUMBERS)) for load in LOADS.values()
+    )
     for time, factor in ((0.5, 0.25), (0.6, 1.0)):
         expected = resist + factor * motor + 0.5 * table
-        assert shaft_torque(*found, 1, time, 0.7, 3.0) == pytest.approx(expected, rel=1e-14)
+        assert shaft_torque(*found, 1, time, 0.7, 3.0, NO_NUMBERS) == pytest.approx(expected, rel=1e-14)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.4, 9.0])
 def test_harmonics_multiply_the_torque(angle: float) -> None:
     factor = 1 + 0.4 * np.cos(2 * angle + 0.3) + 0.2 * np.cos(0.5 * angle)
-    plain, _, slope, _ = shaft_torque(*machines(RESISTANCE), 1, 0.0, angle, 3.0)
-    wavy, _, wavy_slope, _ = shaft_torque(*machines(RESISTANCE | {"harmonics": HARMONICS}), 1, 0.0, angle, 3.0)
+    plain, _, slope, _ = shaft_torque(*machines(RESISTANCE), 1, 0.0, angle, 3.0, NO_NUMBERS)
+    wavy, _, wavy_slope, _ = shaft_torque(
+        *machines(RESISTANCE | {"harmonics": HARMONICS}), 1, 0.0, angle, 3.0, NO_NUMBERS
+    )
     assert (wavy, wavy_slope) == pytest.approx((plain * factor, slope * factor), rel=1e-14)
 
 
@@ -192,8 +199,10 @@ def test_the_first_profile_may_be_a_schedule() -> None:
     """Here one that is the torque of the pulley, too: after 0.7 s it halves that, and the load of -0.3 N m."""
     switched = Step(time=0.7, before=1.0, value=0.5)
     load = Resistance(kind="resistance", linear=0.1, schedule=switched)
-    found = profile_rows([switched], [()]), shaft_loads([[load]], [(0, NO_SCHEDULE)])
-    assert [shaft_torque(*found, 0, time, 0.0, 3.0).torque for time in (0.5, 0.8)] == pytest.approx([0.7, 0.35])
+    found = profile_rows([switched], [()]), shaft_loads([[load]], [(0, NO_SCHEDULE)], 0)
+    assert [shaft_torque(*found, 0, time, 0.0, 3.0, NO_NUMBERS).torque for time in (0.5, 0.8)] == pytest.approx(
+        [0.7, 0.35]
+    )
     assert load_bend(*found, 0, 0.5, 3.0, 0.0)[0] == 0.7
 
 

@@ -1,0 +1,119 @@
+"""A motor with a speed controller: proportional and integral action, a limit of the torque, and no windup.
+
+    M = clip(K_p (e + z / T_i), limits),    e = set speed - omega,    dz/dt = M / K_p - z / T_i
+
+Within the limits dz/dt = e, so that z is the integral of the error.  At a limit z approaches what the limit stands for
+with the time constant T_i (back-calculation): the controller leaves the limit as soon as the error changes its sign.
+Source: K. J. Åström and T. Hägglund, "PID Controllers" (1995), section 3.5.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.machines.loads.load import Load, LoadTorque, ShaftState, StateRate
+from beltdyn.machines.profiles.profile import Profile
+from beltdyn.machines.profiles.registry import SpeedProfile
+from beltdyn.parts.quantity import AngularSpeed, Time, Torque, TorsionalDamping
+from beltdyn.records import record
+
+SERVO_MOTOR = record(
+    proportional_gain="f8",  # K_p, N m s/rad
+    integral_gain="f8",  # K_p / T_i, N m/rad
+    torque_limit="f8",  # of the inverter, N m
+    stall_torque="f8",  # at standstill with full voltage, N m, infinite where the voltage does not limit the torque
+    no_load_speed="f8",  # with full voltage, rad/s
+)
+
+
+@kernel
+def servo_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> LoadTorque:
+    """Torque of the controller within its limits.
+
+    Parameters
+    ----------
+    constants
+        A row of `SERVO_MOTOR`.
+    shaft
+        Its speed counts, its command, the set speed, rad/s, and its state z, rad.
+    """
+    gain, limit = constants.proportional_gain, constants.torque_limit
+    wanted = gain * (shaft.command - shaft.speed) + constants.integral_gain * shaft.state
+    sense = 1.0 if wanted >= 0.0 else -1.0
+    slope = constants.stall_torque / constants.no_load_speed if constants.stall_torque < np.inf else 0.0
+    by_voltage = constants.stall_torque - sense * slope * shaft.speed
+    if sense * wanted <= min(limit, by_voltage):
+        return LoadTorque(wanted, 0.0, -gain, gain)
+    if limit <= by_voltage:
+        return LoadTorque(sense * limit, 0.0, 0.0, 0.0)
+    return LoadTorque(sense * by_voltage, 0.0, -slope, 0.0)
+
+
+@kernel
+def servo_rate(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> StateRate:
+    """Rate of the state z; arguments as for `servo_torque`."""
+    gain, integral = constants.proportional_gain, constants.integral_gain
+    found = servo_torque(constants, numbers, shaft)
+    by_state = integral if found.by_command != 0.0 else 0.0  # at a limit the torque feels neither
+    rate = (found.torque - integral * shaft.state) / gain
+    return StateRate(rate, found.by_speed / gain, (by_state - integral) / gain, by_state)
+
+
+class ServoMotor(Load):
+    """A servo motor, or any motor with a speed controller: it holds a set speed as far as its torque allows."""
+
+    constants = SERVO_MOTOR
+    torque_at = servo_torque
+    rate_at = servo_rate
+
+    kind: Literal["servo_motor"] = Field(description="the kind of load")
+    speed: SpeedProfile = Field(description="the set speed over time, in rad/s")
+    proportional_gain: TorsionalDamping = Field(gt=0, description="the torque over the error of speed, in N m s/rad")
+    integral_time: Time = Field(
+        gt=0, description="the time in which a lasting error of speed adds the same torque once more, in s"
+    )
+    torque_limit: Torque = Field(gt=0, description="the largest torque of either sense, in N*m")
+    stall_torque: Torque | None = Field(
+        None, gt=0, description="the torque at standstill that the full voltage of a DC motor gives, in N*m"
+    )
+    no_load_speed: AngularSpeed | None = Field(
+        None, gt=0, description="the speed without load that the full voltage of a DC motor gives, in rad/s"
+    )
+    lag: Time = Field(
+        1e-3, gt=0, description="the time constant with which the integral part follows, as of a current loop, in s"
+    )
+
+    @model_validator(mode="after")
+    def _has_a_whole_line_of_voltage(self) -> Self:
+        if (self.stall_torque is None) != (self.no_load_speed is None):
+            raise ValueError("stall_torque and no_load_speed are two points of one line. Give both, or none")
+        return self
+
+    def values(self) -> Mapping[str, Any]:
+        """Gains and limits."""
+        return {
+            "proportional_gain": self.proportional_gain,
+            "integral_gain": self.proportional_gain / self.integral_time,
+            "torque_limit": self.torque_limit,
+            "stall_torque": np.inf if self.stall_torque is None else self.stall_torque,
+            "no_load_speed": self.no_load_speed or 0.0,
+        }
+
+    @property
+    def command(self) -> Profile:
+        """The set speed."""
+        return self.speed
+
+    @property
+    def state_lag(self) -> float:
+        """Time constant of its integral part, s."""
+        return self.lag
+
+    @property
+    def driven_speed(self) -> float:
+        """The largest set speed, rad/s."""
+        return self.speed.largest()
