@@ -118,6 +118,13 @@ def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) 
             f"{', '.join(shaped)} is no smooth circle, so that nothing is steady around it. Simulate the drive with "
             "`beltdyn run`, or remove `surface`."
         )
+    other = [(pulley.name, load.kind) for pulley in drive.pulleys for load in pulley.load if not load.of_speed_alone]
+    if other:
+        raise ModelError(
+            f'{other[0][0]} has a load of kind "{other[0][1]}", whose torque does not depend on the speed alone, as '
+            "steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor as "
+            "`speed`, or simulate the drive with `beltdyn run`."
+        )
     belt = drive.belt
     if max(belt.stretch_damping_time, belt.bending_damping_time) > 0.0 and not QUINTIC.is_damped:
         raise ModelError(

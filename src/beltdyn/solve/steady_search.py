@@ -161,7 +161,8 @@ class SteadySearch:
         self._hold(None)
         self._at(Setting())
         loads = self._system.shaft_loads
-        own = interpreted(shaft_torque)(self._system.profiles, loads, driver, 0.0, 0.0, speed).torque
+        states = self.state.position[self._system.first_body :]
+        own = interpreted(shaft_torque)(self._system.profiles, loads, driver, 0.0, 0.0, speed, states).torque
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         self._follow(Setting())
 

@@ -64,9 +64,9 @@ def operating_point(system: System, radii: FloatArray, prescribed: BoolArray) ->
 
 def _pulls(system: System, radii: FloatArray, speed: float) -> FloatArray:
     """Force with which each shaft pulls the belt along at a speed (m/s) without slip, N, shape (P,)."""
-    torque = interpreted(shaft_torque)
+    torque, states = interpreted(shaft_torque), np.zeros(system.bodies.size)
     found = [
-        torque(system.profiles, system.shaft_loads, p, 0.0, 0.0, speed / radius).torque / radius
+        torque(system.profiles, system.shaft_loads, p, 0.0, 0.0, speed / radius, states).torque / radius
         for p, radius in enumerate(radii)
     ]
     return np.array(found)

@@ -80,6 +80,15 @@ def test_drives_that_cannot_run_steadily(loaded: Drive) -> None:
     shaped = driven.replace(surface={"kind": "eccentric", "eccentricity": 1e-3})
     with pytest.raises(ModelError, match="driven is no smooth circle"):
         steady_state(loaded.replace(pulley=[driver, shaped]))
+    servo = {"kind": "servo_motor", "speed": {"kind": "constant", "value": 9.0}, "proportional_gain": 1.0}
+    servo |= {"integral_time": 0.1, "torque_limit": 5.0}
+    crank = {"kind": "angle_table", "angles": [0.0, 1.0, 2.0], "torques": [0.0, -1.0, -2.0]}
+    for load in (servo, crank, {"kind": "function", "function": abs}):
+        turned = loaded.pulleys[1].replace(torque=None, load=[load])
+        with pytest.raises(
+            ModelError, match=f'driven has a load of kind "{load["kind"]}", whose torque does not depend'
+        ):
+            steady_state(loaded.replace(pulley=[loaded.pulleys[0], turned]))
     with pytest.raises(ModelError, match="force_tolerance = 2"):
         steady_state(loaded, force_tolerance=2.0)
     with pytest.raises(ModelError, match="elements = 2"):

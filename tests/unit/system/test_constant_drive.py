@@ -24,7 +24,10 @@ def system(with_machines: Callable[[str], Drive]) -> System:
 def test_harmonics_are_left_out(system: System) -> None:
     """A load of 1 + 0.03 omega^2 N m against the motion, whatever the angle, and a torque of -1 N m."""
     p = int(np.flatnonzero(system.pulleys.shaft == SECOND_HUB)[0])
-    found = [shaft_torque(system.profiles, system.shaft_loads, p, 0.0, angle, 10.0).torque for angle in (0.0, 1.0)]
+    found = [
+        shaft_torque(system.profiles, system.shaft_loads, p, 0.0, angle, 10.0, np.zeros(0)).torque
+        for angle in (0.0, 1.0)
+    ]
     assert found == pytest.approx([-1.0 - 1.0 - 3.0] * 2, rel=1e-12)
 
 

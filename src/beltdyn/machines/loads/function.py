@@ -124,6 +124,11 @@ class FunctionLoad(Load):
         return [*super().orders, *([self.highest_order] if self.highest_order else [])]
 
     @property
+    def of_speed_alone(self) -> bool:
+        """False: nobody knows what a function depends on."""
+        return False
+
+    @property
     def driven_speed(self) -> float:
         """The speed up to which it drives, rad/s."""
         return self.drives_to

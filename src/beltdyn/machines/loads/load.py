@@ -142,6 +142,11 @@ class Load(Part):
         return [wave.order for wave in self.harmonics]
 
     @property
+    def of_speed_alone(self) -> bool:
+        """Whether its torque depends, without factor and harmonics, on its command and the speed of the shaft alone."""
+        return self.state_lag is None and len(self.orders) == len(self.harmonics)
+
+    @property
     def driven_speed(self) -> float:
         """Speed up to which it drives the shaft, rad/s; zero of a load, which takes power from a shaft that turns."""
         return 0.0
