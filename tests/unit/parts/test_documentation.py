@@ -35,7 +35,7 @@ def test_what_has_a_dimension_names_its_unit(part: type[Part]) -> None:
 
 def test_defaults_and_limits_are_those_of_the_fields() -> None:
     assert entries(Belt)["elements"] == (
-        "int, default 20",
+        "int, optional",
         "The number of belt elements. At least 3 and at most 100000.",
     )
     assert entries(Belt)["youngs_modulus"] == (
@@ -57,4 +57,4 @@ def test_forms_of_a_belt_are_arguments_too() -> None:
     parameters = inspect.signature(Belt).parameters
     assert {"profile", "ribs", "axial_stiffness", "mass_per_length"} <= parameters.keys()
     assert parameters["density"].default is None  # a profile stands in for it
-    assert inspect.signature(Pulley).parameters["name"].default is inspect.Parameter.empty
+    assert inspect.signature(Harmonic).parameters["order"].default is inspect.Parameter.empty
