@@ -32,7 +32,7 @@ OTHERS = [pytest.param(name, marks=pytest.mark.slow) for name in ELEMENTS if nam
 
 @pytest.fixture(params=list(LAWS))
 def elastic(request: pytest.FixtureRequest, table_1: Callable[..., Drive]) -> Callable[..., Drive]:
-    """The published drive with a soft, thin belt of 120 N, whose contact is as hard as for a stretch of 1 to 2 %."""
+    """The published drive with a thin belt, which 120 N stretch by 1 to 2 %."""
     section = {"thickness": 2e-3, "length": None, "installed_tension": INSTALLED}
     return lambda elements, **changes: table_1(
         elements, **{"belt": {"elements": elements} | section | LAWS[request.param]} | changes
@@ -76,11 +76,15 @@ def test_waves_along_a_stretched_belt(
 
 @pytest.mark.slow
 def test_creep_and_energy(elastic: Callable[..., Drive], measured: Callable[..., None]) -> None:
-    """Loss of speed 1 - g(T2) / g(T1) within 1 %, with friction near Coulomb's; what comes in goes out or is stored."""
+    """Loss of speed 1 - g(T2) / g(T1) within 1 %, with friction near Coulomb's; what comes in goes out or is stored.
+
+    On contact of 1e7 N/m^2 the belt sinks in by 0.2 mm, rises to the rim over 4 mm of an arc of 255 mm at each of its
+    ends, and loses 1 % less.
+    """
     speed = {"kind": "cosine_ramp", "start": 0.0, "end": 0.2, "value": 12.0}
     drive = elastic(
         120,
-        contact={"friction": 0.4, "creep_rate_factor": 1e6},
+        contact={"friction": 0.4, "creep_rate_factor": 1e6, "stiffness": 4e8},
         driver={"speed": speed},
         driven={"inertia": 1e-3, "torque": {"kind": "cosine_ramp", "start": 0.1, "end": 0.5, "value": -3.0}},
         duration=1.5,
