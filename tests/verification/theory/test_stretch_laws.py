@@ -78,7 +78,7 @@ def test_waves_along_a_stretched_belt(
 def test_creep_and_energy(elastic: Callable[..., Drive], measured: Callable[..., None]) -> None:
     """Loss of speed 1 - g(T2) / g(T1) within 1 %, with friction near Coulomb's; what comes in goes out or is stored.
 
-    On contact of 1e7 N/m^2 the belt sinks in by 0.2 mm, rises to the rim over 4 mm of an arc of 255 mm at each of its
+    On contact of 1e7 N/m^2 the belt sinks in by 0.15 mm, rises to the rim over 4 mm of an arc of 255 mm at each of its
     ends, and loses 1 % less.
     """
     speed = {"kind": "cosine_ramp", "start": 0.0, "end": 0.2, "value": 12.0}
