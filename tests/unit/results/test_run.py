@@ -173,7 +173,8 @@ def test_flutter_is_said(run: Run, fine_drive: Drive) -> None:
     assert warnings(18.6) == [
         "the belt may flutter where it slides: between t = 0.082 s and 0.12 s vibrations of 1498 Hz could grow 1e+08 "
         "times. Contact forces are uncertain then, and speeds and slip by as much as a run with simulation.rtol = "
-        "1e-05 changes them; real belts rarely flutter so. Set contact.damping = 1e+03 N s/m^2 in place of 10."
+        "1e-05 changes them; real belts rarely flutter so. Set contact.damping = 1e+03 N s/m^2, half of critical, in "
+        "place of 10."
     ]
     assert "could grow 1e+304 times." in warnings(1e4)[0]
 
