@@ -206,6 +206,8 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "friction_loss": 0.09 * angle,
         "damping_loss": 0.01 * angle,
         "material_loss": still,
+        "stretch_loss": still,
+        "bending_loss": still,
         "tensioner_loss": still,
         "coupling_loss": still,
         "numerical_loss": still,

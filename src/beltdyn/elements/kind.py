@@ -35,9 +35,9 @@ def no_damping(
     by_position: float,
     by_velocity: float,
     work: np.record,
-) -> float:
+) -> tuple[float, float]:
     """Add nothing: the `damping` of kinds that have none."""
-    return 0.0
+    return 0.0, 0.0
 
 
 def as_cubic(angle: FloatArray) -> FloatArray:
@@ -82,8 +82,8 @@ class ElementKind:
         d2U/de2 if that is wanted.
     damping : kernel
         Called with (element, e, velocity, length, by_position, by_velocity, work); adds dR/d(de/dt) of the rate
-        potential R to the gradient, and by_position d/de + by_velocity d/d(de/dt) of it to the tangent. Gives the power
-        lost, W. By default there is none.
+        potential R to the gradient, and by_position d/de + by_velocity d/d(de/dt) of it to the tangent. Gives the
+        powers lost in stretch and in bending, W. By default there is none.
     tension : kernel
         Tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By default
         `beltdyn.elements.tension.axial_tension`.
@@ -113,7 +113,7 @@ class ElementKind:
     nodal: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
     energy: Callable[..., float]
     force: Callable[..., None]
-    damping: Callable[..., float] = no_damping
+    damping: Callable[..., tuple[float, float]] = no_damping
     tension: Callable[..., float] = axial_tension
     scratch: Mapping[str, Any] = field(default_factory=dict)
     points: int = 1

@@ -63,15 +63,29 @@ def add_density(
     work
         `gradient` and `tangent` are changed; fields of `curve_scratch`.
     """
+    fill_slopes(slope, bend, q, w, work)
+    for c in range(2 * len(slope)):
+        work.gradient[c] += density.g * work.of_metric[c] + density.c * work.of_cross[c]
+    if wanted:
+        add_density_tangent(density, slope, bend, work)
+
+
+@kernel(inline=True)
+def fill_slopes(
+    slope: tuple[float, ...], bend: tuple[float, ...], q: tuple[float, float], w: tuple[float, float], work: np.record
+) -> None:
+    """Overwrite the derivatives of G and c; arguments as for `add_density`."""
     of_metric, of_cross = work.of_metric, work.of_cross
     for a in range(len(slope)):
         of_metric[2 * a], of_metric[2 * a + 1] = 2.0 * slope[a] * q[0], 2.0 * slope[a] * q[1]
         of_cross[2 * a] = slope[a] * w[1] - bend[a] * q[1]
         of_cross[2 * a + 1] = bend[a] * q[0] - slope[a] * w[0]
-    for c in range(2 * len(slope)):
-        work.gradient[c] += density.g * of_metric[c] + density.c * of_cross[c]
-    if not wanted:
-        return
+
+
+@kernel
+def add_density_tangent(density: Density, slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
+    """Add a point's part of the tangent, with `fill_slopes` done before; arguments as for `add_density`."""
+    of_metric, of_cross = work.of_metric, work.of_cross
     for row in range(2 * len(slope)):
         by_metric = density.gg * of_metric[row] + density.gc * of_cross[row]
         by_cross = density.gc * of_metric[row] + density.cc * of_cross[row]

@@ -16,6 +16,12 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.kind import ElementKind
 from beltdyn.elements.planar_curve import Density, add_density, combine, curve_scratch
+from beltdyn.elements.planar_curve_damping import (
+    CurveMotion,
+    PointDamping,
+    add_curve_damping,
+    curve_damping_scratch,
+)
 from beltdyn.elements.section import Section
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature, gauss_points
@@ -113,6 +119,31 @@ def quintic_mass(section: Section, length: float) -> FloatArray:
     return np.kron(shape.T @ shape, np.eye(2))
 
 
+@kernel
+def quintic_damping(
+    element: Quintic,
+    e: FloatArray,
+    velocity: FloatArray,
+    length: float,
+    by_position: float,
+    by_velocity: float,
+    work: np.record,
+) -> tuple[float, float]:
+    """Damping of the strains (G - 1) / 2 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`."""
+    stretching, turning, points, weights = 0.0, 0.0, element.elastic.points, element.elastic.weights
+    for k in range(points.size):
+        slope, bend = slopes(points[k], length), bends(points[k], length)
+        q, w, weight = combine(e, slope), combine(e, bend), weights[k] * length
+        motion = CurveMotion(q, w, combine(velocity, slope), combine(velocity, bend))
+        damping = PointDamping(
+            weight * element.section.axial_damping, weight * element.section.bending_damping, by_position, by_velocity
+        )
+        stretch, turn = add_curve_damping(damping, slope, bend, motion, work)
+        stretching += stretch
+        turning += turn
+    return stretching, turning
+
+
 QUINTIC = ElementKind(
     name="quintic",
     meaning="for smooth contact a quintic centreline without shear",
@@ -126,7 +157,8 @@ QUINTIC = ElementKind(
     nodal=lambda place, slope, bend: np.hstack([place, slope, bend]),
     energy=quintic_energy,
     force=quintic_force,
-    scratch=curve_scratch(6),
+    damping=quintic_damping,
+    scratch=curve_scratch(6) | curve_damping_scratch(6),
     turned=2,
     bent_strain=-1.0,  # least energy EA e^2 / 2 + EI (1 + 2 e) / (2 R^2) at a small strain e
 )

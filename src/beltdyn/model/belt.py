@@ -245,6 +245,11 @@ class Belt(Part):
         return ELEMENTS[self.discretization]
 
     @property
+    def has_hysteresis(self) -> bool:
+        """Whether it has a loss factor."""
+        return self.stretch_loss_factor > 0 or self.bending_loss_factor > 0
+
+    @property
     def area(self) -> float:
         """Area of the section, m²."""
         return self.width * self.thickness

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from beltdyn.plot.registry import figure, over_time
 from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, unit
 from beltdyn.results import Run
-from beltdyn.results.balance import LOSSES
+from beltdyn.results.balance import losses_of
 from beltdyn.results.closure import largest_closure
 
 _ENERGIES = (
@@ -21,7 +21,6 @@ _ENERGIES = (
     "penalty_energy",
     "spring_energy",
     "potential_energy",
-    *LOSSES,
 )
 _RPM = 30.0 / np.pi
 _WAVES = 5.0
@@ -121,7 +120,7 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     """
     run.require_output()
     ax = axes_or_new(ax)
-    drawn = [name for name in _ENERGIES if bool((run.dataset[name] != 0.0).any())]
+    drawn = [name for name in (*_ENERGIES, *losses_of(run.dataset)) if bool((run.dataset[name] != 0.0).any())]
     for number, name in enumerate(drawn):
         variable = run.dataset[name]
         style = "-" if name.endswith("energy") else dash(1 if name.endswith("work") else 2)

@@ -12,12 +12,16 @@ from beltdyn.results.window import Window, plain_window
 LOSSES: Mapping[str, str] = {
     "friction_loss": "friction",
     "damping_loss": "contact damping",
-    "material_loss": "belt material",
+    "stretch_loss": "belt stretch",
+    "bending_loss": "belt bending",
     "tensioner_loss": "tensioners",
     "coupling_loss": "couplings",
     "numerical_loss": "time integration",
 }
 """Recorded works of the losses, and their causes in words."""
+
+_BEFORE = {"material_loss": "belt material"}
+"""What stands in place of the losses of stretch and bending in files that do not tell them apart."""
 
 STORED = ("kinetic_energy", "strain_energy", "penalty_energy", "spring_energy", "potential_energy")
 """Recorded energies that the drive holds."""
@@ -65,6 +69,19 @@ class Balance:
         return sum(self.losses.values())
 
 
+def losses_of(recorded: Recorded) -> Mapping[str, str]:
+    """Give the recorded works of the losses, and their causes in words.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    """
+    return {name: cause for name, cause in LOSSES.items() if name in recorded} | (
+        {} if "bending_loss" in recorded else _BEFORE
+    )
+
+
 def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     """Give mean powers over a window.
 
@@ -86,6 +103,6 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     window = plain_window(np.asarray(recorded["time"])) if window is None else window
     return Balance(
         pulleys=tuple(map(float, window.product(recorded, "shaft_torque", "shaft_speed"))),
-        losses={cause: float(window.rate(recorded, name)) for name, cause in LOSSES.items()},
+        losses={cause: float(window.rate(recorded, name)) for name, cause in losses_of(recorded).items()},
         stored=sum(float(window.rate(recorded, name)) for name in STORED),
     )

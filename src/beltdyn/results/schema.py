@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from types import MappingProxyType
 
-FORMAT = (1, 0)
+FORMAT = (1, 1)
 """Version of the result file. The first number grows when earlier readers would misread a file, the second when a file
 holds more than before."""
 
@@ -126,7 +126,9 @@ _OUTPUTS = {
     "torque_work": Variable(_OVER_TIME, "J", "Work of the applied torques"),
     "friction_loss": Variable(_OVER_TIME, "J", "Loss in friction"),
     "damping_loss": Variable(_OVER_TIME, "J", "Loss in contact damping"),
-    "material_loss": Variable(_OVER_TIME, "J", "Loss in material damping"),
+    "material_loss": Variable(_OVER_TIME, "J", "Loss in the belt's material"),
+    "stretch_loss": Variable(_OVER_TIME, "J", "Loss in the belt's stretch", core=False),
+    "bending_loss": Variable(_OVER_TIME, "J", "Loss in the belt's bending", core=False),
     "tensioner_loss": Variable(_OVER_TIME, "J", "Loss in tensioners"),
     "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
     "numerical_loss": Variable(_OVER_TIME, "J", "Loss in time integration"),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.results.atomic import atomic_path, make_folder, require_replaceable
-from beltdyn.results.balance import LOSSES
+from beltdyn.results.balance import losses_of
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIABLES
 from beltdyn.results.summary import Summary, summarize
@@ -158,7 +158,7 @@ def _summaries(summary: Summary, run: Run) -> dict[str, Table]:
     balance = summary.balance
     losses = [
         (cause, power, power / balance.power_in if balance.power_in > 0.0 else np.nan, float(run.dataset[name][-1]))
-        for (name, cause), power in zip(LOSSES.items(), balance.losses.values(), strict=True)
+        for (name, cause), power in zip(losses_of(run.dataset).items(), balance.losses.values(), strict=True)
     ]
     return {
         "pulley_summary.csv": (_PULLEY_SUMMARY, map(astuple, summary.pulleys)),

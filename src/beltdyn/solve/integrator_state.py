@@ -76,15 +76,15 @@ class IntegratorState(NamedTuple):
     """A of the method."""
     multipliers: FloatArray
     work: FloatArray
-    """In the order of `ENERGY_WORKS`, J, shape (8,)."""
+    """In the order of `ENERGY_WORKS`, J, shape (9,)."""
     power: FloatArray
-    """These powers at the present time, W, shape (7,)."""
+    """These powers at the present time, W, shape (8,)."""
     impulse: FloatArray
     """Impulses on the bodies that the ends of the step in hand miss, from `missed_impulses`, shape (2, n N + D)."""
     lagged: FloatArray
     """What the method makes of each profile, as A is of the acceleration; nan after a jump; shape (profiles,)."""
     missed: FloatArray
-    """Works that the powers at its ends miss, from `missed_work`, J, shape (7,)."""
+    """Works that the powers at its ends miss, from `missed_work`, J, shape (8,)."""
     losses: np.record
     """Row of `LOSSES`."""
     trial: Trial
@@ -104,7 +104,7 @@ class Steps(NamedTuple):
     velocity: FloatArray
     """Alike."""
     work: FloatArray
-    """In the order of `ENERGY_WORKS`, J, shape (k, 8)."""
+    """In the order of `ENERGY_WORKS`, J, shape (k, 9)."""
     forces: BodyForces
     """A history of k states."""
 

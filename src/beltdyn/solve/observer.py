@@ -15,7 +15,7 @@ from beltdyn.results.sliding import sliding_of_pulleys
 from beltdyn.solve.energy import EnergyAccount
 from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
-from beltdyn.system.arrays import ENERGY_WORKS, System
+from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
@@ -99,6 +99,7 @@ class Observer:
             ),
             **dict(zip(WORKS, works, strict=True)),
             **dict(zip(ENERGY_WORKS, states.work[shown].T, strict=True)),
+            "material_loss": states.work[shown][:, [STRETCH_LOSS, BENDING_LOSS]].sum(axis=1),
             "energy_closure": closure,
         }
         return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})

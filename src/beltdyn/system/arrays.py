@@ -78,6 +78,8 @@ class System(NamedTuple):
     """Control points of the curves of the centreline from these vectors, shape (elements, curves, degree + 1, v)."""
     turned: int
     """Coordinate of a node with which the vector begins that a moment on the node turns; -1 if none does."""
+    hysteresis: Records
+    """Rows of `hysteresis_record`, shape (elements,); none without loss factors."""
     law: ContactLaw
     contact: Quadrature
     pulleys: Records
@@ -192,7 +194,7 @@ class BodyForces(NamedTuple):
     force: FloatArray
     """Generalised force on each body, but the driver's reaction; N m, or N on a sliding tensioner; shape (D,)."""
     power: FloatArray
-    """Powers in the order of `POWERS`, W, shape (7,)."""
+    """Powers in the order of `POWERS`, W, shape (8,)."""
     stored: FloatArray
     """Energy in the penalty springs, and in the springs of hub chains and tensioners, J, shape (2,)."""
 
@@ -216,7 +218,8 @@ POWERS = (
     "torque_work",
     "friction_loss",
     "damping_loss",
-    "material_loss",
+    "stretch_loss",
+    "bending_loss",
     "tensioner_loss",
     "coupling_loss",
 )
@@ -225,9 +228,10 @@ POWERS = (
 ENERGY_WORKS = (*POWERS, "numerical_loss")
 """Their integrals, and what the damping of the time integrator takes."""
 
-DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, MATERIAL_LOSS, TENSIONER_LOSS, COUPLING_LOSS, NUMERICAL_LOSS = (
-    range(len(ENERGY_WORKS))
+DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, STRETCH_LOSS, BENDING_LOSS, TENSIONER_LOSS, COUPLING_LOSS = (
+    range(len(POWERS))
 )
+NUMERICAL_LOSS = len(POWERS)
 """Places of the works in these orders, and of their powers."""
 
 PENALTY_ENERGY, SPRING_ENERGY = range(2)

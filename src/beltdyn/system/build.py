@@ -14,6 +14,7 @@ from beltdyn.elements.quintic import QUINTIC
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
+from beltdyn.model.hysteresis import Passing, passing_strains
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
@@ -23,6 +24,7 @@ from beltdyn.system.arrays import Supports, System
 from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
 from beltdyn.system.discretization import discretize
 from beltdyn.system.frame import Travelling, staying
+from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.weight import weight_forces
 
 _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
@@ -54,6 +56,7 @@ def drive_system(drive: Drive) -> System:
         tensioners=completed.tensioners,
         path=completed.path,
         gravity=drive.gravity,
+        passing=passing_strains(drive) if drive.belt.has_hysteresis else None,
         **_at_ends(drive),
     )
 
@@ -105,6 +108,7 @@ def belt_system(
     forces: Sequence[tuple[int, tuple[float, float]]] = (),
     moments: Sequence[tuple[int, float]] = (),
     masses: Sequence[tuple[int, float]] = (),
+    passing: Passing | None = None,
 ) -> System:
     """Arrays of any belt: closed or open, on pulleys or not, with nodes fixed, loaded or free.
 
@@ -135,6 +139,8 @@ def belt_system(
         r_y of the paper's element.
     masses
         Pairs (end, mass), kg: what moves with the first (0) or the last (-1) node of an open belt.
+    passing
+        How strains pass along a belt with loss factors; see `hysteresis_rows`.
 
     Returns
     -------
@@ -175,6 +181,7 @@ def belt_system(
         joint=closure == "multipliers",
         first_body=nodes * len(mesh.scale),
         **mesh._asdict(),
+        hysteresis=hysteresis_rows(belt, mesh.length, mesh.control, passing),
         law=_contact_law(contact),
         contact=contact_points(contact),
         pulleys=shafts,

@@ -1,4 +1,4 @@
-"""One element of the belt at a state: its coordinates, its centreline and the damping of its material."""
+"""One element of the belt at a state: its coordinates, its centreline and the losses of its material."""
 
 import numpy as np
 
@@ -9,9 +9,10 @@ from beltdyn.elements.dispatch import damping_force
 from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
-from beltdyn.system.arrays import MATERIAL_LOSS, BodyForces, System, TangentFactors
+from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, BodyForces, System, TangentFactors
 from beltdyn.system.discretization import element_kind
 from beltdyn.system.frame import add_flow
+from beltdyn.system.hysteresis import add_hysteresis, hysteresis_scratch
 from beltdyn.system.moving_center import drift_record
 
 
@@ -25,6 +26,7 @@ def element_workspace(system: System) -> np.record:
             coordinates=f"(3,{2 * len(system.scale)})f8",  # position, velocity and acceleration of one element
             control=f"({count},2)f8",  # control points of a curve of the centreline
             control_velocity=f"({count},2)f8",
+            hysteresis=hysteresis_scratch(vectors),
             drift=drift_record(vectors),  # by a change of the velocity of a pulley's centre
         )
     )
@@ -77,7 +79,7 @@ def gather_motion(
 def add_material_damping(
     system: System, element: int, factors: TangentFactors, work: np.record, forces: BodyForces
 ) -> None:
-    """Add the damping of the belt's material to the residual and tangent of an element, and its loss to the powers.
+    """Add damping and hysteresis of the belt to the residual and tangent of an element, and their losses to the powers.
 
     Parameters
     ----------
@@ -93,7 +95,7 @@ def add_material_damping(
         Changed in place.
     """
     if is_damped(system.element.section):
-        forces.power[MATERIAL_LOSS] += damping_force(
+        stretch, bending = damping_force(
             system.element,
             work.coordinates[0],
             work.coordinates[1],
@@ -102,6 +104,14 @@ def add_material_damping(
             factors.by_velocity,
             work.element,
         )
+        forces.power[STRETCH_LOSS] += stretch
+        forces.power[BENDING_LOSS] += bending
+    if system.hysteresis.size > 0:
+        stretch, bending = add_hysteresis(
+            system.hysteresis[element], system.vectors, factors.by_position, factors.by_velocity, work
+        )
+        forces.power[STRETCH_LOSS] += stretch
+        forces.power[BENDING_LOSS] += bending
 
 
 @kernel(inline=True)

@@ -36,7 +36,7 @@ class FirstOrder:
     Attributes
     ----------
     size : int
-        Number of unknowns, 2 (n N + D) + 7.
+        Number of unknowns, 2 (n N + D) + 8.
     evaluations : int
         Calls of `rates` so far.
     """

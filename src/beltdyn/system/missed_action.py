@@ -117,7 +117,7 @@ def missed_work(
         Beginning and end of the step.
     impulse : ndarray, shape (2, n N + D)
         From `missed_impulses`.
-    work : ndarray, shape (7,)
+    work : ndarray, shape (8,)
         Overwritten, in the order of `POWERS`, J.
     """
     work[:] = 0.0

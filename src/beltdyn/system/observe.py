@@ -15,6 +15,7 @@ from beltdyn.kernel import kernel
 from beltdyn.machines.tensioners.registry import tensioner_center
 from beltdyn.system.arrays import BodyForces, System
 from beltdyn.system.element_state import centreline, gather_motion
+from beltdyn.system.hysteresis import hysteresis_tension
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
 from beltdyn.system.state_forces import body_forces_at
@@ -79,13 +80,16 @@ def fill_observations(
         samples.nearest[:] = -1
         for element in range(system.length.size):
             gather_motion(system, element, position[k], velocity[k], work.coordinates)
+            pull = 0.0
+            if system.hysteresis.size > 0:
+                pull = hysteresis_tension(system.hysteresis[element], system.vectors, work)
             if shown[k]:
                 _observe_energy(system, element, samples, result, show)
             for curve in range(curves):
                 piece, number = centreline(system, element, curve, work), element * curves + curve
                 if shown[k]:
-                    _observe_tension(system, piece, number, work, result, show)
-                _observe_points(system, piece, number, samples, result, k)
+                    _observe_tension(system, piece, number, pull, work, result, show)
+                _observe_points(system, piece, number, pull, samples, result, k)
                 _observe_contact(system, number, position[k], velocity[k], samples, result, k)
         _observe_spans(system, samples, result, k)
         _observe_bodies(system, position[k], result, k)
@@ -110,23 +114,25 @@ def _observe_energy(system: System, element: int, samples: Samples, result: Obse
 
 
 @kernel(inline=True)
-def _stretch(system: System, piece: Curve, xi: float, rates: FloatArray) -> tuple[float, float, float]:
-    """Derivative of the centreline with respect to the belt coordinate, and the tension."""
+def _stretch(system: System, piece: Curve, xi: float, pull: float, rates: FloatArray) -> tuple[float, float, float]:
+    """Derivative of the centreline with respect to the belt coordinate, and the tension, with that by hysteresis."""
     fill_bernstein_rates(xi, rates)
     x, y = combine(piece.control, rates)
     vx, vy = combine(piece.velocity, rates)
     square = piece.length * piece.length
     metric, rate = (x * x + y * y) / square, 2.0 * (x * vx + y * vy) / square
-    return x / piece.length, y / piece.length, tension(system.element, metric, rate)
+    return x / piece.length, y / piece.length, tension(system.element, metric, rate) + pull * sqrt(metric)
 
 
 @kernel(inline=True)
-def _observe_tension(system: System, piece: Curve, curve: int, work: np.record, result: Observations, k: int) -> None:
+def _observe_tension(
+    system: System, piece: Curve, curve: int, pull: float, work: np.record, result: Observations, k: int
+) -> None:
     """Axial force of a curve: its mean, and how much it varies."""
     mean = square = 0.0
     for point in range(system.element.elastic.points.size):
         weight = system.element.elastic.weights[point]
-        _, _, force = _stretch(system, piece, system.element.elastic.points[point], work.contact.rates)
+        _, _, force = _stretch(system, piece, system.element.elastic.points[point], pull, work.contact.rates)
         mean += weight * force
         square += weight * force * force
     result.belt_tension[k, curve] = mean
@@ -134,7 +140,9 @@ def _observe_tension(system: System, piece: Curve, curve: int, work: np.record, 
 
 
 @kernel(inline=True)
-def _observe_points(system: System, piece: Curve, curve: int, samples: Samples, result: Observations, k: int) -> None:
+def _observe_points(
+    system: System, piece: Curve, curve: int, pull: float, samples: Samples, result: Observations, k: int
+) -> None:
     """Places, tension and speed of the sampling points of a curve, as if they were free."""
     count, weights, rates = system.contact.points.size, samples.work.contact.weights, samples.work.contact.rates
     for point in range(count):
@@ -143,7 +151,7 @@ def _observe_points(system: System, piece: Curve, curve: int, samples: Samples, 
         fill_bernstein(xi, weights)
         x, y = combine(piece.control, weights)
         vx, vy = combine(piece.velocity, weights)
-        qx, qy, samples.tension[row] = _stretch(system, piece, xi, rates)
+        qx, qy, samples.tension[row] = _stretch(system, piece, xi, pull, rates)
         samples.speed[row] = (qx * vx + qy * vy) / sqrt(qx * qx + qy * qy)
         samples.velocity[row, 0], samples.velocity[row, 1] = vx, vy
         result.contact_position[k, row, 0] = x

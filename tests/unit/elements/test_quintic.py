@@ -98,6 +98,46 @@ def test_factors_are_the_derivatives_of_the_curve_that_contact_sees() -> None:
         np.testing.assert_allclose(bends(xi, LENGTH), second[end], atol=1e-12 / LENGTH**2)
 
 
+DAMPED = Quintic(SECTION._replace(axial_damping=30.0, bending_damping=1e-4), gauss_points(4))
+VELOCITY = 2.0 * SCALE * np.random.default_rng(7).uniform(-1.0, 1.0, 12)
+
+
+def damping(
+    e: FloatArray, velocity: FloatArray, by_position: float = 0.0, by_velocity: float = 0.0
+) -> tuple[tuple[float, float], FloatArray, FloatArray]:
+    work = blank(QUINTIC.workspace)
+    powers = QUINTIC.damping(DAMPED, e, velocity, LENGTH, by_position, by_velocity, work)
+    return powers, work.gradient, work.tangent
+
+
+def test_power_of_damping_is_that_of_the_strain_rates(deformed: FloatArray) -> None:
+    """A and B times the squares of the rates of (G - 1) / 2 and c / sqrt(G), by complex steps."""
+    moved, expected = (deformed + 1e-30j * VELOCITY).reshape(6, 2), np.zeros(2)
+    for xi, weight in zip(*gauss_points(4), strict=True):
+        q, w = slopes(xi, LENGTH) @ moved, bends(xi, LENGTH) @ moved
+        strains = np.array([0.5 * (q @ q - 1.0), (q[0] * w[1] - q[1] * w[0]) / np.sqrt(q @ q)])
+        expected += weight * LENGTH * np.array([30.0, 1e-4]) * (strains.imag / 1e-30) ** 2
+    powers, force, _ = damping(deformed, VELOCITY)
+    np.testing.assert_allclose(powers, expected, rtol=1e-11)
+    assert force @ VELOCITY == pytest.approx(sum(powers), rel=1e-12)
+
+
+@pytest.mark.parametrize("by", [(1.0, 0.0), (0.0, 1.0), (0.7, 30.0)])
+def test_tangent_of_damping_is_the_slope_of_the_force(deformed: FloatArray, by: tuple[float, float]) -> None:
+    found = np.zeros((12, 12))
+    for column, move in enumerate(1e-5 * np.diag(SCALE)):
+        ends = [damping(deformed + s * by[0] * move, VELOCITY + s * by[1] * move)[1] for s in (1, -1)]
+        found[:, column] = SCALE * (ends[0] - ends[1]) / 2e-5
+    expected = SCALE[:, None] * damping(deformed, VELOCITY, *by)[2] * SCALE
+    np.testing.assert_allclose(found, expected, atol=DIFFERENCES * np.abs(expected).max())
+
+
+def test_rigid_motion_is_not_damped(deformed: FloatArray) -> None:
+    turning = np.stack([-deformed[1::2], deformed[::2]], axis=1).ravel()
+    largest = np.abs(damping(deformed, VELOCITY)[1]).max()
+    np.testing.assert_allclose(damping(deformed, 2.0 * turning)[1], 0.0, atol=1e-12 * largest)
+
+
 def test_mass_moves_as_a_rigid_line() -> None:
     """Kinetic energy of a translation and of a rotation about the middle."""
     mass = QUINTIC.mass(SECTION, LENGTH)

@@ -181,7 +181,7 @@ def test_contact_damping_that_takes_power(turning: Callable[..., Run], run: Run)
     assert finding.remedy == "Lower contact.damping = 10 to 0.06 N s/m^2 or less."
 
 
-@pytest.mark.parametrize("name", ["friction_loss", "damping_loss", "material_loss", "coupling_loss"])
+@pytest.mark.parametrize("name", ["friction_loss", "damping_loss", "bending_loss", "coupling_loss"])
 def test_losses_that_give_power(turning: Callable[..., Run], run: Run, name: str) -> None:
     angle = run.dataset["pulley_angle"].values[:, 0]
     (warning,) = said(turning(**{name: -0.05 * angle}), "no loss can")

@@ -68,12 +68,17 @@ def test_energy(system: System, joined: State) -> None:
     assert_energy_closes(at_points(system), joined)
 
 
-@pytest.fixture(params=["rotary", "sliding"])
+DAMPED = {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}
+HYSTERETIC = {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}
+MACHINES = [("rotary", DAMPED), ("sliding", DAMPED), ("rotary", HYSTERETIC), ("sliding", HYSTERETIC)]
+
+
+@pytest.fixture(params=MACHINES, ids=lambda variant: f"{variant[0]}-{next(iter(variant[1]))}")
 def machines(request: pytest.FixtureRequest, with_machines: Callable[[str], Drive]) -> tuple[System, State]:
-    """A drive with a damped belt, a tensioner on its stop, a hub chain and loads, disturbed."""
-    drive = with_machines(request.param)
-    damped = drive.belt.replace(stretch_damping_time=1e-5, bending_damping_time=1e-5)
-    system = drive_system(drive.replace(belt=damped))
+    """A drive with losses in the belt, a tensioner on its stop, a hub chain and loads, disturbed."""
+    tensioner, losses = request.param
+    drive = with_machines(tensioner)
+    system = drive_system(drive.replace(belt=drive.belt.replace(**losses)))
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 1e-4), np.array([-2e-3])).position
     scale = np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), 1.0 / system.bodies.reach])
     noise = np.random.default_rng(1).normal(size=(2, rest.size)) * scale

@@ -58,7 +58,7 @@ def damping_force(
     by_position: float,
     by_velocity: float,
     work: np.record,
-) -> float:
+) -> tuple[float, float]:
     """Add dR/d(de/dt), the damping force with the opposite sign, and its exact tangent.
 
     Parameters
@@ -78,22 +78,23 @@ def damping_force(
 
     Returns
     -------
-    float
-        Power lost, 2 R, W; never negative.
+    tuple of 2 floats
+        Powers lost in stretch and in bending, together 2 R, W; never negative.
     """
     points, weights, section = element.elastic.points, element.elastic.weights, element.section
     scratch, gradient, tangent = work.damping, work.gradient, work.tangent
     wanted = by_position != 0.0 or by_velocity != 0.0
     scratch.pull[:] = 0.0
     shear, shear_rate = _shear_rates(e, velocity, length, scratch)
-    power, twist = 0.0, 0.0
+    stretching, turning, twist = 0.0, 0.0, 0.0
     for k in range(points.size):
         weight = weights[k] * length
         axial, bending = weight * section.axial_damping, weight * section.bending_damping
         slope, bend = slopes(points[k], length), bends(points[k], length)
         point = _strain_rates(e, velocity, slope, bend, shear, shear_rate, scratch)
         force, moment = axial * point.strain_rate, bending * point.curvature_rate
-        power += force * point.strain_rate + moment * point.curvature_rate
+        stretching += force * point.strain_rate
+        turning += moment * point.curvature_rate
         twist += moment * point.stretch
         for column in range(12):
             gradient[column] += force * scratch.slope[0, column] + moment * scratch.slope[1, column]
@@ -106,7 +107,7 @@ def damping_force(
             scratch.pull[_first(a) + 1] += moment * slope[a] * point.tangent_y
     if wanted:
         _add_shear_products(by_position, twist, scratch, tangent)
-    return power
+    return stretching, turning
 
 
 @kernel(inline=True)

@@ -46,8 +46,8 @@ def damping(length: float) -> Damping:
     ) -> tuple[float, FloatArray, FloatArray]:
         work = blank(ANCF.workspace)
         element = Ancf(section, gauss_points(4))
-        power = damping_force(element, e, velocity, length, by_position, by_velocity, work)
-        return power, work.gradient, work.tangent
+        powers = damping_force(element, e, velocity, length, by_position, by_velocity, work)
+        return sum(powers), work.gradient, work.tangent
 
     return values
 

@@ -1,0 +1,113 @@
+"""Kelvin-Voigt damping of a planar centreline in the strains eps = (G - 1) / 2 and kappa = c / sqrt(G).
+
+With the rate potential A / 2 (deps/dt)^2 + B / 2 (dkappa/dt)^2 of a point; G and c as in `planar_curve`.  These are the
+strains that `ancf.material_damping` damps, without shear.
+"""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.elements.planar_curve import Density, add_density_tangent, fill_slopes
+from beltdyn.kernel import kernel
+
+Two = tuple[float, float]
+
+
+class CurveMotion(NamedTuple):
+    """A point of the centreline and its rates."""
+
+    q: Two
+    """dr/dx."""
+    w: Two
+    """d2r/dx2, 1/m."""
+    q_rate: Two
+    """1/s."""
+    w_rate: Two
+    """1/(m s)."""
+
+
+class PointDamping(NamedTuple):
+    """Factors of a point, each damping times the length of belt that it stands for, and those of the tangent."""
+
+    axial: float
+    """A, N s m."""
+    bending: float
+    """B, N s m^3."""
+    by_position: float
+    by_velocity: float
+
+
+def curve_damping_scratch(vectors: int) -> dict[str, str]:
+    """Fields of ``work`` for `add_curve_damping`: derivatives of both strains, and of their rates."""
+    return {"strain_slope": f"(2,{2 * vectors})f8", "strain_drift": f"(2,{2 * vectors})f8"}
+
+
+@kernel
+def add_curve_damping(
+    damping: PointDamping, slope: tuple[float, ...], bend: tuple[float, ...], motion: CurveMotion, work: np.record
+) -> Two:
+    """Add a point's part of the damping force, with the opposite sign, and of its exact tangent.
+
+    Parameters
+    ----------
+    damping
+        Factors.
+    slope, bend : tuple of float
+        Factors of the vectors in q and w.
+    motion
+        The point.
+    work
+        `gradient` and `tangent` are changed; fields of `curve_scratch` and `curve_damping_scratch`.
+
+    Returns
+    -------
+    tuple of 2 floats
+        Powers lost in stretch and in bending, W.
+    """
+    q, w, q_rate, w_rate = motion.q, motion.w, motion.q_rate, motion.w_rate
+    fill_slopes(slope, bend, q, w, work)
+    metric, cross = q[0] * q[0] + q[1] * q[1], q[0] * w[1] - q[1] * w[0]
+    metric_rate = 2.0 * (q[0] * q_rate[0] + q[1] * q_rate[1])
+    cross_rate = q_rate[0] * w[1] - q_rate[1] * w[0] + q[0] * w_rate[1] - q[1] * w_rate[0]
+    by_c = 1.0 / sqrt(metric)
+    by_g, by_gc = -0.5 * cross * by_c / metric, -0.5 * by_c / metric
+    by_gg = 0.75 * cross * by_c / (metric * metric)
+    strain_rate, curvature_rate = 0.5 * metric_rate, by_g * metric_rate + by_c * cross_rate
+    force, moment = damping.axial * strain_rate, damping.bending * curvature_rate
+    for a in range(len(slope)):
+        for axis in range(2):
+            column, side = 2 * a + axis, 1.0 - 2.0 * axis
+            of_metric, of_cross = work.of_metric[column], work.of_cross[column]
+            metric_drift = 2.0 * slope[a] * q_rate[axis]
+            cross_drift = side * (slope[a] * w_rate[1 - axis] - bend[a] * q_rate[1 - axis])
+            work.strain_slope[0, column] = 0.5 * of_metric
+            work.strain_slope[1, column] = by_g * of_metric + by_c * of_cross
+            work.strain_drift[0, column] = 0.5 * metric_drift
+            work.strain_drift[1, column] = (
+                by_g * metric_drift
+                + by_c * cross_drift
+                + (by_gg * metric_rate + by_gc * cross_rate) * of_metric
+                + by_gc * metric_rate * of_cross
+            )
+            work.gradient[column] += force * work.strain_slope[0, column] + moment * work.strain_slope[1, column]
+    if damping.by_position != 0.0 or damping.by_velocity != 0.0:
+        pull, turn = damping.by_position * force, damping.by_position * moment
+        density = Density(0.5 * pull + turn * by_g, turn * by_c, turn * by_gg, turn * by_gc, 0.0)
+        add_density_tangent(density, slope, bend, work)
+        _add_products(damping, work)
+    return force * strain_rate, moment * curvature_rate
+
+
+@kernel(inline=True)
+def _add_products(damping: PointDamping, work: np.record) -> None:
+    """Add what the rates of the strains contribute to the tangent."""
+    size = work.strain_slope.shape[1]
+    for k, factor in ((0, damping.axial), (1, damping.bending)):
+        for column in range(size):
+            by_rate = factor * (
+                damping.by_position * work.strain_drift[k, column] + damping.by_velocity * work.strain_slope[k, column]
+            )
+            for row in range(size):
+                work.tangent[row, column] += work.strain_slope[k, row] * by_rate

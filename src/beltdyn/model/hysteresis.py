@@ -1,0 +1,57 @@
+"""How the strains of a belt pass along its drive, as its hysteresis needs to know them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.model.drive import Drive
+from beltdyn.model.end import pulling
+from beltdyn.model.installation import install, layer_lengths
+from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE
+
+_SMOOTHED = 2.0
+"""Length over which slow rates are smoothed, over that on which a strain changes."""
+_KEPT = 0.91
+"""What smoothing leaves of the loss of the curvature exp(s / l) / R (s < 0), then 1 / R, in the mean over elements of any
+length h, and smoothed over 2 (l + h): within 2 %."""
+_LEAST_FRICTION = 0.1
+"""With less the belt is taken to slide on the arc as if it had this."""
+
+
+class Passing(NamedTuple):
+    """Strains on the way of the belt."""
+
+    strain: float
+    """Strain of reference."""
+    stretch_length: float
+    """Length over which slow changes of the stretch are smoothed, m."""
+    bending_length: float
+    """The same for the curvature, m."""
+    stretch_share: float = STRETCH_SHARE
+    """Modulus of stretch over loss factor and stiffness."""
+    bending_share: float = BENDING_SHARE
+    """Modulus of bending over loss factor and stiffness."""
+
+
+def passing_strains(drive: Drive) -> Passing:
+    """Give how strains pass along the belt of a drive.
+
+    With fixed centres the stretch of the whole belt stays as it was at rest, and tensions lie as far above as below
+    it; where a spring or an end holds a tension, the slack side stays at it.  The tension changes over R / mu, the
+    length of an arc that slides until it has grown by a factor of e, the curvature over sqrt(EI / T) and an element.
+
+    Parameters
+    ----------
+    drive : Drive
+    """
+    tension = install(drive).tension
+    belt, friction = drive.belt, np.maximum(drive.frictions, _LEAST_FRICTION)
+    holds = bool(drive.moving_tensioners) or pulling(drive.path_ends) is not None
+    element = drive.belt_length / belt.elements
+    return Passing(
+        strain=tension / belt.axial_stiffness,
+        stretch_length=_SMOOTHED * float((drive.radii / friction).max()),
+        bending_length=_SMOOTHED * (layer_lengths(drive, tension)[0] + element),
+        stretch_share=BENDING_SHARE if holds else STRETCH_SHARE,
+        bending_share=BENDING_SHARE / _KEPT,
+    )

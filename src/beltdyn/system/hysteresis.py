@@ -1,0 +1,289 @@
+"""Hysteresis of stretch and bending: stress that resists the rate of a strain by a share of the strain, at any speed.
+
+Of an element with the reference length L it takes two strains, both of them means over the element: the elongation
+
+    eps = (1/L integral of q . q dx - 1) / 2 - eps_0,    q = dr/dx,
+
+beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centreline at
+both ends.  Of a strain x with the rate dx/dt and the modulus c (N, or N m^2) the stress is
+
+    c |x| dx/dt / sqrt((dx/dt)^2 + (w x)^2),    w^2 = (v^2 + v_0^2) / l^2,
+
+after Reid (1956), who has the sign of the rate: rates far above w |x| meet c |x|, whatever the rate; slower ones are
+damped in proportion.  v is the speed of the element and l a length over which strains change on the way of the belt.
+The power is never negative.  Means know no waves of the strain within an element, and a strain that passes from one
+element to the next loses the same on any mesh.  The paper has no damping of the belt's material.
+"""
+
+from math import atan2, comb, sqrt
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
+from beltdyn.model import Belt
+from beltdyn.model.hysteresis import Passing
+from beltdyn.quadrature import gauss_points
+from beltdyn.records import Records, record, records
+
+CREEPING: Final = 0.01
+"""v_0: speed of the belt below which hysteresis turns into damping in proportion to the rate, m/s."""
+
+
+def hysteresis_record(vectors: int) -> np.dtype[np.void]:
+    """Kind of the rows of `add_hysteresis`, for a centreline of so many vectors."""
+    return record(
+        length="f8",  # reference length L, m
+        axial="f8",  # modulus of stretch, N
+        bending="f8",  # modulus of bending, N m^2
+        strain="f8",  # strain of reference, eps_0
+        stretch_length="f8",  # l of stretch, m
+        bending_length="f8",  # l of bending, m
+        metric=f"({vectors},{vectors})f8",  # 1/L integral of q . q dx from products of the vectors
+        ends=f"(2,{vectors})f8",  # directions of the centreline at both ends from the vectors
+        middle=f"{vectors}f8",  # mean place of both ends from the vectors
+    )
+
+
+def hysteresis_scratch(vectors: int) -> np.dtype[np.void]:
+    """Kind of the scratch arrays of `add_hysteresis`."""
+    size = 2 * vectors
+    return record(
+        strain="f8",  # beyond the reference
+        strain_rate="f8",
+        curvature="f8",
+        curvature_rate="f8",
+        square="f8",  # of the speed of the element, m^2/s^2
+        by_strain=f"{size}f8",  # derivatives of strain, curvature and square of the speed
+        by_curvature=f"{size}f8",
+        by_speed=f"{size}f8",
+        strain_drift=f"{size}f8",  # derivatives of the rates of strain and curvature by position
+        curvature_drift=f"{size}f8",
+        turning="(2,2,2)f8",  # second derivatives of the angles of both ends by their directions
+    )
+
+
+def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing: Passing | None) -> Records:
+    """Rows of `hysteresis_record` for the elements of a belt; none for a belt without loss factors.
+
+    Parameters
+    ----------
+    belt
+        The belt.
+    length : ndarray, shape (elements,)
+        Reference lengths of the elements, m.
+    control : ndarray, shape (elements, curves, degree + 1, v)
+        Control points of the curves of the centreline from its v vectors.
+    passing
+        How strains pass along the belt; by default from one element to the next, without strain at rest.
+    """
+    curves, count, vectors = control.shape[1:]
+    kind = hysteresis_record(vectors)
+    if not belt.has_hysteresis:
+        return np.zeros(0, kind).view(np.recarray)
+    passing = passing or Passing(0.0, belt.given_length / length.size, belt.given_length / length.size)
+    xi, weights = gauss_points(count)
+    bernstein = np.array([comb(count - 2, k) * xi**k * (1.0 - xi) ** (count - 2 - k) for k in range(count - 1)]).T
+    slopes = (count - 1) * curves * bernstein @ np.diff(control, axis=2) / length[:, None, None, None]
+    sides = np.diff(control[:, 0, :2], axis=1), np.diff(control[:, -1, -2:], axis=1)
+    return records(
+        kind,
+        length=length,
+        axial=np.full(length.size, passing.stretch_share * belt.stretch_loss_factor * belt.axial_stiffness),
+        bending=np.full(length.size, passing.bending_share * belt.bending_loss_factor * belt.bending_stiffness),
+        strain=np.full(length.size, passing.strain),
+        stretch_length=np.full(length.size, passing.stretch_length),
+        bending_length=np.full(length.size, passing.bending_length),
+        metric=np.einsum("p,ecpa,ecpb->eab", weights / curves, slopes, slopes),
+        ends=np.concatenate(sides, axis=1),
+        middle=0.5 * (control[:, 0, 0] + control[:, -1, -1]),
+    )
+
+
+class Hysteretic(NamedTuple):
+    """A stress by hysteresis and its derivatives."""
+
+    stress: float
+    """N, or N m."""
+    by_strain: float
+    by_rate: float
+    by_square: float
+    """By the square of the belt's speed."""
+
+
+@kernel
+def hysteretic(modulus: float, strain: float, rate: float, square: float, length: float) -> Hysteretic:
+    """Stress of rate-independent damping (Reid 1956), smoothed at slow rates.
+
+    Parameters
+    ----------
+    modulus
+        c, N or N m^2.
+    strain, rate
+        x, and dx/dt (1/s times the unit of x).
+    square
+        v^2, m^2/s^2.
+    length
+        l, m.
+
+    Returns
+    -------
+    Hysteretic
+    """
+    slow = (square + CREEPING * CREEPING) / (length * length)
+    root = sqrt(rate * rate + slow * strain * strain)
+    if root == 0.0:
+        return Hysteretic(0.0, 0.0, 0.0, 0.0)
+    size, sign = abs(strain), 1.0 if strain >= 0.0 else -1.0
+    share = rate / root
+    fast = share * share
+    return Hysteretic(
+        modulus * size * share,
+        modulus * sign * share * fast,
+        modulus * size / root * (1.0 - fast),
+        -0.5 * modulus * size * share * (1.0 - fast) / (slow * length * length),
+    )
+
+
+@kernel
+def add_hysteresis(
+    own: np.record, vectors: tuple[int, ...], by_position: float, by_velocity: float, work: np.record
+) -> tuple[float, float]:
+    """Add the force of hysteresis on an element, with the opposite sign, and its exact tangent.
+
+    Parameters
+    ----------
+    own
+        Row of the element, of `hysteresis_record`.
+    vectors
+        Where among the coordinates of the element the vectors begin that carry its centreline.
+    by_position, by_velocity
+        The tangent is the sum of these times the derivatives with respect to e and to its rate; with both zero there
+        is none.
+    work
+        From `element_workspace`, with the coordinates e of the element and their rates. The force is added to
+        `element.gradient`, and the tangent to `element.tangent`; `hysteresis` is scratch.
+
+    Returns
+    -------
+    tuple of 2 floats
+        Powers lost in stretch and in bending, W; never negative.
+    """
+    scratch, gradient, length = work.hysteresis, work.element.gradient, own.length
+    _find_strains(own, vectors, work.coordinates, scratch)
+    stretch = hysteretic(own.axial, scratch.strain, scratch.strain_rate, scratch.square, own.stretch_length)
+    bend = hysteretic(own.bending, scratch.curvature, scratch.curvature_rate, scratch.square, own.bending_length)
+    for a in range(len(vectors)):
+        for axis in range(2):
+            row = 2 * a + axis
+            pull, moment = stretch.stress * scratch.by_strain[row], bend.stress * scratch.by_curvature[row]
+            gradient[vectors[a] + axis] += length * (pull + moment)
+    if by_position != 0.0 or by_velocity != 0.0:
+        _add_tangent(own, vectors, stretch, bend, length * by_position, length * by_velocity, work)
+    return length * stretch.stress * scratch.strain_rate, length * bend.stress * scratch.curvature_rate
+
+
+@kernel
+def hysteresis_tension(own: np.record, vectors: tuple[int, ...], work: np.record) -> float:
+    """What hysteresis adds to the tension of an element over |q|, N; as for `add_hysteresis`."""
+    scratch = work.hysteresis
+    _find_strains(own, vectors, work.coordinates, scratch)
+    return hysteretic(own.axial, scratch.strain, scratch.strain_rate, scratch.square, own.stretch_length).stress
+
+
+@kernel
+def _find_strains(own: np.record, vectors: tuple[int, ...], coordinates: FloatArray, scratch: np.record) -> None:
+    """Overwrite both strains, their rates, the square of the speed, and all their derivatives."""
+    e, velocity = coordinates[0], coordinates[1]
+    count = len(vectors)
+    metric, strain_rate = 0.0, 0.0
+    for axis in range(2):
+        speed = 0.0
+        for a in range(count):
+            at, rate = 0.0, 0.0
+            for b in range(count):
+                at += own.metric[a, b] * e[vectors[b] + axis]
+                rate += own.metric[a, b] * velocity[vectors[b] + axis]
+            scratch.by_strain[2 * a + axis], scratch.strain_drift[2 * a + axis] = at, rate
+            metric += at * e[vectors[a] + axis]
+            strain_rate += at * velocity[vectors[a] + axis]
+            speed += own.middle[a] * velocity[vectors[a] + axis]
+        for a in range(count):
+            scratch.by_speed[2 * a + axis] = 2.0 * own.middle[a] * speed
+        scratch.square = speed * speed if axis == 0 else scratch.square + speed * speed
+    scratch.strain, scratch.strain_rate = 0.5 * (metric - 1.0) - own.strain, strain_rate
+    _find_curvature(own, vectors, coordinates, scratch)
+
+
+@kernel
+def _find_curvature(own: np.record, vectors: tuple[int, ...], coordinates: FloatArray, scratch: np.record) -> None:
+    """Overwrite the curvature by the angles of both ends, its rate, and their derivatives."""
+    e, velocity = coordinates[0], coordinates[1]
+    scratch.curvature_rate = 0.0
+    scratch.by_curvature[:] = 0.0
+    scratch.curvature_drift[:] = 0.0
+    first_x, first_y = 1.0, 0.0
+    for end in range(2):
+        side = (2.0 * end - 1.0) / own.length
+        x, y, vx, vy = 0.0, 0.0, 0.0, 0.0
+        for a in range(len(vectors)):
+            factor = own.ends[end, a]
+            x += factor * e[vectors[a]]
+            y += factor * e[vectors[a] + 1]
+            vx += factor * velocity[vectors[a]]
+            vy += factor * velocity[vectors[a] + 1]
+        square = x * x + y * y
+        across, along = side * 2.0 * x * y / (square * square), side * (y * y - x * x) / (square * square)
+        scratch.turning[end, 0, 0], scratch.turning[end, 0, 1] = across, along
+        scratch.turning[end, 1, 0], scratch.turning[end, 1, 1] = along, -across
+        slope_x, slope_y = -side * y / square, side * x / square
+        for a in range(len(vectors)):
+            factor = own.ends[end, a]
+            scratch.by_curvature[2 * a] += factor * slope_x
+            scratch.by_curvature[2 * a + 1] += factor * slope_y
+            scratch.curvature_drift[2 * a] += factor * (across * vx + along * vy)
+            scratch.curvature_drift[2 * a + 1] += factor * (along * vx - across * vy)
+        scratch.curvature_rate += slope_x * vx + slope_y * vy
+        if end == 0:
+            first_x, first_y = x, y
+        else:
+            scratch.curvature = atan2(first_x * y - first_y * x, first_x * x + first_y * y) / own.length
+
+
+@kernel
+def _add_tangent(
+    own: np.record,
+    vectors: tuple[int, ...],
+    stretch: Hysteretic,
+    bend: Hysteretic,
+    by_position: float,
+    by_velocity: float,
+    work: np.record,
+) -> None:
+    """Add the tangent; `by_position` and `by_velocity` are those of `add_hysteresis`, times the length."""
+    scratch, tangent = work.hysteresis, work.element.tangent
+    turned, stretched = by_position * bend.stress, by_position * stretch.stress
+    for b in range(len(vectors)):
+        for axis in range(2):
+            c, column = 2 * b + axis, vectors[b] + axis
+            moving = by_velocity * scratch.by_speed[c]
+            pull = (
+                (by_position * stretch.by_strain + by_velocity * stretch.by_rate) * scratch.by_strain[c]
+                + by_position * stretch.by_rate * scratch.strain_drift[c]
+                + stretch.by_square * moving
+            )
+            moment = (
+                (by_position * bend.by_strain + by_velocity * bend.by_rate) * scratch.by_curvature[c]
+                + by_position * bend.by_rate * scratch.curvature_drift[c]
+                + bend.by_square * moving
+            )
+            for a in range(len(vectors)):
+                first, last = own.ends[0, a] * own.ends[0, b], own.ends[1, a] * own.ends[1, b]
+                for side in range(2):
+                    second = turned * (first * scratch.turning[0, side, axis] + last * scratch.turning[1, side, axis])
+                    if side == axis:
+                        second += stretched * own.metric[a, b]
+                    tangent[vectors[a] + side, column] += (
+                        pull * scratch.by_strain[2 * a + side] + moment * scratch.by_curvature[2 * a + side] + second
+                    )
