@@ -12,8 +12,8 @@ from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE
 _SMOOTHED = 2.0
 """Length over which slow rates are smoothed, over that on which a strain changes."""
 _KEPT = 0.91
-"""What smoothing leaves of the loss of the curvature exp(s / l) / R (s < 0), then 1 / R, in the mean over elements of any
-length h, and smoothed over 2 (l + h): within 2 %."""
+"""What smoothing leaves of the loss of the curvature exp(s / l) / R (s < 0), then 1 / R, in the mean over elements of
+any length h, and smoothed over 2 (l + h): within 2 %."""
 _LEAST_FRICTION = 0.1
 """With less the belt is taken to slide on the arc as if it had this."""
 
