@@ -101,6 +101,7 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
         ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm"),
+        *_lost_in_bending(drive),
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
@@ -111,6 +112,16 @@ def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
     fixed = [tensioner for tensioner in drive.tensioners if tensioner.kind == "fixed"]
     places = [(one.pulley, drive.centers[drive.carried(one)]) for one in fixed]
     return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
+
+
+def _lost_in_bending(drive: "Drive") -> list[tuple[str, str]]:
+    """What the loss factor of bending costs, at any speed and load."""
+    if drive.belt.bending_loss_factor == 0.0:
+        return []
+    from beltdyn.model.hysteresis import bending_resistance
+
+    force = bending_resistance(drive)
+    return [("lost in bending", f"{force:.3g} N of the pull at the belt, {force:.3g} W for each m/s of its speed")]
 
 
 def _origin(drive: "Drive", installation: "Installation", asked_for: bool) -> str:

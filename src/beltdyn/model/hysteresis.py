@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import pulling
 from beltdyn.model.installation import install, layer_lengths
-from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE
+from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss
 
 _SMOOTHED = 2.0
 """Length over which slow rates are smoothed, over that on which a strain changes."""
@@ -55,3 +55,14 @@ def passing_strains(drive: Drive) -> Passing:
         stretch_share=BENDING_SHARE if holds else STRETCH_SHARE,
         bending_share=BENDING_SHARE / _KEPT,
     )
+
+
+def bending_resistance(drive: Drive) -> float:
+    """Give the force that hysteresis of bending holds the belt of a drive back with on all pulleys, N.
+
+    Parameters
+    ----------
+    drive : Drive
+    """
+    belt = drive.belt
+    return float(bending_loss(belt.bending_stiffness, belt.bending_loss_factor, drive.radii).sum())

@@ -4,8 +4,9 @@ Of an element with the reference length L it takes two strains, both of them mea
 
     eps = (1/L integral of q . q dx - 1) / 2 - eps_0,    q = dr/dx,
 
-beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centreline at
-both ends.  Of a strain x with the rate dx/dt and the modulus c (N, or N m^2) the stress is
+beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centreline
+at both ends.  Bending without tension shortens the centreline by b kappa^2, which is no stretch: it is added to eps.
+Of a strain x with the rate dx/dt and the modulus c (N, or N m^2) the stress is
 
     c |x| dx/dt / sqrt((dx/dt)^2 + (w x)^2),    w^2 = (v^2 + v_0^2) / l^2,
 
@@ -38,6 +39,7 @@ def hysteresis_record(vectors: int) -> np.dtype[np.void]:
         axial="f8",  # modulus of stretch, N
         bending="f8",  # modulus of bending, N m^2
         strain="f8",  # strain of reference, eps_0
+        shortening="f8",  # b, m^2
         stretch_length="f8",  # l of stretch, m
         bending_length="f8",  # l of bending, m
         metric=f"({vectors},{vectors})f8",  # 1/L integral of q . q dx from products of the vectors
@@ -93,6 +95,7 @@ def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing
         axial=np.full(length.size, passing.stretch_share * belt.stretch_loss_factor * belt.axial_stiffness),
         bending=np.full(length.size, passing.bending_share * belt.bending_loss_factor * belt.bending_stiffness),
         strain=np.full(length.size, passing.strain),
+        shortening=np.full(length.size, -belt.bent_strain(np.ones(1))[0]),
         stretch_length=np.full(length.size, passing.stretch_length),
         bending_length=np.full(length.size, passing.bending_length),
         metric=np.einsum("p,ecpa,ecpb->eab", weights / curves, slopes, slopes),
@@ -212,8 +215,13 @@ def _find_strains(own: np.record, vectors: tuple[int, ...], coordinates: FloatAr
         for a in range(count):
             scratch.by_speed[2 * a + axis] = 2.0 * own.middle[a] * speed
         scratch.square = speed * speed if axis == 0 else scratch.square + speed * speed
-    scratch.strain, scratch.strain_rate = 0.5 * (metric - 1.0) - own.strain, strain_rate
     _find_curvature(own, vectors, coordinates, scratch)
+    bend, unbend = 2.0 * own.shortening * scratch.curvature, 2.0 * own.shortening * scratch.curvature_rate
+    scratch.strain = 0.5 * (metric - 1.0) - own.strain + 0.5 * bend * scratch.curvature
+    scratch.strain_rate = strain_rate + bend * scratch.curvature_rate
+    for c in range(2 * count):
+        scratch.by_strain[c] += bend * scratch.by_curvature[c]
+        scratch.strain_drift[c] += unbend * scratch.by_curvature[c] + bend * scratch.curvature_drift[c]
 
 
 @kernel
@@ -263,7 +271,8 @@ def _add_tangent(
 ) -> None:
     """Add the tangent; `by_position` and `by_velocity` are those of `add_hysteresis`, times the length."""
     scratch, tangent = work.hysteresis, work.element.tangent
-    turned, stretched = by_position * bend.stress, by_position * stretch.stress
+    stretched = by_position * stretch.stress
+    turned = by_position * bend.stress + 2.0 * own.shortening * scratch.curvature * stretched
     for b in range(len(vectors)):
         for axis in range(2):
             c, column = 2 * b + axis, vectors[b] + axis
@@ -277,6 +286,7 @@ def _add_tangent(
                 (by_position * bend.by_strain + by_velocity * bend.by_rate) * scratch.by_curvature[c]
                 + by_position * bend.by_rate * scratch.curvature_drift[c]
                 + bend.by_square * moving
+                + 2.0 * own.shortening * stretched * scratch.by_curvature[c]
             )
             for a in range(len(vectors)):
                 first, last = own.ends[0, a] * own.ends[0, b], own.ends[1, a] * own.ends[1, b]

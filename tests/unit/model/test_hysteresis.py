@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, install
-from beltdyn.model.hysteresis import passing_strains
+from beltdyn.model.hysteresis import bending_resistance, passing_strains
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE
 
 MakeDrive = Callable[..., Drive]
@@ -38,3 +38,11 @@ def test_a_tensioner_holds_the_slack_side(make_drive: MakeDrive) -> None:
     spring = {"kind": "sliding", "pulley": "idler", "direction": (0.0, 1.0), "mass": 1.0, "preload": 300.0, "rate": 1e3}
     drive = make_drive("flat", tensioner=[spring], length=2.2)
     assert passing_strains(drive).stretch_share == BENDING_SHARE
+
+
+def test_bending_holds_the_belt_back_on_every_pulley(drive: Drive) -> None:
+    """By pi/4 eta EI / R^2."""
+    belt = drive.belt.replace(bending_loss_factor=0.2)
+    expected = 0.05 * np.pi * belt.bending_stiffness * sum(1.0 / radius**2 for radius in drive.radii)
+    assert bending_resistance(drive.replace(belt=belt)) == pytest.approx(expected)
+    assert bending_resistance(drive) == 0.0

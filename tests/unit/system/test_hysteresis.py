@@ -126,7 +126,16 @@ def test_strains_are_means_over_the_element(system: System) -> None:
     e[2:4], e[half + 2 : half + 4] = (np.cos(0.2), -np.sin(0.2)), (np.cos(0.3), np.sin(0.3))
     work.coordinates[0] = e
     hysteresis_tension(own, system.vectors, work)
-    assert work.hysteresis.curvature == pytest.approx(0.5 / length, rel=1e-12)
+    curvature = 0.5 / length
+    assert work.hysteresis.curvature == pytest.approx(curvature, rel=1e-12)
+    assert own.shortening > 0.0
+    unbent = system.hysteresis[:1].copy()
+    unbent.shortening = 0.0
+    straight = element_workspace(system)
+    straight.coordinates[0], straight.coordinates[1] = work.coordinates[0], work.coordinates[1]
+    hysteresis_tension(unbent[0], system.vectors, straight)
+    difference = work.hysteresis.strain - straight.hysteresis.strain
+    assert difference == pytest.approx(own.shortening * curvature**2, rel=1e-9)
 
 
 def test_a_belt_without_loss_factors_has_no_rows(drive: Drive) -> None:
