@@ -9,7 +9,7 @@ from beltdyn.model.end import pulling
 from beltdyn.model.installation import install, layer_lengths
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss
 
-_SMOOTHED = 2.0
+SMOOTHED = 2.0
 """Length over which slow rates are smoothed, over that on which a strain changes."""
 _KEPT = 0.91
 """What smoothing leaves of the loss of the curvature exp(s / l) / R (s < 0), then 1 / R, in the mean over elements of
@@ -26,7 +26,7 @@ class Passing(NamedTuple):
     stretch_length: float
     """Length over which slow changes of the stretch are smoothed, m."""
     bending_length: float
-    """The same for the curvature, m."""
+    """The same for the curvature, without the length of an element, m."""
     stretch_share: float = STRETCH_SHARE
     """Modulus of stretch over loss factor and stiffness."""
     bending_share: float = BENDING_SHARE
@@ -47,11 +47,10 @@ def passing_strains(drive: Drive) -> Passing:
     tension = install(drive).tension
     belt, friction = drive.belt, np.maximum(drive.frictions, _LEAST_FRICTION)
     holds = bool(drive.moving_tensioners) or pulling(drive.path_ends) is not None
-    element = drive.belt_length / belt.elements
     return Passing(
         strain=tension / belt.axial_stiffness,
-        stretch_length=_SMOOTHED * float((drive.radii / friction).max()),
-        bending_length=_SMOOTHED * (layer_lengths(drive, tension)[0] + element),
+        stretch_length=SMOOTHED * float((drive.radii / friction).max()),
+        bending_length=SMOOTHED * layer_lengths(drive, tension)[0],
         stretch_share=BENDING_SHARE if holds else STRETCH_SHARE,
         bending_share=BENDING_SHARE / _KEPT,
     )

@@ -90,6 +90,7 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
         path=completed.path,
         gravity=drive.gravity,
         lengths=lengths,
+        passing=passing_strains(drive) if drive.belt.has_hysteresis else None,
     )
     return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
 

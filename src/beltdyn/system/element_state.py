@@ -94,24 +94,49 @@ def add_material_damping(
     forces
         Changed in place.
     """
+    if loses_in_belt(system):
+        stretch, bending = material_forces(system, element, factors.by_position, factors.by_velocity, work)
+        forces.power[STRETCH_LOSS] += stretch
+        forces.power[BENDING_LOSS] += bending
+
+
+@kernel(inline=True)
+def loses_in_belt(system: System) -> bool:
+    """Whether the belt's material has damping or hysteresis."""
+    return is_damped(system.element.section) or system.hysteresis.size > 0
+
+
+@kernel
+def material_forces(
+    system: System, element: int, by_position: float, by_velocity: float, work: np.record
+) -> tuple[float, float]:
+    """Add damping and hysteresis of the belt to the residual of an element, and their tangent.
+
+    Parameters
+    ----------
+    system
+        The system.
+    element
+        Which one.
+    by_position, by_velocity
+        The tangent is the sum of these times the derivatives with respect to the coordinates and to their rates; with
+        both zero there is none.
+    work
+        From `element_workspace`, with the coordinates of the element and their rates.
+
+    Returns
+    -------
+    tuple of 2 floats
+        Powers lost in stretch and in bending, W.
+    """
+    stretch, bending = 0.0, 0.0
     if is_damped(system.element.section):
-        stretch, bending = damping_force(
-            system.element,
-            work.coordinates[0],
-            work.coordinates[1],
-            system.length[element],
-            factors.by_position,
-            factors.by_velocity,
-            work.element,
-        )
-        forces.power[STRETCH_LOSS] += stretch
-        forces.power[BENDING_LOSS] += bending
+        e, velocity, length = work.coordinates[0], work.coordinates[1], system.length[element]
+        stretch, bending = damping_force(system.element, e, velocity, length, by_position, by_velocity, work.element)
     if system.hysteresis.size > 0:
-        stretch, bending = add_hysteresis(
-            system.hysteresis[element], system.vectors, factors.by_position, factors.by_velocity, work
-        )
-        forces.power[STRETCH_LOSS] += stretch
-        forces.power[BENDING_LOSS] += bending
+        more = add_hysteresis(system.hysteresis[element], system.vectors, by_position, by_velocity, work)
+        stretch, bending = stretch + more[0], bending + more[1]
+    return stretch, bending
 
 
 @kernel(inline=True)

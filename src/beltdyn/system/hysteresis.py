@@ -24,7 +24,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.model import Belt
-from beltdyn.model.hysteresis import Passing
+from beltdyn.model.hysteresis import SMOOTHED, Passing
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import Records, record, records
 
@@ -84,7 +84,7 @@ def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing
     kind = hysteresis_record(vectors)
     if not belt.has_hysteresis:
         return np.zeros(0, kind).view(np.recarray)
-    passing = passing or Passing(0.0, belt.given_length / length.size, belt.given_length / length.size)
+    passing = passing or Passing(0.0, belt.given_length / length.size, 0.0)
     xi, weights = gauss_points(count)
     bernstein = np.array([comb(count - 2, k) * xi**k * (1.0 - xi) ** (count - 2 - k) for k in range(count - 1)]).T
     slopes = (count - 1) * curves * bernstein @ np.diff(control, axis=2) / length[:, None, None, None]
@@ -97,7 +97,7 @@ def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing
         strain=np.full(length.size, passing.strain),
         shortening=np.full(length.size, -belt.bent_strain(np.ones(1))[0]),
         stretch_length=np.full(length.size, passing.stretch_length),
-        bending_length=np.full(length.size, passing.bending_length),
+        bending_length=passing.bending_length + SMOOTHED * length,
         metric=np.einsum("p,ecpa,ecpb->eab", weights / curves, slopes, slopes),
         ends=np.concatenate(sides, axis=1),
         middle=0.5 * (control[:, 0, 0] + control[:, -1, -1]),

@@ -17,14 +17,13 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
-from beltdyn.elements.dispatch import damping_force, elastic_force
-from beltdyn.elements.section import is_damped
+from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.records import record
-from beltdyn.system.arrays import MATERIAL_LOSS, NO_TANGENT, Equations, Motion, System, TangentFactors
+from beltdyn.system.arrays import BENDING_LOSS, NO_TANGENT, STRETCH_LOSS, Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import couple_rim, scatter, take_contact
 from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces
-from beltdyn.system.element_state import centreline, gather_motion
+from beltdyn.system.element_state import centreline, gather_motion, loses_in_belt, material_forces
 from beltdyn.system.moving_center import couple_center, moving_center
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import clear
@@ -99,8 +98,10 @@ def assemble_steady(
         elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
         _find_rate(system, element, work, flow)
         _add_momentum(system, element, work, flow)
-        if is_damped(system.element.section):
-            forces.power[MATERIAL_LOSS] += _add_damping(system, element, wanted, work, flow)
+        if loses_in_belt(system):
+            stretch, bending = _add_damping(system, element, wanted, work, flow)
+            forces.power[STRETCH_LOSS] += stretch
+            forces.power[BENDING_LOSS] += bending
         _add_contact(system, motion, element, centreline(system, element, 0, work), wanted, equations, flow)
         scatter(system, element, wanted, work, matrix)
         if wanted and not anchor.at_rest:
@@ -148,14 +149,14 @@ def _copy(source: FloatArray, target: FloatArray) -> None:
 
 
 @kernel
-def _add_damping(system: System, element: int, wanted: bool, work: np.record, flow: np.record) -> float:
-    """Add the damping of the belt's material, with its tangent through velocities; gives the power lost, W."""
+def _add_damping(system: System, element: int, wanted: bool, work: np.record, flow: np.record) -> tuple[float, float]:
+    """Add the losses of the belt's material, with their tangent through velocities; gives the powers lost, W."""
     own, place, vectors = work.element, work.coordinates[0], system.vectors
     if wanted:
         _copy(own.gradient, flow.gradient)
         _copy(own.tangent.reshape(own.tangent.size), flow.tangent.reshape(own.tangent.size))
         own.tangent[:] = 0.0
-        _damp(system, element, 0.0, 1.0, work)
+        material_forces(system, element, 0.0, 1.0, work)
         derivative, speed = system.frame.derivative[element], system.frame.speed[0]
         for row in range(place.size):
             for b in range(len(vectors)):
@@ -167,14 +168,7 @@ def _add_damping(system: System, element: int, wanted: bool, work: np.record, fl
                     flow.by_speed[row] += own.tangent[row, vectors[b] + axis] * flow.rate[b, axis]
         _copy(flow.gradient, own.gradient)
         _copy(flow.tangent.reshape(own.tangent.size), own.tangent.reshape(own.tangent.size))
-    return _damp(system, element, 1.0 if wanted else 0.0, 0.0, work)
-
-
-@kernel
-def _damp(system: System, element: int, by_position: float, by_velocity: float, work: np.record) -> float:
-    """Add the damping force and its tangent; gives the power lost, W."""
-    place, rate, length = work.coordinates[0], work.coordinates[1], system.length[element]
-    return float(damping_force(system.element, place, rate, length, by_position, by_velocity, work.element))
+    return material_forces(system, element, 1.0 if wanted else 0.0, 0.0, work)
 
 
 @kernel

@@ -8,7 +8,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.model.hysteresis import Passing
-from beltdyn.records import blank
+from beltdyn.records import Records, blank
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.element_state import element_workspace
@@ -129,7 +129,7 @@ def test_strains_are_means_over_the_element(system: System) -> None:
     curvature = 0.5 / length
     assert work.hysteresis.curvature == pytest.approx(curvature, rel=1e-12)
     assert own.shortening > 0.0
-    unbent = system.hysteresis[:1].copy()
+    unbent: Records = system.hysteresis[:1].copy().view(np.recarray)
     unbent.shortening = 0.0
     straight = element_workspace(system)
     straight.coordinates[0], straight.coordinates[1] = work.coordinates[0], work.coordinates[1]
