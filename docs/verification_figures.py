@@ -94,6 +94,10 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("1e+04", ELEMENTS, "Error for ν_s = 1e4", slope=(3, 30, 120, 5e-2), below=True),
         Panel("1e+05", ELEMENTS, "Error for ν_s = 1e5", slope=(3, 30, 120, 5e-2), below=True),
     ],
+    "hysteresis": [
+        Panel("torque", "Radius of both pulleys [mm]", "Torque lost in bending [N m]"),
+        Panel("efficiency", "Pull at the belt [N]", "Efficiency [%]", "linear"),
+    ],
     "elastic_creep": [
         Panel("speed_loss", "Torque [N m]", "Loss of speed [%]", "linear"),
         Panel("slip_arc", "Torque [N m]", "Arc of sliding [°]", "linear"),

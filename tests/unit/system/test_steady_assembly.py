@@ -29,10 +29,18 @@ def residual(system: System, state: State, anchor: Anchor, work: SteadyWork, wan
 
 
 @pytest.mark.parametrize("tensioner", ["rotary", "sliding"])
-@pytest.mark.parametrize("law", ["force_slope", "coefficient_slope"])
-def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str) -> None:
+@pytest.mark.parametrize(
+    ("law", "losses"),
+    [
+        ("force_slope", {}),
+        ("coefficient_slope", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
+        ("force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
+    ],
+)
+def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str, losses: dict[str, float]) -> None:
     """Along any direction of all unknowns, in contact that damps, creeps and slides, to the floor of differences."""
     drive = with_machines(tensioner)
+    drive = drive.replace(belt=drive.belt.replace(**losses))
     if law == "coefficient_slope":
         contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law, "creep_velocity": 0.5}
         contact.pop("creep_rate_factor")
