@@ -23,6 +23,7 @@ ELSEWHERE = {
     "results/checks/*.py": "unit/results/test_checks.py",
     # Parts of one calculation, which is tested as a whole: forces by their energies, tangents by differences.
     "elements/planar_curve.py": "unit/elements/test_kind.py",
+    "elements/planar_curve_damping.py": "unit/elements/test_quintic.py",
     "elements/section.py": "unit/elements/test_kind.py",
     "system/body_forces.py": "unit/system/test_bodies.py",
     "system/dense_block.py": "unit/system/test_ring_matrix.py",
