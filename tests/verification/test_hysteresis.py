@@ -78,7 +78,10 @@ def run_drive(drive: bd.Drive) -> tuple[Balance, float, FloatArray, float]:
 
 @pytest.mark.parametrize("speed", [0.3, 3.0, 30.0])
 def test_losses_do_not_depend_on_the_speed(speed: float, measured: Callable[..., None]) -> None:
-    """Bending within 6 %: 2 % by smoothing, the rest waves of a mesh as coarse as the layer; stretch within 10 %."""
+    """Bending within 6 %: 2 % by smoothing, the rest waves of a mesh as coarse as the layer.
+
+    Stretch within 1e-4 of the pull: waves of the tension on such a mesh lose about as much as the pass itself.
+    """
     drive = make_drive(speed, pull=150.0)
     balance, belt_speed, tensions, closure = run_drive(drive)
     stiffness = drive.belt
@@ -88,7 +91,8 @@ def test_losses_do_not_depend_on_the_speed(speed: float, measured: Callable[...,
     cycle = stretch_loss(stiffness.axial_stiffness, STRETCH, float(tensions.max()), float(tensions.min()))
     measured(bending=bending / expected, stretch=stretch / cycle, closure=closure, efficiency=balance.efficiency)
     assert bending == pytest.approx(expected, rel=0.06)
-    assert stretch == pytest.approx(cycle, rel=0.1)
+    assert stretch == pytest.approx(cycle, abs=1e-4 * 150.0)
+    assert stretch > 0.85 * cycle
     assert closure < 2e-3
 
 

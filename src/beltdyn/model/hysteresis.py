@@ -10,7 +10,7 @@ from beltdyn.model.installation import install, layer_lengths
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss
 
 SMOOTHED = 2.0
-"""Length over which slow rates are smoothed, over that on which a strain changes."""
+"""Length over which slow rates of bending are smoothed, over that on which the curvature changes."""
 _KEPT = 0.91
 """What smoothing leaves of the loss of the curvature exp(s / l) / R (s < 0), then 1 / R, in the mean over elements of
 any length h, and smoothed over 2 (l + h): within 2 %."""
@@ -49,7 +49,7 @@ def passing_strains(drive: Drive) -> Passing:
     holds = bool(drive.moving_tensioners) or pulling(drive.path_ends) is not None
     return Passing(
         strain=tension / belt.axial_stiffness,
-        stretch_length=SMOOTHED * float((drive.radii / friction).max()),
+        stretch_length=float((drive.radii / friction).max()),
         bending_length=SMOOTHED * layer_lengths(drive, tension)[0],
         stretch_share=BENDING_SHARE if holds else STRETCH_SHARE,
         bending_share=BENDING_SHARE / _KEPT,
