@@ -1,4 +1,4 @@
-"""Kelvin-Voigt damping of a planar centreline in the strains eps = (G - 1) / 2 and kappa = c / sqrt(G).
+"""Kelvin-Voigt damping of a planar centreline in the strains eps = sqrt(G) - 1 and kappa = c / sqrt(G).
 
 With the rate potential A / 2 (deps/dt)^2 + B / 2 (dkappa/dt)^2 of a point; G and c as in `planar_curve`.  These are the
 strains that `ancf.material_damping` damps, without shear.
@@ -74,7 +74,8 @@ def add_curve_damping(
     by_c = 1.0 / sqrt(metric)
     by_g, by_gc = -0.5 * cross * by_c / metric, -0.5 * by_c / metric
     by_gg = 0.75 * cross * by_c / (metric * metric)
-    strain_rate, curvature_rate = 0.5 * metric_rate, by_g * metric_rate + by_c * cross_rate
+    stretch_g, stretch_gg = 0.5 * by_c, -0.25 * by_c / metric
+    strain_rate, curvature_rate = stretch_g * metric_rate, by_g * metric_rate + by_c * cross_rate
     force, moment = damping.axial * strain_rate, damping.bending * curvature_rate
     for a in range(len(slope)):
         for axis in range(2):
@@ -82,9 +83,9 @@ def add_curve_damping(
             of_metric, of_cross = work.of_metric[column], work.of_cross[column]
             metric_drift = 2.0 * slope[a] * q_rate[axis]
             cross_drift = side * (slope[a] * w_rate[1 - axis] - bend[a] * q_rate[1 - axis])
-            work.strain_slope[0, column] = 0.5 * of_metric
+            work.strain_slope[0, column] = stretch_g * of_metric
             work.strain_slope[1, column] = by_g * of_metric + by_c * of_cross
-            work.strain_drift[0, column] = 0.5 * metric_drift
+            work.strain_drift[0, column] = stretch_g * metric_drift + stretch_gg * metric_rate * of_metric
             work.strain_drift[1, column] = (
                 by_g * metric_drift
                 + by_c * cross_drift
@@ -94,7 +95,9 @@ def add_curve_damping(
             work.gradient[column] += force * work.strain_slope[0, column] + moment * work.strain_slope[1, column]
     if damping.by_position != 0.0 or damping.by_velocity != 0.0:
         pull, turn = damping.by_position * force, damping.by_position * moment
-        density = Density(0.5 * pull + turn * by_g, turn * by_c, turn * by_gg, turn * by_gc, 0.0)
+        density = Density(
+            pull * stretch_g + turn * by_g, turn * by_c, pull * stretch_gg + turn * by_gg, turn * by_gc, 0.0
+        )
         add_density_tangent(density, slope, bend, work)
         _add_products(damping, work)
     return force * strain_rate, moment * curvature_rate

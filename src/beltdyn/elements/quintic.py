@@ -129,7 +129,7 @@ def quintic_damping(
     by_velocity: float,
     work: np.record,
 ) -> tuple[float, float]:
-    """Damping of the strains (G - 1) / 2 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`."""
+    """Damping of the strains sqrt(G) - 1 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`."""
     stretching, turning, points, weights = 0.0, 0.0, element.elastic.points, element.elastic.weights
     for k in range(points.size):
         slope, bend = slopes(points[k], length), bends(points[k], length)

@@ -48,7 +48,7 @@ def passing_strains(drive: Drive) -> Passing:
     belt, friction = drive.belt, np.maximum(drive.frictions, _LEAST_FRICTION)
     holds = bool(drive.moving_tensioners) or pulling(drive.path_ends) is not None
     return Passing(
-        strain=tension / belt.axial_stiffness,
+        strain=0.5 * (float(belt.stretch_parameters.stretch(tension)) ** 2 - 1.0),
         stretch_length=float((drive.radii / friction).max()),
         bending_length=SMOOTHED * layer_lengths(drive, tension)[0],
         stretch_share=BENDING_SHARE if holds else STRETCH_SHARE,

@@ -111,11 +111,11 @@ def damping(
 
 
 def test_power_of_damping_is_that_of_the_strain_rates(deformed: FloatArray) -> None:
-    """A and B times the squares of the rates of (G - 1) / 2 and c / sqrt(G), by complex steps."""
+    """A and B times the squares of the rates of sqrt(G) - 1 and c / sqrt(G), by complex steps."""
     moved, expected = (deformed + 1e-30j * VELOCITY).reshape(6, 2), np.zeros(2)
     for xi, weight in zip(*gauss_points(4), strict=True):
         q, w = slopes(xi, LENGTH) @ moved, bends(xi, LENGTH) @ moved
-        strains = np.array([0.5 * (q @ q - 1.0), (q[0] * w[1] - q[1] * w[0]) / np.sqrt(q @ q)])
+        strains = np.array([np.sqrt(q @ q) - 1.0, (q[0] * w[1] - q[1] * w[0]) / np.sqrt(q @ q)])
         expected += weight * LENGTH * np.array([30.0, 1e-4]) * (strains.imag / 1e-30) ** 2
     powers, force, _ = damping(deformed, VELOCITY)
     np.testing.assert_allclose(powers, expected, rtol=1e-11)

@@ -13,7 +13,7 @@ MakeDrive = Callable[..., Drive]
 
 def test_fixed_centres_strain_alike_to_both_sides(drive: Drive) -> None:
     passing = passing_strains(drive)
-    assert passing.strain == pytest.approx(install(drive).tension / drive.belt.axial_stiffness)
+    assert passing.strain == pytest.approx(install(drive).tension / drive.belt.axial_stiffness, rel=2e-3)
     assert passing.stretch_share == STRETCH_SHARE
     assert passing.stretch_length == pytest.approx(max(drive.radii / drive.frictions))
 
