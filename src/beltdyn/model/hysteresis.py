@@ -6,7 +6,8 @@ import numpy as np
 
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import pulling
-from beltdyn.model.installation import install, layer_lengths
+from beltdyn.model.installation import install
+from beltdyn.model.resolution import layer_lengths
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss
 
 SMOOTHED = 2.0
