@@ -6,7 +6,7 @@ from math import degrees, pi, sin, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from beltdyn.cli.console import show, show_facts, show_table
+from beltdyn.cli.console import show, show_facts, show_paragraphs, show_table
 
 if TYPE_CHECKING:
     from beltdyn.model import Entry
@@ -82,7 +82,7 @@ def _show(profile: str, entry: "Entry") -> None:
     show_facts((f"  {name}", fact) for name, fact in _consequences(entry))
     size = {"ribs": "ribs = 1", "width": 'width = "50 mm"', "diameter": 'diameter = "8 mm"'}[entry.sold_by]
     show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n\nSources')
-    show_facts(("  ", line) for line in entry.source.strip().splitlines())
+    show_paragraphs(entry.source.strip().splitlines())
 
 
 def _values(entry: "Entry") -> Iterator[tuple[str, str]]:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 
 from rich.console import Console
 from rich.measure import Measurement
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -38,6 +39,12 @@ def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]
     table.collapse_padding = Measurement.get(console, console.options, table).maximum >= console.width
     needed = console.measure(table, options=console.options.update_width(_WIDEST)).maximum
     Console(width=max(console.width, needed)).print(table)
+
+
+def show_paragraphs(paragraphs: Iterable[str]) -> None:
+    """Write paragraphs broken at words, set in by two spaces."""
+    for paragraph in paragraphs:
+        Console().print(Padding(Text(paragraph), (0, 0, 0, 2)))
 
 
 def show_facts(facts: Iterable[tuple[str, str]]) -> None:
