@@ -41,7 +41,7 @@ LINES = (
     *('gravity = [0, "-9.81 m/s^2"]', "gravity = [1e15, 0]", "gravity = 3", "crossed = true", 'side = "outside"'),
     *('side = "inside"', 'installed_tension = "100 N"', "installed_tension = 1e-12", "installed_tension = 1e15"),
     *("belt.length = 1", 'catalogue = "table.csv"', 'profile = "PK"', "ribs = 6", "pitch_offset = 1", "friction = 1e9"),
-    *("diameter = 0.1", 'diameter = "-1 mm"', "nominal_length = 1.3", 'nominal_length = "1 m^2"', 'profile = "round-85A"'),
+    *("diameter = 0.1", "diameter = -1", "nominal_length = 1.3", 'nominal_length = "1 m^2"', 'profile = "round-85A"'),
     *('allowed_penetration = "1 um"', "allowed_penetration = 1", 'discretization = "truss"', "elements = 3"),
     *("elements = 99999", "inertia = 0", "inertia = 1e-15", "max_step = 1e-15", "rtol = 1e-15", "spectral_radius = 0"),
     '[[tensioner]]\npulley = "driven"\nkind = "fixed"\ndirection = [1, 0]\ntake_up = 0.01',
