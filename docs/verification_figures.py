@@ -95,7 +95,7 @@ FIGURES: dict[str, list[Panel]] = {
         Panel("1e+05", ELEMENTS, "Error for ν_s = 1e5", slope=(3, 30, 120, 5e-2), below=True),
     ],
     "hysteresis": [
-        Panel("torque", "Radius of both pulleys [mm]", "Torque lost in bending [N m]"),
+        Panel("torque", "Radius of both pulleys [mm]", "Torque lost in bending [N m]", "linear"),
         Panel("efficiency", "Pull at the belt [N]", "Efficiency [%]", "linear"),
     ],
     "elastic_creep": [
