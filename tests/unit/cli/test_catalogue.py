@@ -123,7 +123,7 @@ def written(name: str, entry: Entry) -> str:
     )
     return (
         f'[belt]\nprofile = "{name}"\n{size}\ninstalled_tension = {tension}\n{pulleys}'
-        "[contact]\nstiffness = 1e8\ndamping = 10\nfriction_law = 'force_slope'\ncreep_rate_factor = 1e5\n"
+        "[contact]\n"
         "[simulation]\nduration = 1\noutput_interval = 0.01\n"
     )
 
