@@ -209,6 +209,15 @@ def test_belt_that_stretches_too_far(make_run: MakeRun) -> None:
     assert warning.startswith("the span driven-driver at t = 0.4 s is stretched by 8.0%, more than 5%")
 
 
+def test_belt_that_stretches_beyond_its_measured_curve(turning: Callable[..., Run], drive: Drive) -> None:
+    """300 N are 3 % on the straight line by which the curve goes on."""
+    curve = {"strains": [0.02], "tensions": [200.0]}
+    curved = drive.replace(belt=drive.belt.replace(stretch_curve=curve))
+    (warning,) = said(turning(curved, span_tension=np.full((101, 2), 300.0)), "stretch_curve ends")
+    assert "is stretched by 3.00%, and belt.stretch_curve ends at 2.00%" in warning
+    assert not said(turning(curved, span_tension=np.full((101, 2), 190.0)), "stretch_curve ends")
+
+
 def test_noise_is_no_slip_and_no_margin(make_run: MakeRun, run: Run) -> None:
     """A drive at rest, but for rounding: the belt would go as far as it is stretched in a million years."""
     noise = np.random.default_rng(5).normal(scale=1e-16, size=(101, 2))
