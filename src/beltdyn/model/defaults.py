@@ -18,9 +18,9 @@ from beltdyn.model.resolution import Running, fewest
 
 TENSION_LOST = 0.005
 """Part of the tension that penetration may take."""
-DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.002
+DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.001
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
-DAMPING_RATIO = 0.1
+DAMPING_RATIO = 0.5
 """Damping of contact over the critical one."""
 CREEP_LENGTHS = 16.0
 """Lengths over which a slip velocity grows e-fold that the smallest gripping arc has at the tension at rest."""
