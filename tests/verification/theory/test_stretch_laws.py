@@ -32,7 +32,7 @@ OTHERS = [pytest.param(name, marks=pytest.mark.slow) for name in ELEMENTS if nam
 
 @pytest.fixture(params=list(LAWS))
 def elastic(request: pytest.FixtureRequest, table_1: Callable[..., Drive]) -> Callable[..., Drive]:
-    """The published drive with a thin belt, which 120 N stretch by 2 % by the curve and by much more by the formulas."""
+    """The published drive with a thin belt, which 120 N stretch by 2 % by the curve, and by much more otherwise."""
     section = {"thickness": 2e-3, "length": None, "installed_tension": INSTALLED}
     return lambda elements, **changes: table_1(
         elements, **{"belt": {"elements": elements} | section | LAWS[request.param]} | changes
