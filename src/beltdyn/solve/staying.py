@@ -22,7 +22,12 @@ from beltdyn.system.steady_assembly import Anchor
 TOLERANCE = 1e-9
 """Of the last step of a search, over the smallest radius."""
 FIRST_FINENESS = 0.6
-"""Of the mesh at rest."""
+"""Of the first mesh."""
+FINER = 1.4
+"""Elements of a mesh over those of the one before."""
+MOST_ELEMENTS = 1500
+_SETTLED = 1e-3
+"""Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
 _MOST = 60
 _DEEPEST_START = 0.1
 """Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
@@ -45,6 +50,8 @@ class Standing(NamedTuple):
     """Mean of the span tensions, N."""
     layer: float
     """Length of the layers at the ends of arcs, m."""
+    fineness: float
+    """Of its graded mesh."""
 
 
 class Laid(NamedTuple):
@@ -88,16 +95,9 @@ def anchor_at(system: System, state: State, at_rest: bool) -> Anchor:
 
 
 def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
-    """Find the equilibrium at rest, with the installed tension that was asked for if one was; as for `stand`."""
-    first = stand(drive, elements)
-    wanted = drive.belt.installed_tension
-    return first if wanted is None else tighten(first, wanted, lambda other: stand(other, elements))
+    """Find the equilibrium at rest, with the installed tension that was asked for if one was.
 
-
-def stand(drive: Drive, elements: int | None = None) -> Standing:
-    """Find the equilibrium at rest, without friction, of a drive with the length that it has.
-
-    Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
+    The length for that tension is found on a mesh that is fine enough for it.
 
     Parameters
     ----------
@@ -111,26 +111,64 @@ def stand(drive: Drive, elements: int | None = None) -> Standing:
     ConvergenceError
         If it is not found.
     """
+    rest, wanted = stand(drive, elements), drive.belt.installed_tension
+    if wanted is None:
+        return rest
+    change = np.inf
+    while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
+        finer = stand(drive, fineness=FINER * rest.fineness)
+        change, rest = abs(finer.tension / rest.tension - 1.0), finer
+    shares = rest.system.length / rest.system.length.sum()  # on meshes of its own each length would have its error
+    return tighten(rest, wanted, lambda other: stand(other, fineness=rest.fineness, shares=shares))
+
+
+def stand(
+    drive: Drive,
+    elements: int | None = None,
+    *,
+    fineness: float = FIRST_FINENESS,
+    shares: FloatArray | None = None,
+) -> Standing:
+    """Find the equilibrium at rest, without friction, of a drive with the length that it has.
+
+    Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    elements
+        Number of equal elements; by default the mesh is graded.
+    fineness
+        Of a graded mesh.
+    shares : ndarray, shape (elements,), optional
+        Lengths of the elements, over that of the belt, if they are known.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found.
+    """
     installation = install(drive)
     layer = layer_length(*layer_lengths(drive, installation.tension))
-    system = staying_system(drive, _lengths(drive, installation.path, layer, elements))
+    if shares is not None:
+        lengths = shares * drive.belt_length
+    elif elements is not None:
+        lengths = np.full(elements, drive.belt_length / elements)
+    else:
+        arcs = Laid.on(installation.path, drive.belt_length).arcs()
+        lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
+    system = staying_system(drive, lengths)
     for way in ((1.0,), _STIFFER_FIRST, _SOFTER_FIRST):
         state = _lying(drive, system, installation, way[0])
         anchor = anchor_at(system, state, True)
         if all(_balance(drive, system, state, anchor, factor) for factor in way):
             tension = looked_at(drive, system, state).tension
-            return Standing(drive, system, state, state.position.copy(), tension, layer)
+            return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
     raise ConvergenceError(
         f"no equilibrium at rest found on a mesh of {system.nodes} elements. Check tension and stiffness of contact "
         "with `beltdyn check`."
     )
-
-
-def _lengths(drive: Drive, path: Path, layer: float, elements: int | None) -> FloatArray:
-    """Lengths of the elements for a belt on a path, m."""
-    if elements is not None:
-        return np.full(elements, drive.belt_length / elements)
-    return graded_mesh(drive.belt_length, Laid.on(path, drive.belt_length).arcs(), layer, FIRST_FINENESS)
 
 
 def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:

@@ -82,7 +82,7 @@ def steady_state(
     rest = bring_to_stand(drive, elements)
     search = SteadySearch(rest, instant)
     search.run()
-    errors = refine(search, rest.layer, force_tolerance, elements)
+    errors = refine(search, rest, force_tolerance, elements)
     duration = _TURNS * rest.drive.belt_length / abs(search.belt_parameter)
     shown = rest.drive.replace(
         simulation=drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)

@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model.graded_mesh import graded_mesh
-from beltdyn.solve.staying import FIRST_FINENESS, depths, found_arcs
+from beltdyn.solve.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
@@ -14,10 +14,8 @@ from beltdyn.system.centreline import centreline_points
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
-_FINER = 1.4
-"""Elements of a mesh over those of the one before."""
-_MOST = 1500
-"""Elements, at most."""
+_OF_TENSION = 0.3
+"""Change of tensions that is small enough, over that of contact forces."""
 _POINTS = 200
 """Points of an arc at which two meshes are compared."""
 _LEAST_SLIP = 1e-4
@@ -35,15 +33,15 @@ class _Solution(NamedTuple):
     """Of the rims behind the first one, relative."""
 
 
-def refine(search: SteadySearch, layer: float, tolerance: float, elements: int | None = None) -> dict[str, float]:
+def refine(search: SteadySearch, rest: Standing, tolerance: float, elements: int | None = None) -> dict[str, float]:
     """Refine the mesh of a drive in steady running, which is changed in place.
 
     Parameters
     ----------
     search
         In steady running.
-    layer
-        Length of the layers at the ends of arcs, m.
+    rest
+        The drive at rest, with the mesh from which the search began.
     tolerance
         Change of contact forces from one mesh to the next, over the largest of a pulley, that is small enough.
     elements
@@ -59,13 +57,14 @@ def refine(search: SteadySearch, layer: float, tolerance: float, elements: int |
     ConvergenceError
         If a finer mesh finds no steady running.
     """
-    fineness, before = FIRST_FINENESS if elements is None else 1.0, _solution(search)
+    fineness, before = rest.fineness if elements is None else 1.0, _solution(search)
     while True:
-        fineness *= _FINER
-        search.move_to(staying_system(search.drive, _finer(search, before, layer, fineness, elements)))
+        fineness *= FINER
+        search.move_to(staying_system(search.drive, _finer(search, before, rest.layer, fineness, elements)))
         after = _solution(search)
         errors = _differences(before, after)
-        if errors["peak pressure"] <= tolerance or elements is not None or after.system.nodes > _MOST:
+        small = errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
+        if small or elements is not None or after.system.nodes > MOST_ELEMENTS:
             return errors
         before = after
 
