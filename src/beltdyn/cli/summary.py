@@ -146,7 +146,7 @@ def _tensioners(summary: "Summary") -> list[tuple[str, str]]:
 
 
 def _solver(summary: "Summary") -> list[tuple[str, str]]:
-    """What the solver did; of a static equilibrium, which takes no steps, nothing but the time."""
+    """What the solver did: of steady running, which takes no steps, the mesh and the time; at rest the time."""
     steps = f"{summary.steps} steps, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"
     facts = [
         ("errors of mesh", _mesh(summary.resolution)),
@@ -155,13 +155,14 @@ def _solver(summary: "Summary") -> list[tuple[str, str]]:
     ]
     took = f"{summary.wall_time:.3g} s{_pace(summary)}, and {summary.compile_time:.3g} s to prepare"
     known = not math.isnan(summary.wall_time)
-    return [*(facts if summary.steps else []), *([("computing time", took)] if known else [])]
+    moves = not math.isnan(summary.resolution.errors["slip"])
+    return [*(facts if summary.steps else facts[:moves]), *([("computing time", took)] if known else [])]
 
 
 def _pace(summary: "Summary") -> str:
-    """Computing time for a simulated second; none of a drive at rest."""
+    """Computing time for a simulated second; none of what is not simulated over time."""
     pace = summary.computing_time_per_second
-    return "" if math.isnan(pace) else f", {pace:.3g} s for each simulated second"
+    return "" if math.isnan(pace) or not summary.steps else f", {pace:.3g} s for each simulated second"
 
 
 def _mesh(resolution: "Resolution") -> str:

@@ -17,6 +17,7 @@ from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
 from beltdyn.system.discretization import curve_lengths
+from beltdyn.system.frame import Staying
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.pulley_state import pulley_speeds
@@ -56,6 +57,7 @@ class Observer:
     def __init__(self, drive: Drive, system: System, belt_coordinate: FloatArray) -> None:
         self._drive, self._system, self._belt_coordinate = drive, system, belt_coordinate
         lengths = curve_lengths(system)
+        self._shares = lengths / np.sum(lengths)
         self._friction_work = FrictionWork(drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
         self._energy = EnergyAccount()
         self._flutter = FlutterWatch(system)
@@ -79,7 +81,9 @@ class Observer:
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
         aside = mid_span_displacements(self._drive, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)
-        works = self._friction_work.take(Touch(states.time, centers, places, touched, lost), shown)
+        on_arc, on_belt = self._friction_work.take(Touch(states.time, centers, places, touched, lost), shown)
+        if isinstance(self._system.frame, Staying):  # all of the belt passes
+            on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares
         potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
         stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy[shown]
         closure = self._energy.closure(stored, potential, states.work, shown)
@@ -97,7 +101,7 @@ class Observer:
                 rows["slip_velocity"],
                 pulley_speeds(self._system, states.velocity[shown]),
             ),
-            **dict(zip(WORKS, works, strict=True)),
+            **dict(zip(WORKS, (on_arc, on_belt), strict=True)),
             **dict(zip(ENERGY_WORKS, states.work[shown].T, strict=True)),
             "material_loss": states.work[shown][:, [STRETCH_LOSS, BENDING_LOSS]].sum(axis=1),
             "energy_closure": closure,

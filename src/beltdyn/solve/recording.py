@@ -91,7 +91,7 @@ class Recording:
         self._filter = BandLimit(self._instants.interval)
         self._filtered = FILTER_REACH
         self._observer = Observer(drive, system, layout.belt_coordinate)
-        self._findings: dict[str, float | str] = {}
+        self._findings: dict[str, Any] = {}
         self._waiting: list[Chunk] = []
         self._before: tuple[Chunk, Arrays] | None = None
         self._done: Arrays = {}
@@ -174,7 +174,7 @@ class Recording:
             pace = self._pace.at(elapsed, reached)
             self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound, pace))
 
-    def note(self, **facts: float | str) -> None:
+    def note(self, **facts: Any) -> None:
         """Add global attributes to the dataset."""
         self._findings |= facts
 

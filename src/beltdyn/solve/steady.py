@@ -1,11 +1,13 @@
 """An analysis: the steady running of a drive, on a mesh that stays while the belt flows through it."""
 
-from pathlib import Path
+import time
 
 import numpy as np
 
 from beltdyn.elements.quintic import QUINTIC
 from beltdyn.errors import ModelError
+from beltdyn.kernel import interpreted
+from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive
 from beltdyn.results import MESH_ERROR, Run
 from beltdyn.solve.progress import Progress, Report
@@ -19,19 +21,21 @@ from beltdyn.system.constant_drive import twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
+_ANGLES = np.linspace(0.0, 12.0, 25)
+"""Angles at which torques on shafts are compared, rad."""
+_EVEN = 1e-9
+"""Difference of such torques that is rounding, relative."""
 _TURNS = 2.2
 """Turns of the belt in the results; means are taken over the last one."""
 
 
 def steady_state(
     drive: Drive,
-    output: Path | str | None = None,
     *,
     at: float | None = None,
     force_tolerance: float = 0.01,
     elements: int | None = None,
     progress: Report | None = None,
-    overwrite: bool = False,
 ) -> Run:
     """Find the steady running of a drive, without a simulation over time.
 
@@ -43,8 +47,6 @@ def steady_state(
     ----------
     drive
         The drive.
-    output
-        Result file (NetCDF4); without one the results stay in memory.
     at
         At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
@@ -53,8 +55,6 @@ def steady_state(
         Number of equal elements, in place of the graded mesh.
     progress
         Called now and then with a `Progress`.
-    overwrite
-        Replace any regular file by the results, and not only earlier results.
 
     Returns
     -------
@@ -80,7 +80,8 @@ def steady_state(
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     rest = bring_to_stand(drive, elements)
-    search = SteadySearch(rest, instant)
+    search, begun = SteadySearch(rest, instant), time.perf_counter()
+    _require_even_torques(rest.drive, search.constant)
     search.run()
     errors = refine(search, rest, force_tolerance, elements)
     duration = _TURNS * rest.drive.belt_length / abs(search.belt_parameter)
@@ -88,11 +89,13 @@ def steady_state(
         simulation=drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
     )
     title = f"Belt drive in steady running, as at {instant:g} s"
-    with Recording(shown, search.constant, output, title, None, overwrite) as recording:
+    with Recording(shown, search.constant, None, title, None) as recording:
         recording.start(shown, search.constant, ())
         recording.take(_running(search.constant, search.state, duration))
         recording.note(
             steady_at=instant,
+            wall_time=time.perf_counter() - begun,
+            **search.friction_band(rest.system.tensioners),
             belt_parameter=search.belt_parameter,
             newton_iterations_of_search=search.iterations,
             **{MESH_ERROR + name.replace(" ", "_"): error for name, error in errors.items()},
@@ -138,16 +141,34 @@ def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) 
         raise ModelError(f"elements = {elements} must be 3 or more. Leave it out for a graded mesh.")
 
 
+def _require_even_torques(drive: Drive, system: System) -> None:
+    """Make sure that no torque depends on the angle of its shaft, but by harmonics, which have a mean of zero.
+
+    Raises
+    ------
+    ModelError
+        If one does.
+    """
+    torque = interpreted(shaft_torque)
+    for p, pulley in enumerate(drive.pulleys):
+        seen = [torque(system.profiles, system.shaft_loads, p, 0.0, angle, 1.0).torque for angle in _ANGLES]
+        if np.ptp(seen) > _EVEN * np.max(np.abs(seen)):
+            raise ModelError(
+                f"the torque on {pulley.name} depends on the angle of its shaft, so that it does not run steadily. "
+                "Give its mean over a turn in its place, or simulate the drive with `beltdyn run`."
+            )
+
+
 def _running(system: System, state: State, duration: float) -> Chunk:
     """A while of steady running: the shape of the belt stays, and shafts turn on."""
     place = state.position.copy()
     rims = slice(system.first_body, place.size - system.tensioners.size)
     moments = body_forces_at(system, np.zeros(1), place[None].copy(), state.velocity[None].copy()).moment[0]
     place[rims] = twists(system, moments)
-    time = np.array([0.0, duration])
+    instants = np.array([0.0, duration])
     position, velocity = np.stack([place, place]), np.stack([state.velocity, state.velocity])
     position[1, rims] += duration * state.velocity[rims]
-    forces = body_forces_at(system, time, position, velocity)
+    forces = body_forces_at(system, instants, position, velocity)
     work = np.zeros((2, forces.power.shape[1] + 1))
     work[1, :-1] = duration * forces.power[1]
-    return Chunk(time, np.array([0.0, duration]), position, velocity, work, forces, duration)
+    return Chunk(instants, instants, position, velocity, work, forces, duration)

@@ -12,12 +12,14 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.loads.shaft import shaft_torque
+from beltdyn.records import Records
 from beltdyn.solve.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.solve.steady_slip import slips_through
 from beltdyn.system.arrays import BodyForces, System
-from beltdyn.system.constant_drive import constant_drive, drive_shafts, rim_of_bodies, with_speeds_unknown
+from beltdyn.system.constant_drive import constant_drive, drive_shafts, dry_friction_of, guess_hubs, with_speeds_unknown
 from beltdyn.system.operating_point import operating_point
+from beltdyn.system.state import State
 
 _MOST = 25
 """Iterations of a step."""
@@ -125,6 +127,34 @@ class SteadySearch:
                 "force_tolerance."
             )
 
+    def friction_band(self, tensioners: Records) -> dict[str, FloatArray]:
+        """Where dry friction holds tensioners at most, m or rad.
+
+        Parameters
+        ----------
+        tensioners
+            With their dry friction.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (K,)
+            "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
+            they may stand: where the path had become longer before, and shorter. Nothing without friction.
+        """
+        place, own = self.state, self.constant.tensioners.push
+        given, found = own.copy(), dict[str, FloatArray]()
+        for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
+            friction = dry_friction_of(tensioners, f"{name}_friction")
+            self.state = State(place.position.copy(), place.velocity.copy(), place.acceleration)
+            speed = self.belt_parameter
+            own[:] = given + sense * friction
+            if np.any(friction) and self._try(self.setting):
+                count = self.state.position.size
+                found[f"tensioner_position_after_{name}"] = self.state.position[count - friction.size :].copy()
+            self.constant.frame.speed[0] = speed
+        own[:], self.state = given, place
+        return found
+
     def _gentle(self, speed: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""
         pulleys = self._system.pulleys
@@ -137,8 +167,8 @@ class SteadySearch:
         state, running, path = self.state, setting.speed * speed, self.drive.path
         state.position[:] = self._rest.place
         self.constant.frame.speed[0] = running * self.drive.belt_length / path.length
-        rims = rim_of_bodies(self._system)
-        state.velocity[self._system.first_body :][: rims.size] = running / path.radii[rims]
+        state.velocity[self._system.first_body :][: path.count] = running / path.radii
+        guess_hubs(self._at(setting), state.velocity)
         return self._try(setting)
 
     def _follow(self, target: Setting) -> None:

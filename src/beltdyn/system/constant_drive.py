@@ -3,10 +3,12 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import bisect
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines.links.registry import link_torque
+from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT
 from beltdyn.records import Records, records
@@ -53,6 +55,15 @@ def _without_motion(tensioners: Records) -> Records:
             for constant in _OF_MOTION:
                 still[name]["spring"][constant] = 0.0
     return still
+
+
+def dry_friction_of(tensioners: Records, name: str) -> FloatArray:
+    """Constants "tensioning_friction" or "yielding_friction" of tensioners, N or N m; zero of kinds without spring."""
+    found = np.zeros(tensioners.size)
+    for kind in tensioners.dtype.names or ():
+        if "spring" in (tensioners.dtype[kind].names or ()):
+            found += tensioners[kind]["spring"][name]
+    return found
 
 
 def rigid_links(system: System) -> BoolArray:
@@ -108,6 +119,34 @@ def drive_shafts(system: System, velocity: FloatArray) -> None:
     for link in system.links[::-1]:
         if system.bodies.unknown[link.front] < 0:
             velocity[first + link.front] = velocity[first + link.back]
+
+
+def guess_hubs(system: System, velocity: FloatArray) -> None:
+    """Guess speeds behind clutches, from those of the rims: with the rim, or slower where the clutch slips.
+
+    Parameters
+    ----------
+    system
+        With constant torques and schedules.
+    velocity : ndarray, shape (n N + D,)
+        With the speeds of the rims; those of hub bodies are overwritten.
+    """
+    first, torque = system.first_body, interpreted(shaft_torque)
+    pulley, rigid = rim_of_bodies(system), rigid_links(system)
+    shafts = system.pulleys.shaft
+    for link, stiff in zip(system.links, rigid, strict=True):
+        rim = float(velocity[first + link.front])
+        velocity[first + link.back] = rim
+        p = int(pulley[link.back])
+        if stiff or rim == 0.0 or system.bodies.unknown[shafts[p]] < 0:
+            continue
+
+        def balance(part: float, link: np.record = link, rim: float = rim, p: int = p) -> float:
+            driven = interpreted(link_torque)(system.profiles, link, 0.0, 0.0, (1.0 - part) * rim).torque
+            return float(driven + torque(system.profiles, system.shaft_loads, p, 0.0, 0.0, part * rim).torque)
+
+        if balance(1.0) != 0.0 and balance(0.0) * balance(1.0) <= 0.0:
+            velocity[first + link.back] = rim * bisect(balance, 0.0, 1.0)
 
 
 def twists(system: System, moments: FloatArray) -> FloatArray:

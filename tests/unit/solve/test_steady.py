@@ -1,5 +1,6 @@
 """Steady running as a result like that of a run over time, what it needs, and how it fails."""
 
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +71,48 @@ def test_it_says_what_slips_through(loaded: Drive) -> None:
     )
     with pytest.raises(ConvergenceError, match=r"slips through on driven, .* at most 11[78].* 600 N m is asked"):
         steady_state(heavy)
+
+
+@pytest.fixture(scope="module")
+def machines() -> Drive:
+    return bd.load(str(files("beltdyn") / "examples" / "accessory_drive.toml"))
+
+
+def test_dry_friction_holds_a_tensioner_within_a_band(machines: Drive) -> None:
+    """Both ends of the band are where an arm without friction stands, with a preload less and more by as much."""
+    arm, run = machines.moving_tensioners[0], steady_state(machines)
+    found, installed = run.dataset, run.drive
+    smooth = arm.replace(tensioning_friction=0.0, yielding_friction=0.0)
+    for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
+        preload = arm.preload + sense * getattr(arm, f"{name}_friction")
+        other = steady_state(installed.replace(tensioner=[smooth.replace(preload=preload)])).dataset
+        end = float(np.atleast_1d(found.attrs[f"tensioner_position_after_{name}"])[0])
+        assert end == pytest.approx(float(other.tensioner_position[0, 0]), abs=2e-4)
+        assert abs(end - float(found.tensioner_position[0, 0])) > 0.01
+        assert f"tensioner_position_after_{name}" not in other.attrs
+
+
+def test_an_open_clutch_lets_its_load_stop(machines: Drive) -> None:
+    """At 0.2 s the compressor's clutch is open, and dry friction has its shaft."""
+    found = steady_state(machines, at=0.2).dataset
+    assert abs(float(found.shaft_speed[0, -1])) < 0.1
+    assert float(found.pulley_speed[0, -1]) > 50.0
+
+
+def test_a_torque_over_the_angle_is_refused(loaded: Drive) -> None:
+    driver, driven = loaded.pulleys
+    table = {"kind": "function", "function": lambda t, angle, speed: -10.0 - np.sin(angle)}
+    uneven = loaded.replace(pulley=[driver, driven.replace(torque=None, load=[table])])
+    with pytest.raises(ModelError, match="the torque on driven depends on the angle"):
+        steady_state(uneven)
+
+
+def test_the_belt_wears_evenly(run: Run) -> None:
+    work = run.dataset.friction_work_on_belt.isel(field_time=-1).sum("pulley").values
+    coordinates = run.dataset.element_coordinate.values
+    nodes = run.dataset.node_coordinate.values
+    lengths = 2.0 * (coordinates - nodes)
+    np.testing.assert_allclose(work / lengths, np.full(work.size, work.sum() / lengths.sum()), rtol=1e-6)
 
 
 def test_drives_that_cannot_run_steadily(loaded: Drive) -> None:
