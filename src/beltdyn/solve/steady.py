@@ -90,9 +90,10 @@ def steady_state(
     )
     title = f"Belt drive in steady running, as at {instant:g} s"
     with Recording(shown, search.constant, None, title, None) as recording:
-        recording.start(shown, search.constant, ())
+        recording.start(rest.drive, search.constant, ())
         recording.take(_running(search.constant, search.state, duration))
         recording.note(
+            drive_as_given=drive.text,
             steady_at=instant,
             wall_time=time.perf_counter() - begun,
             **search.friction_band(rest.system.tensioners),

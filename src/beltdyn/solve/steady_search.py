@@ -26,6 +26,8 @@ _MOST = 25
 _SHORTEST = 1e-3
 """Part of a way, below which there is no going on."""
 _FIRST_LOAD = 0.05
+_PUSHES = (0.25, 0.5, 0.75, 1.0)
+"""Parts of the dry friction of tensioners on the way to the ends of their bands."""
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
@@ -147,13 +149,17 @@ class SteadySearch:
             friction = dry_friction_of(tensioners, f"{name}_friction")
             self.state = State(place.position.copy(), place.velocity.copy(), place.acceleration)
             speed = self.belt_parameter
-            own[:] = given + sense * friction
-            if np.any(friction) and self._try(self.setting):
+            if np.any(friction) and all(self._pushed(own, given + part * sense * friction) for part in _PUSHES):
                 count = self.state.position.size
                 found[f"tensioner_position_after_{name}"] = self.state.position[count - friction.size :].copy()
             self.constant.frame.speed[0] = speed
         own[:], self.state = given, place
         return found
+
+    def _pushed(self, own: FloatArray, push: FloatArray) -> bool:
+        """Whether there is steady running with other forces on the tensioners."""
+        own[:] = push
+        return self._try(self.setting)
 
     def _gentle(self, speed: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""

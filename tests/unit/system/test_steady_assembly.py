@@ -41,8 +41,9 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
     """Along any direction of all unknowns, in contact that damps, creeps and slides, to the floor of differences."""
     drive = with_machines(tensioner)
     drive = drive.replace(belt=drive.belt.replace(**losses))
-    if law == "coefficient_slope":
-        contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law, "creep_velocity": 0.5}
+    if law != "force_slope":
+        own = {"coefficient_slope": {"creep_velocity": 0.5}, "relative_creep": {"creep_ratio": 0.15}}[law]
+        contact = drive.contact.model_dump(exclude_none=True) | {"friction_law": law} | own
         contact.pop("creep_rate_factor")
         drive = drive.replace(contact=contact)
     base = staying_system(drive, np.full(16, drive.belt_length / 16))
