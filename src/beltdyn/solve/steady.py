@@ -4,10 +4,7 @@ import time
 
 import numpy as np
 
-from beltdyn.elements.quintic import QUINTIC
 from beltdyn.errors import ModelError
-from beltdyn.kernel import interpreted
-from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive
 from beltdyn.results import MESH_ERROR, Run
 from beltdyn.solve.progress import Progress, Report
@@ -21,10 +18,6 @@ from beltdyn.system.constant_drive import twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
-_ANGLES = np.linspace(0.0, 12.0, 25)
-"""Angles at which torques on shafts are compared, rad."""
-_EVEN = 1e-9
-"""Difference of such torques that is rounding, relative."""
 _TURNS = 2.2
 """Turns of the belt in the results; means are taken over the last one."""
 
@@ -81,7 +74,6 @@ def steady_state(
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     rest = bring_to_stand(drive, elements)
     search, begun = SteadySearch(rest, instant), time.perf_counter()
-    _require_even_torques(rest.drive, search.constant)
     search.run()
     errors = refine(search, rest, force_tolerance, elements)
     duration = _TURNS * rest.drive.belt_length / abs(search.belt_parameter)
@@ -129,35 +121,10 @@ def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) 
             "steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor as "
             "`speed`, or simulate the drive with `beltdyn run`."
         )
-    belt = drive.belt
-    if max(belt.stretch_damping_time, belt.bending_damping_time) > 0.0 and not QUINTIC.is_damped:
-        raise ModelError(
-            "steady running does not know the damping of the belt's material: belt.stretch_damping_time = "
-            f"{belt.stretch_damping_time:g} s, belt.bending_damping_time = {belt.bending_damping_time:g} s. Set both "
-            "to zero, or simulate the drive with `beltdyn run`."
-        )
     if not 0.0 < force_tolerance < 1.0:
         raise ModelError(f"force_tolerance = {force_tolerance:g} must lie between 0 and 1, such as 0.01 for 1 %.")
     if elements is not None and elements < 3:
         raise ModelError(f"elements = {elements} must be 3 or more. Leave it out for a graded mesh.")
-
-
-def _require_even_torques(drive: Drive, system: System) -> None:
-    """Make sure that no torque depends on the angle of its shaft, but by harmonics, which have a mean of zero.
-
-    Raises
-    ------
-    ModelError
-        If one does.
-    """
-    torque = interpreted(shaft_torque)
-    for p, pulley in enumerate(drive.pulleys):
-        seen = [torque(system.profiles, system.shaft_loads, p, 0.0, angle, 1.0).torque for angle in _ANGLES]
-        if np.ptp(seen) > _EVEN * np.max(np.abs(seen)):
-            raise ModelError(
-                f"the torque on {pulley.name} depends on the angle of its shaft, so that it does not run steadily. "
-                "Give its mean over a turn in its place, or simulate the drive with `beltdyn run`."
-            )
 
 
 def _running(system: System, state: State, duration: float) -> Chunk:

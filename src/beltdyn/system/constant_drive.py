@@ -131,7 +131,7 @@ def guess_hubs(system: System, velocity: FloatArray) -> None:
     velocity : ndarray, shape (n N + D,)
         With the speeds of the rims; those of hub bodies are overwritten.
     """
-    first, torque = system.first_body, interpreted(shaft_torque)
+    first, torque, states = system.first_body, interpreted(shaft_torque), np.zeros(system.bodies.size)
     pulley, rigid = rim_of_bodies(system), rigid_links(system)
     shafts = system.pulleys.shaft
     for link, stiff in zip(system.links, rigid, strict=True):
@@ -143,7 +143,7 @@ def guess_hubs(system: System, velocity: FloatArray) -> None:
 
         def balance(part: float, link: np.record = link, rim: float = rim, p: int = p) -> float:
             driven = interpreted(link_torque)(system.profiles, link, 0.0, 0.0, (1.0 - part) * rim).torque
-            return float(driven + torque(system.profiles, system.shaft_loads, p, 0.0, 0.0, part * rim).torque)
+            return float(driven + torque(system.profiles, system.shaft_loads, p, 0.0, 0.0, part * rim, states).torque)
 
         if balance(1.0) != 0.0 and balance(0.0) * balance(1.0) <= 0.0:
             velocity[first + link.back] = rim * bisect(balance, 0.0, 1.0)

@@ -33,6 +33,7 @@ def residual(system: System, state: State, anchor: Anchor, work: SteadyWork, wan
     ("law", "losses"),
     [
         ("force_slope", {}),
+        ("relative_creep", {}),
         ("coefficient_slope", {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}),
         ("force_slope", {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}),
     ],
