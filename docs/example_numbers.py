@@ -78,6 +78,49 @@ def unequal_radii(run: Run) -> Iterator[Number]:
     yield from slip_and_efficiency(run, 0.05)
 
 
+def fan_direct_start(run: Run) -> Iterator[Number]:
+    """The run-up is that of one inertia under the motor's curve, made of its catalogue, and the fan's parabola."""
+    (motor, fan), summary = run.drive.pulleys, summarize(run)
+    ratio = float(run.drive.radii[0] / run.drive.radii[1])
+    rated, synchronous = 15e3 / (1465.0 * RPM), 1500.0 * RPM
+    breakdown = (1.0 - 1465.0 / 1500.0) * (3.0 + sqrt(8.0))
+    inertia = motor.inertia + fan.inertia * ratio**2
+
+    def driving(speed: float) -> float:
+        slip = 1.0 - speed / synchronous
+        if slip <= breakdown:
+            return rated * 2.0 * 3.0 / (slip / breakdown + breakdown / slip)
+        edges, levels = (breakdown, 6.0 / 7.0, 1.0), (3.0, 1.9, 2.4)
+        k = int(slip > edges[1])
+        part = (slip - edges[k]) / (edges[k + 1] - edges[k])
+        return rated * (levels[k] + (levels[k + 1] - levels[k]) * part**2 * (3.0 - 2.0 * part))
+
+    def braking(speed: float) -> float:
+        share = speed / (1160.0 * RPM)
+        return 14e3 / (1160.0 * RPM) * (0.02 * tanh(speed / 0.1) + 0.98 * share**2)
+
+    def rates(time: float, state: FloatArray) -> list[float]:
+        schedule = min(max((time - 0.02) / 0.06, 0.0), 1.0)
+        torque = 0.5 * (1.0 - cos(pi * schedule)) * driving(state[0]) - ratio * braking(ratio * state[0])
+        return [torque / inertia]
+
+    lumped = solve_ivp(rates, (0.0, 1.5), [0.0], method="LSODA", rtol=1e-8, dense_output=True, max_step=1e-3)
+    times, mark = run.dataset["time"].values, 1100.0 * RPM
+    by_hand = float(np.interp(mark, ratio * lumped.y[0], lumped.t))
+    found = float(np.interp(mark, np.maximum.accumulate(speed_of(run, "fan")), times))
+    steady = brentq(lambda w: driving(w) - ratio * braking(ratio * w * (1.0 - creep(run))), 1400.0 * RPM, 1499.0 * RPM)
+    largest = float(run.dataset["shaft_torque"].values[:, 0].max())
+    yield Number("largest torque of the motor, N m", 3.0 * rated, largest, 0.5)
+    yield Number("time at which the fan reaches 1100 rpm, s", by_hand, found, 0.02 * by_hand)
+    yield Number("motor, rpm", steady / RPM, summary.pulleys[0].speed / RPM, 1.0)
+    yield Number("fan, rpm", steady * ratio * (1.0 - creep(run)) / RPM, summary.pulleys[1].speed / RPM, 1.5)
+    yield Number("torque of the motor, N m", driving(steady), summary.pulleys[0].shaft_torque, 0.5)
+    force = driving(steady) / float(run.drive.radii[0])
+    tight, slack = (summary.spans[k].tension for k in (1, 0))
+    yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
+    yield from slip_and_efficiency(run, 0.1)
+
+
 def crossed_belt_drive(run: Run) -> Iterator[Number]:
     """The lathe turns the other way; both pulleys have the same wrap."""
     (first, second), summary = run.drive.pulleys, summarize(run)

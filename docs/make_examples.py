@@ -45,6 +45,9 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
     {
         "two_pulley": Example(("speeds", "span_tensions", "contact_forces"), by_hand.two_pulley),
         "unequal_radii": Example(("speeds", "torques", "slip", "capstan_margins"), by_hand.unequal_radii),
+        "fan_direct_start": Example(
+            ("speeds", "torques", "span_tensions", "capstan_margins"), by_hand.fan_direct_start
+        ),
         "crossed_belt": Example(("configuration", "speeds", "slip"), by_hand.crossed_belt_drive),
         "washing_machine": Example(
             ("speeds", "span_tensions", "capstan_margins"), by_hand.washing_machine, by_hand.slip_on_a_small_pulley

@@ -22,7 +22,7 @@ def new(
         The drive file to write, by default drive.toml, or the example's name with .toml; it must not exist yet.
     example
         Write an example in place of the plain two-pulley drive: accessory_drive, band_brake, crossed_belt,
-        flat_belt_idler, slip_through, two_pulley, unequal_radii or washing_machine.
+        fan_direct_start, flat_belt_idler, slip_through, two_pulley, unequal_radii or washing_machine.
     """
     source = files("beltdyn.cli").joinpath("new_drive.toml") if example is None else _example(example)
     target = file or Path("drive.toml" if example is None else source.name)
