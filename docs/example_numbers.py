@@ -108,17 +108,18 @@ def fan_direct_start(run: Run) -> Iterator[Number]:
     times, mark = run.dataset["time"].values, 1100.0 * RPM
     by_hand = float(np.interp(mark, ratio * lumped.y[0], lumped.t))
     found = float(np.interp(mark, np.maximum.accumulate(speed_of(run, "fan")), times))
-    steady = brentq(lambda w: driving(w) - ratio * braking(ratio * w * (1.0 - creep(run))), 1400.0 * RPM, 1499.0 * RPM)
+    tight, slack = (summary.spans[k].tension for k in (1, 0))
+    loss = (tight - slack) / run.drive.belt.axial_stiffness
+    steady = brentq(lambda w: driving(w) - ratio * braking(ratio * w * (1.0 - loss)), 1400.0 * RPM, 1499.0 * RPM)
     largest = float(run.dataset["shaft_torque"].values[:, 0].max())
     yield Number("largest torque of the motor, N m", 3.0 * rated, largest, 0.5)
     yield Number("time at which the fan reaches 1100 rpm, s", by_hand, found, 0.02 * by_hand)
     yield Number("motor, rpm", steady / RPM, summary.pulleys[0].speed / RPM, 1.0)
-    yield Number("fan, rpm", steady * ratio * (1.0 - creep(run)) / RPM, summary.pulleys[1].speed / RPM, 1.5)
+    yield Number("fan, rpm", steady * ratio * (1.0 - loss) / RPM, summary.pulleys[1].speed / RPM, 1.5)
     yield Number("torque of the motor, N m", driving(steady), summary.pulleys[0].shaft_torque, 0.5)
     force = driving(steady) / float(run.drive.radii[0])
-    tight, slack = (summary.spans[k].tension for k in (1, 0))
     yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
-    yield from slip_and_efficiency(run, 0.1)
+    yield Number("slip, %", 100.0 * loss, 100.0 * summary.pulleys[1].slip, 5.0 * loss)
 
 
 def crossed_belt_drive(run: Run) -> Iterator[Number]:
