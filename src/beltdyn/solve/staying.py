@@ -52,10 +52,12 @@ class Standing(NamedTuple):
     """Length of the layers at the ends of arcs, m."""
     fineness: float
     """Of its graded mesh."""
+    span: int
+    """In the middle of which the belt's coordinate begins."""
 
 
 class Laid(NamedTuple):
-    """A belt laid on the path of a drive; its coordinate is zero in the middle of the longest span."""
+    """A belt laid on the path of a drive; its coordinate is zero in the middle of a span."""
 
     path: Path
     start: float
@@ -64,10 +66,9 @@ class Laid(NamedTuple):
     """Length of the path over that of the belt."""
 
     @classmethod
-    def on(cls, path: Path, length: float) -> "Laid":
-        """Lay a belt of an unstretched length (m) on a path."""
-        longest = int(np.argmax(path.span_lengths))
-        return cls(path, path.span_start(longest) + 0.5 * float(path.span_lengths[longest]), path.length / length)
+    def on(cls, path: Path, length: float, span: int) -> "Laid":
+        """Lay a belt of an unstretched length (m) on a path, from the middle of a span on."""
+        return cls(path, path.span_start(span) + 0.5 * float(path.span_lengths[span]), path.length / length)
 
     def arcs(self) -> list[Arc]:
         """Where the belt lies on pulleys, in the order in which they follow each other along the belt."""
@@ -118,8 +119,7 @@ def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
     while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
         finer = stand(drive, fineness=FINER * rest.fineness)
         change, rest = abs(finer.tension / rest.tension - 1.0), finer
-    shares = rest.system.length / rest.system.length.sum()  # on meshes of its own each length would have its error
-    return tighten(rest, wanted, lambda other: stand(other, fineness=rest.fineness, shares=shares))
+    return tighten(rest, wanted, lambda other: stand(other, like=rest))  # other meshes would have other errors
 
 
 def stand(
@@ -127,7 +127,7 @@ def stand(
     elements: int | None = None,
     *,
     fineness: float = FIRST_FINENESS,
-    shares: FloatArray | None = None,
+    like: Standing | None = None,
 ) -> Standing:
     """Find the equilibrium at rest, without friction, of a drive with the length that it has.
 
@@ -141,8 +141,8 @@ def stand(
         Number of equal elements; by default the mesh is graded.
     fineness
         Of a graded mesh.
-    shares : ndarray, shape (elements,), optional
-        Lengths of the elements, over that of the belt, if they are known.
+    like
+        The drive with another length, of which the mesh is taken in proportion.
 
     Raises
     ------
@@ -151,20 +151,22 @@ def stand(
     """
     installation = install(drive)
     layer = layer_length(*layer_lengths(drive, installation.tension))
-    if shares is not None:
-        lengths = shares * drive.belt_length
+    span = int(np.argmax(installation.path.span_lengths))
+    if like is not None:  # of spans of one length rounding would choose another
+        fineness, span = like.fineness, like.span
+        lengths = like.system.length * (drive.belt_length / like.drive.belt_length)
     elif elements is not None:
         lengths = np.full(elements, drive.belt_length / elements)
     else:
-        arcs = Laid.on(installation.path, drive.belt_length).arcs()
+        arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
         lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
     system = staying_system(drive, lengths)
     for way in ((1.0,), _STIFFER_FIRST, _SOFTER_FIRST):
-        state = _lying(drive, system, installation, way[0])
+        state = _lying(drive, system, installation, span, way[0])
         anchor = anchor_at(system, state, True)
         if all(_balance(drive, system, state, anchor, factor) for factor in way):
             tension = looked_at(drive, system, state).tension
-            return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
+            return Standing(drive, system, state, state.position.copy(), tension, layer, fineness, span)
     raise ConvergenceError(
         f"no equilibrium at rest found on a mesh of {system.nodes} elements. Check tension and stiffness of contact "
         "with `beltdyn check`."
@@ -188,12 +190,12 @@ def without_friction(system: System) -> System:
     return system._replace(pulleys=pulleys, bodies=bodies)
 
 
-def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
+def _lying(drive: Drive, system: System, installation: Installation, span: int, factor: float) -> State:
     """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
     path = installation.path
     depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
     drawn_in = Path(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
-    return Laid.on(drawn_in, drive.belt_length).state(system, installation.tensioner_positions)
+    return Laid.on(drawn_in, drive.belt_length, span).state(system, installation.tensioner_positions)
 
 
 def found_arcs(system: System, state: State) -> list[Arc]:

@@ -26,6 +26,8 @@ _MOST = 25
 _SHORTEST = 1e-3
 """Part of a way, below which there is no going on."""
 _FIRST_LOAD = 0.05
+_SOFT = 0.05
+"""Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
 _PUSHES = (0.25, 0.5, 0.75, 1.0)
 """Parts of the dry friction of tensioners on the way to the ends of their bands."""
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
@@ -44,6 +46,8 @@ class Setting(NamedTuple):
     """Factor on the slip velocity at which friction is fully used."""
     support: float = 0.0
     """Part of the torque that keeps a motor at the speed at which it was held."""
+    stretch_length: float = 1.0
+    """Factor on the length over which hysteresis smoothes slow changes of the stretch; small, it is viscous damping."""
 
 
 class SteadySearch:
@@ -116,6 +120,9 @@ class SteadySearch:
     def move_to(self, system: System) -> None:
         """Go on to another mesh of the same drive.
 
+        A small element has little between damping in proportion to the rate of its stretch and full hysteresis, and the
+        rate of a transferred curve is far off there. So damping comes first.
+
         Raises
         ------
         ConvergenceError
@@ -123,7 +130,8 @@ class SteadySearch:
         """
         self.state = transfer(self.constant, self.state, system)
         self._work_on(system)
-        if not self._try(self.setting):
+        target = self.setting
+        if not (self._try(target._replace(stretch_length=_SOFT)) and self._reach(target)):
             raise ConvergenceError(
                 f"steady running not found on a mesh of {system.nodes} elements, though on a coarser one. Raise "
                 "force_tolerance."
@@ -178,7 +186,13 @@ class SteadySearch:
         return self._try(setting)
 
     def _follow(self, target: Setting) -> None:
-        """Go on to another setting."""
+        """Go on to another setting, or say why that is not possible."""
+        if not self._reach(target):
+            seen = slips_through(self.drive, self.constant, self.state, self.setting.load)
+            raise ConvergenceError(f"no steady running at t = {self._time:g} s: {seen}")
+
+    def _reach(self, target: Setting) -> bool:
+        """Go on to another setting; False if the way ends before."""
         begin, reached, step = self.setting, 0.0, 1.0
         while reached < 1.0:
             ahead = min(1.0, reached + step)
@@ -187,8 +201,8 @@ class SteadySearch:
                 continue
             step = 0.5 * (ahead - reached)
             if step < _SHORTEST:
-                seen = slips_through(self.drive, self.constant, self.state, self.setting.load)
-                raise ConvergenceError(f"no steady running at t = {self._time:g} s: {seen}")
+                return False
+        return True
 
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
@@ -229,13 +243,18 @@ class SteadySearch:
         offset[system.shaft_loads.table.schedule[:-1]] *= setting.load
         if self._supported is not None:
             offset[self._supported] += setting.support * self._support
-        friction = system.law.friction.smoothed(setting.smoothing)
-        return system._replace(law=system.law._replace(friction=friction))
+        friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
+        hysteresis["stretch_length"] *= setting.stretch_length
+        return system._replace(law=system.law._replace(friction=friction), hysteresis=hysteresis)
 
 
 def _between(begin: Setting, end: Setting, part: float) -> Setting:
-    """A setting on the way from one to another, on which the smoothing changes by equal factors."""
+    """A setting on the way from one to another, on which what smoothes changes by equal factors."""
     if part == 1.0:
         return end
     even = Setting(*(a + part * (b - a) for a, b in zip(begin, end, strict=True)))
-    return even._replace(smoothing=begin.smoothing ** (1.0 - part) * end.smoothing**part)
+    smooth = {
+        name: getattr(begin, name) ** (1.0 - part) * getattr(end, name) ** part
+        for name in ("smoothing", "stretch_length")
+    }
+    return even._replace(**smooth)

@@ -11,7 +11,7 @@ from beltdyn.system.centreline import centreline_points
 
 def test_arcs_of_a_laid_belt(drive: Drive) -> None:
     """Half circles of equal pulleys, with node zero in the middle of a span."""
-    laid = Laid.on(drive.path, drive.belt_length)
+    laid = Laid.on(drive.path, drive.belt_length, 0)
     span, arc = drive.path.span_lengths[0] / laid.stretch, np.pi * drive.radii[0] / laid.stretch
     expected = [(0.5 * span, 0.5 * span + arc), (1.5 * span + arc, 1.5 * span + 2.0 * arc)]
     np.testing.assert_allclose([one[:2] for one in laid.arcs()], expected)
@@ -20,6 +20,18 @@ def test_arcs_of_a_laid_belt(drive: Drive) -> None:
 def test_at_rest_the_tension_is_the_one_asked_for(drive: Drive) -> None:
     wanted = drive.replace(belt=drive.belt.replace(installed_tension=100.0))
     assert bring_to_stand(wanted).tension == pytest.approx(100.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("span", [0, 1])
+def test_a_mesh_is_laid_from_the_span_that_it_was_made_for(drive: Drive, span: int) -> None:
+    """Of two equal spans rounding chooses the longest; the mesh of a small and a large pulley must not turn with it."""
+    small, large = drive.pulleys
+    unequal = drive.replace(pulley=[small, large.replace(radius=1.3 * large.radius)])
+    rest = stand(unequal, like=stand(unequal, 60)._replace(span=span))
+    found, laid = found_arcs(rest.system, rest.state), Laid.on(unequal.path, unequal.belt_length, span).arcs()
+    assert rest.span == span
+    assert found[0].radius == pytest.approx(unequal.radii[1 - span])
+    np.testing.assert_allclose(found, laid, atol=0.02)
 
 
 def test_graded_and_fine_meshes_have_the_same_equilibrium(drive: Drive) -> None:
@@ -31,7 +43,7 @@ def test_graded_and_fine_meshes_have_the_same_equilibrium(drive: Drive) -> None:
 
 def test_the_belt_touches_where_it_was_laid(drive: Drive) -> None:
     rest = stand(drive)
-    found, laid = found_arcs(rest.system, rest.state), Laid.on(drive.path, drive.belt_length).arcs()
+    found, laid = found_arcs(rest.system, rest.state), Laid.on(drive.path, drive.belt_length, 0).arcs()
     np.testing.assert_allclose([one[:2] for one in found], [one[:2] for one in laid], atol=0.02)
 
 

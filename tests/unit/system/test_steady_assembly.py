@@ -51,7 +51,7 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
     system = with_speeds_unknown(constant_drive(base, 0.3))
     random = np.random.default_rng(5)
     drawn_in = Path(drive.path.centers, drive.path.radii - 1e-3 * np.sign(drive.path.radii))
-    state = Laid.on(drawn_in, drive.belt_length).state(system, np.array([2e-3]))
+    state = Laid.on(drawn_in, drive.belt_length, 0).state(system, np.array([2e-3]))
     state.position[: system.first_body] += 2e-4 * random.normal(size=system.first_body)
     system.frame.speed[0] = SPEED
     bodies = slice(system.first_body, system.first_body + system.bodies.size - 1)
