@@ -1,5 +1,6 @@
 """Quadrature on the unit interval."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -28,8 +29,15 @@ def gauss_points(count: int) -> Quadrature:
     Quadrature
         Arrays of shape (count,), dimensionless; the weights add up to 1.
     """
-    points, weights = leggauss(count)
+    points, weights = _legendre(count)
     return Quadrature(0.5 * (points + 1.0), 0.5 * weights)
+
+
+@cache
+def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
+    """Points and weights on [-1, 1]; roots that every element asks for."""
+    points, weights = leggauss(count)
+    return points, weights
 
 
 def lobatto_points(count: int) -> Quadrature:

@@ -22,6 +22,8 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Simulation
+from beltdyn.model.static_estimate import StaticEstimate
+from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Acceleration
@@ -178,6 +180,11 @@ class Drive(Part):
     def carriers(self) -> list[Carrier]:
         """The same with the pulleys that they carry."""
         return carriers_of(self.tensioners, [pulley.name for pulley in self.pulleys], self.path)
+
+    @cached_property
+    def balance(self) -> tuple[StaticEstimate, FloatArray]:
+        """Estimate of the belt at rest, and where springs hold the tensioners; see `balance_tensioners`."""
+        return balance_tensioners(self.path, self.loaded_belt, self.completed.contact, self.carriers)
 
     def carried(self, tensioner: Tensioner) -> int:
         """Tell the number of the pulley that a tensioner carries."""

@@ -8,7 +8,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.carrier import moved
 from beltdyn.model.drive import Drive
 from beltdyn.model.path import Path
-from beltdyn.model.tensioner_balance import TensionerBalance, all_balances, balance_tensioners
+from beltdyn.model.tensioner_balance import TensionerBalance, all_balances
 from beltdyn.theory.sagging_span import lowest_frequency, sag_parameter
 
 
@@ -68,12 +68,11 @@ def install(drive: Drive) -> Installation:
     >>> round(bd.install(drive).tension, 1)  # N
     26.6
     """
-    belt, contact = drive.loaded_belt, drive.completed.contact
-    estimate, positions = balance_tensioners(drive.path, belt, contact, drive.carriers)
+    estimate, positions = drive.balance
     path = estimate.path
     turned = path.span_directions[: path.count] - np.roll(path.span_directions, 1, axis=0)[: path.count]
     tensions = np.full(path.spans, estimate.tension)
-    return describe(drive, tensions, estimate.penetrations, estimate.tension * turned, positions)
+    return describe(drive, tensions, estimate.penetrations.copy(), estimate.tension * turned, positions.copy())
 
 
 def describe(

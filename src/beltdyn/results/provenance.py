@@ -2,6 +2,7 @@
 
 import platform
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 
 from beltdyn.analyses import RUN
@@ -28,13 +29,18 @@ def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
         ``title``, ``kind``, ``drive``, ``format`` (version of the result file), ``beltdyn_version``, ``numba_version``,
         ``numpy_version``, ``scipy_version``, ``python_version`` and ``created`` (ISO 8601, UTC).
     """
-    versions = {f"{package}_version": version(package) for package in _PACKAGES}
     return {
         "title": title,
         "kind": kind,
         "drive": drive_text,
         "format": ".".join(map(str, FORMAT)),
-        **versions,
+        **_versions(),
         "python_version": platform.python_version(),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
     }
+
+
+@cache
+def _versions() -> dict[str, str]:
+    """Of the packages that results depend on; finding them takes milliseconds."""
+    return {f"{package}_version": version(package) for package in _PACKAGES}
