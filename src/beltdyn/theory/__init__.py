@@ -9,6 +9,7 @@ __getattr__, __dir__, __all__ = lazy_loader.attach(
         "creep",
         "elastic_creep",
         "hoop",
+        "hysteresis",
         "path",
         "running_drive",
         "sagging_span",
