@@ -190,7 +190,7 @@ def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     if not installation.tension > 0:
         return []
     running = Running(installation.tension)
-    return unresolved(mesh_errors(drive, running, drive.elements), elements_needed(drive, running))
+    return unresolved(drive.belt, mesh_errors(drive, running, drive.elements), elements_needed(drive, running))
 
 
 def describe_time(drive: Drive) -> str:

@@ -14,7 +14,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.resolution import Running, fewest
+from beltdyn.model.resolution import PRESSURES, Running, elements_needed, fewest
 
 TENSION_LOST = 0.005
 """Part of the tension that penetration may take."""
@@ -153,4 +153,6 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
         if number == FEWEST
         else f"no more; {needed[name]} would resolve {name}"
     )
-    return Choice("belt.elements", number, "", reason)
+    finer = max(elements_needed(belt, Running(tension))[name] for name in PRESSURES)
+    more = f"; contact pressures need {finer}" if finer > number else ""
+    return Choice("belt.elements", number, "", reason + more)

@@ -30,6 +30,9 @@ ERROR_LIMITS: Mapping[str, float] = MappingProxyType(
 )
 """What the mesh may spoil, and the largest error, over the quantity itself, of a mesh that resolves it."""
 
+PRESSURES = ("mean pressure", "peak pressure")
+"""Those that a number of elements that the drive chooses need not resolve."""
+
 _TENSION, _MEAN, _PEAK, _SLIP, _LOSSES = 2e-4, 2e-4, 1.2e-3, 3e-3, 1e-2
 _SURE = 2.0
 """Estimates of which an error is hardly ever more."""
@@ -152,17 +155,20 @@ def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
     return many
 
 
-def unresolved(errors: Mapping[str, float], needed: Mapping[str, int]) -> list[Finding]:
+def unresolved(belt: Belt, errors: Mapping[str, float], needed: Mapping[str, int]) -> list[Finding]:
     """Say what a mesh does not resolve, and which ones would; nothing if it resolves all.
 
     Parameters
     ----------
+    belt
+        As given; where it leaves the number of elements open, pressures are not asked for.
     errors
         Result of `mesh_errors`; an error that is not known, NaN, counts as resolved.
     needed
         Result of `elements_needed`.
     """
-    names = sorted((name for name in errors if errors[name] > ERROR_LIMITS[name]), key=lambda name: -needed[name])
+    asked = ERROR_LIMITS if belt.elements is not None else ERROR_LIMITS.keys() - PRESSURES
+    names = sorted((name for name in asked if errors[name] > ERROR_LIMITS[name]), key=lambda name: -needed[name])
     if not names:
         return []
     most, *fewer = names

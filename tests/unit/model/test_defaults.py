@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from beltdyn.model import Belt, Contact, Drive, dumps, install, loads, mesh_errors
+from beltdyn.model import Belt, Contact, Drive, advise, dumps, install, loads, mesh_errors
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.resolution import Running
 
@@ -116,6 +116,17 @@ def test_the_mesh_resolves_tension_and_slip() -> None:
     assert errors["tension"] <= 0.005
     assert errors["slip"] <= 0.015
     assert coarser["tension"] > 0.005 or coarser["slip"] > 0.015
+
+
+def test_it_is_told_which_mesh_resolves_pressures() -> None:
+    given = drive()
+    (reason,) = (choice.reason for choice in given.completed.choices if choice.key == "belt.elements")
+    finer = int(reason.rpartition("contact pressures need ")[2])
+    assert finer > given.elements
+    assert advise(given, install(given)) == []
+    (finding,) = advise(drive({"elements": given.elements}), install(given))
+    assert f"Set belt.elements = {finer} for all of that" in str(finding)
+    assert advise(drive({"elements": finer}), install(given)) == []
 
 
 def test_a_settled_drive_keeps_what_was_chosen() -> None:

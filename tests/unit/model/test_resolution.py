@@ -53,10 +53,12 @@ def test_a_link_counts_as_the_element_that_misses_the_circle_as_much(drive: Driv
         assert angles**4 / 384 == pytest.approx(link**2 / 8)
 
 
-def test_said_are_errors_and_meshes_from_the_most_demanding_on() -> None:
+def test_said_are_errors_and_meshes_from_the_most_demanding_on(drive: Drive) -> None:
     errors = dict.fromkeys(ERROR_LIMITS, 0.0) | {"tension": 0.123, "peak pressure": 2.0, "losses": float("nan")}
     needed = dict.fromkeys(ERROR_LIMITS, 20) | {"tension": 47, "peak pressure": 90}
-    (finding,) = unresolved(errors, needed)
+    (finding,) = unresolved(drive.belt.replace(elements=20), errors, needed)
     assert finding.fault == "the belt has too few elements for peak pressure (over 100%) and tension (12%)."
     assert finding.remedy == "Set belt.elements = 90 for all of that, or 47 for all but peak pressure."
-    assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed) == []
+    (of_tension,) = unresolved(drive.belt.replace(elements=None), errors, needed)
+    assert of_tension.fault == "the belt has too few elements for tension (12%)."
+    assert unresolved(drive.belt, dict.fromkeys(ERROR_LIMITS, 0.0), needed) == []

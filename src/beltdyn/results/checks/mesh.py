@@ -19,4 +19,4 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
             "Leave `elements` out for a graded mesh, or lower `force_tolerance`.",
         )
     if not found:
-        yield from unresolved(evidence.resolution.errors, evidence.resolution.needed)
+        yield from unresolved(evidence.drive.belt, evidence.resolution.errors, evidence.resolution.needed)
