@@ -50,7 +50,7 @@ class ErrorLocation:
             if isinstance(step, str) and step in schema.get("discriminator", {}).get("mapping", {}):
                 schema = self._resolve({"$ref": schema["discriminator"]["mapping"][step]})
                 continue
-            data = _item(data, step)
+            data, schema = _item(data, step), self._option(schema, step)
             if isinstance(step, int):
                 path += f"[{entry_name(data) or step + 1}]"
                 entries = schema.get("prefixItems") or [schema.get("items", {})]
@@ -67,6 +67,14 @@ class ErrorLocation:
     def kinds(self, location: tuple[int | str, ...]) -> list[str]:
         """List the kinds of what may stand at a location."""
         return list(self.locate(location)[1].get("discriminator", {}).get("mapping", {}))
+
+    def _option(self, schema: dict[str, Any], step: int | str) -> dict[str, Any]:
+        """The first of several options that has entries for a position, or the key."""
+        options = [self._resolve(option) for option in schema.get("anyOf", [])]
+        for option in options:
+            if ("items" in option) if isinstance(step, int) else (step in option.get("properties", {})):
+                return {"description": schema.get("description", "")} | option
+        return schema
 
     def _resolve(self, schema: dict[str, Any]) -> dict[str, Any]:
         """Replace a reference by what it refers to, and an optional value by the value."""

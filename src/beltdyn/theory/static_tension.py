@@ -72,7 +72,7 @@ def static_tension(
     >>> from beltdyn.stretch import Linear
     >>> from beltdyn.theory.static_tension import static_tension
     >>> round(static_tension(1.295, 0.4, (0.08, 0.08), law=Linear(1e4), contact_stiffness=1e8).tension, 2)
-    59.27
+    58.75
     """
     from scipy.optimize import brentq
 

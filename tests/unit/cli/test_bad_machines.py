@@ -151,8 +151,11 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
 
 TENSIONERS: dict[str, tuple[str, tuple[str, ...]]] = {
     # all kinds
-    "no kind": (SLIDING.replace('kind = "sliding"\n', ""), ("tensioner[1]", "has no kind", "fixed, rotary, sliding")),
-    "misspelled kind": (SLIDING.replace('"sliding"', '"slide"'), ("tensioner[1].kind", 'Did you mean "sliding"?')),
+    "no kind": (
+        SLIDING.replace('kind = "sliding"\n', ""),
+        ("tensioner[driven]", "has no kind", "rotary, sliding"),
+    ),
+    "misspelled kind": (SLIDING.replace('"sliding"', '"slide"'), ("tensioner[driven].kind", 'Did you mean "sliding"?')),
     "unknown pulley": (
         SLIDING.replace('"driven"', '"idler"'),
         ('tensioner[1].pulley = "idler" is not the name of a pulley', "driver, driven"),
@@ -160,43 +163,49 @@ TENSIONERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "no pulley": (FIXED.replace('pulley = "driven"\n', ""), ("tensioner[1].pulley is missing",)),
     "two of one pulley": (SLIDING + ROTARY, ('pulley "driven" is carried by 2 tensioners', "Remove the others")),
     "no list": (MAP, ("must be a list", "[[tensioner]]")),
-    "key of another kind": (f"{SLIDING}pivot = [0, 0]", ("tensioner[1].pivot is not a known key", "direction")),
+    "key of another kind": (f"{SLIDING}pivot = [0, 0]", ("tensioner[driven].pivot is not a known key", "direction")),
     # fixed
-    "fixed without direction": (FIXED.replace("direction = [1, 0]\n", ""), ("tensioner[1].direction is missing",)),
-    "take-up in N": (f'{FIXED}take_up = "1 N"', ("tensioner[1].take_up", "must be in units of m")),
+    "fixed without direction": (FIXED.replace("direction = [1, 0]\n", ""), ("tensioner[driven].direction is missing",)),
+    "take-up in N": (f'{FIXED}take_up = "1 N"', ("tensioner[driven].take_up", "must be in units of m")),
     "take-up that slackens": (f'{FIXED}take_up = "-5 mm"', ("would hang slack", "Shorten it, or move the pulleys")),
     # sliding
     "no direction at all": (SLIDING.replace("[1, 0]", "[0, 0]"), ("points nowhere", "Give the direction")),
-    "direction in space": (SLIDING.replace("[1, 0]", "[1, 0, 0]"), ("tensioner[1].direction", "more than 2 entries")),
+    "direction in space": (
+        SLIDING.replace("[1, 0]", "[1, 0, 0]"),
+        ("[driven].direction", "more than 2 entries"),
+    ),
     "direction inwards": (SLIDING.replace("[1, 0]", "[-1, 0]"), ("cannot tension the belt", "Choose a direction")),
-    "no preload": (SLIDING.replace("preload = 100\n", ""), ("tensioner[1].preload is missing", "force of the spring")),
-    "preload in N m": (SLIDING.replace("100", '"5 N m"'), ("tensioner[1].preload", 'units of N, not "N m"')),
+    "no preload": (
+        SLIDING.replace("preload = 100\n", ""),
+        ("[driven].preload is missing", "force of the spring"),
+    ),
+    "preload in N m": (SLIDING.replace("100", '"5 N m"'), ("tensioner[driven].preload", 'units of N, not "N m"')),
     "preload that pulls": (SLIDING.replace("100", "-100"), ('pushes the tensioner of "driven" away', "raise the prel")),
     "no preload to hold": (SLIDING.replace("100", "0"), ("where its tensioners put them", "or raise the preload")),
     "preload without end": (SLIDING.replace("100", "1e6"), ("too short", "1803%", "or lower the preload")),
-    "negative rate": (f"{SLIDING}rate = -1", ("tensioner[1].rate = -1 must be at least 0", "Give the rate")),
-    "rate about a pivot": (f'{SLIDING}rate = "1 N m/rad"', ("tensioner[1].rate", "must be in units of N/m")),
+    "negative rate": (f"{SLIDING}rate = -1", ("tensioner[driven].rate = -1 must be at least 0", "Give the rate")),
+    "rate about a pivot": (f'{SLIDING}rate = "1 N m/rad"', ("tensioner[driven].rate", "must be in units of N/m")),
     "negative dry friction": (f"{SLIDING}yielding_friction = -1", ("yielding_friction = -1 must be at least 0",)),
     "nothing moves": (SLIDING.replace("mass = 1", "mass = 0"), ("moves nothing that has inertia", "Give the pulley's")),
     # stops
     "stops in wrong order": (
         f"{SLIDING}stops = [0.01, -0.01]\nstop_stiffness = 1e5",
-        ("tensioner[1]: stops = [0.01, -0.01] must be a lower and an upper one", "zero between"),
+        ("tensioner[driven]: stops = [0.01, -0.01] must be a lower and an upper one", "zero between"),
     ),
     "stops beside the center": (f"{SLIDING}stops = [0.01, 0.02]\nstop_stiffness = 1e5", ("with zero between",)),
-    "one stop": (f"{SLIDING}stops = [0.01]\nstop_stiffness = 1e5", ("tensioner[1].stops[2] is missing",)),
+    "one stop": (f"{SLIDING}stops = [0.01]\nstop_stiffness = 1e5", ("tensioner[driven].stops[2] is missing",)),
     "hard stops": (f"{SLIDING}stops = [-0.01, 0.01]", ("stop_stiffness is missing: stops are springs",)),
-    "stiffness of no stops": (f"{SLIDING}stop_stiffness = 1e5", ("tensioner[1]: stops is missing", "Give stops")),
-    "damping of no stops": (f"{SLIDING}stop_damping = 10", ("tensioner[1]: stops is missing", "Give stops")),
+    "stiffness of no stops": (f"{SLIDING}stop_stiffness = 1e5", ("tensioner[driven]: stops is missing", "Give stops")),
+    "damping of no stops": (f"{SLIDING}stop_damping = 10", ("tensioner[driven]: stops is missing", "Give stops")),
     # rotary
-    "no pivot": (ROTARY.replace("pivot = [0.19, -0.09]\n", ""), ("tensioner[1].pivot is missing",)),
+    "no pivot": (ROTARY.replace("pivot = [0.19, -0.09]\n", ""), ("tensioner[driven].pivot is missing",)),
     "pivot at the center": (ROTARY.replace("[0.19, -0.09]", "[0.191441, 0]"), ("is the center of the pulley",)),
     "dead center": (ROTARY.replace("[0.19, -0.09]", "[0, 0]"), ("hardly changes the length", "Move its pivot")),
     "arm without inertia": (ROTARY.replace("inertia = 1e-3\n", ""), ("moves nothing that has inertia",)),
-    "moment in N": (ROTARY.replace("preload = 5", 'preload = "5 N"'), ("tensioner[1].preload", "units of N*m")),
+    "moment in N": (ROTARY.replace("preload = 5", 'preload = "5 N"'), ("tensioner[driven].preload", "units of N*m")),
     "stops in degrees without unit": (
         f"{ROTARY}stops = [-1, 15]\nstop_stiffness = 100",
-        ("tensioner[1].stops[2] = 15 must be at most 3.14159", "in rad"),
+        ("tensioner[driven].stops[2] = 15 must be at most 3.14159", "in rad"),
     ),
 }
 

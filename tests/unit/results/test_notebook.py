@@ -14,7 +14,7 @@ def test_means_and_warnings_are_shown(run: Run, make_run: Callable[..., Run]) ->
     assert "0.500 %" in shown
     slack = make_run(span_tension=np.full((101, 2), -1.0))._repr_html_()
     assert "<strong>Warning:</strong>" in slack
-    assert "is slack" in slack
+    assert "goes slack" in slack
 
 
 def test_a_run_without_outputs_shows_its_drive(run: Run) -> None:

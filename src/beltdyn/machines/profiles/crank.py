@@ -90,9 +90,13 @@ _NOISE = 1e-9
 """Rounding."""
 
 
+_OF_A_CRANK = frozenset({"file", *CrankSpeed.model_fields})
+"""Keys of a measured speed, and of no harmonic."""
+
+
 def _measured(value: Any, info: ValidationInfo) -> Any:
     """Harmonics of a measured speed; what is no such table as it is."""
-    if not isinstance(value, Mapping | CrankSpeed):
+    if not isinstance(value, CrankSpeed) and not (isinstance(value, Mapping) and _OF_A_CRANK & value.keys()):
         return value
     return CrankSpeed.model_validate(value, context=info.context).harmonics()
 
