@@ -28,7 +28,7 @@ from beltdyn.model.hysteresis import SMOOTHED, Passing
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import Records, record, records
 
-CREEPING: Final = 0.01
+CREEPING: Final = 0.1
 """v_0: speed of the belt below which hysteresis turns into damping in proportion to the rate, m/s."""
 
 
