@@ -20,8 +20,8 @@ from beltdyn.model import Pulley
 from beltdyn.results import summarize
 from beltdyn.results.derived import capstan_margins
 from beltdyn.theory.capstan import capstan_ratio
-from beltdyn.theory.creep import creep_speed_loss, layer_length
-from beltdyn.theory.elastic_creep import gross_slip_tensions
+from beltdyn.theory.elastic_creep import gross_slip_tensions, speed_loss
+from beltdyn.theory.hysteresis import bending_loss
 from beltdyn.theory.path import open_belt
 
 RPM = pi / 30.0
@@ -59,15 +59,16 @@ def two_pulley(run: Run) -> Iterator[Number]:
 
 
 def unequal_radii(run: Run) -> Iterator[Number]:
-    """The motor settles where Kloss's torque is that of the fan, through the ratio of radii and the creep."""
+    """The motor settles where Kloss's torque is that of the fan, through the ratio of radii, the creep and bending."""
     (motor, fan), summary = run.drive.pulleys, summarize(run)
     (kloss,), (load,) = motor.load, fan.load
     ratio, loss = motor.radius / fan.radius, creep(run)
+    bent = motor.radius * float(bending_forces(run.drive).sum())
 
     def surplus(speed: float) -> float:
         slip = 1.0 - speed / kloss.synchronous_speed
         torque = 2.0 * kloss.breakdown_torque / (slip / kloss.breakdown_slip + kloss.breakdown_slip / slip)
-        return torque - ratio * (load.constant + load.quadratic * (speed * ratio * (1.0 - loss)) ** 2)
+        return torque - bent - ratio * (load.constant + load.quadratic * (speed * ratio * (1.0 - loss)) ** 2)
 
     speed = brentq(surplus, 0.8 * kloss.synchronous_speed, 0.9999 * kloss.synchronous_speed)
     belt = open_belt(hypot(*np.subtract(fan.center, motor.center)), (motor.radius, fan.radius))
@@ -85,6 +86,7 @@ def fan_direct_start(run: Run) -> Iterator[Number]:
     rated, synchronous = 15e3 / (1465.0 * RPM), 1500.0 * RPM
     breakdown = (1.0 - 1465.0 / 1500.0) * (3.0 + sqrt(8.0))
     inertia = motor.inertia + fan.inertia * ratio**2
+    bent = float(run.drive.radii[0] * bending_forces(run.drive).sum())
 
     def driving(speed: float) -> float:
         slip = 1.0 - speed / synchronous
@@ -102,22 +104,22 @@ def fan_direct_start(run: Run) -> Iterator[Number]:
     def rates(time: float, state: FloatArray) -> list[float]:
         schedule = min(max((time - 0.02) / 0.06, 0.0), 1.0)
         torque = 0.5 * (1.0 - cos(pi * schedule)) * driving(state[0]) - ratio * braking(ratio * state[0])
-        return [torque / inertia]
+        return [(torque - bent * tanh(state[0] / 0.1)) / inertia]
 
     lumped = solve_ivp(rates, (0.0, 1.5), [0.0], method="LSODA", rtol=1e-8, dense_output=True, max_step=1e-3)
     times, mark = run.dataset["time"].values, 1100.0 * RPM
     by_hand = float(np.interp(mark, ratio * lumped.y[0], lumped.t))
     found = float(np.interp(mark, np.maximum.accumulate(speed_of(run, "fan")), times))
     tight, slack = (summary.spans[k].tension for k in (1, 0))
-    loss = (tight - slack) / run.drive.belt.axial_stiffness
-    steady = brentq(lambda w: driving(w) - ratio * braking(ratio * w * (1.0 - loss)), 1400.0 * RPM, 1499.0 * RPM)
+    loss = creep(run)
+    steady = brentq(lambda w: driving(w) - bent - ratio * braking(ratio * w * (1.0 - loss)), 1400.0 * RPM, 1499.0 * RPM)
     largest = float(run.dataset["shaft_torque"].values[:, 0].max())
     yield Number("largest torque of the motor, N m", 3.0 * rated, largest, 0.5)
     yield Number("time at which the fan reaches 1100 rpm, s", by_hand, found, 0.02 * by_hand)
     yield Number("motor, rpm", steady / RPM, summary.pulleys[0].speed / RPM, 1.0)
     yield Number("fan, rpm", steady * ratio * (1.0 - loss) / RPM, summary.pulleys[1].speed / RPM, 1.5)
     yield Number("torque of the motor, N m", driving(steady), summary.pulleys[0].shaft_torque, 0.5)
-    force = driving(steady) / float(run.drive.radii[0])
+    force = driving(steady) / float(run.drive.radii[0]) - float(bending_forces(run.drive)[0])
     yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
     yield Number("slip, %", 100.0 * loss, 100.0 * summary.pulleys[1].slip, 5.0 * loss)
 
@@ -146,13 +148,14 @@ def washing_machine(run: Run) -> Iterator[Number]:
     small, large = map(float, run.drive.rolling_radii)
     ratio = small / large
     belt = run.drive.belt
-    inertia = motor.inertia + drum.inertia * ratio**2 + belt.mass_per_length * belt.length * small**2
+    inertia = motor.inertia + drum.inertia * ratio**2 + belt.mass_per_length * run.drive.belt_length * small**2
+    bent = small * float(bending_forces(run.drive).sum())
 
     def surplus(time: float, speed: FloatArray) -> FloatArray:
         schedule = min(max((time - 0.01) / 0.07, 0.0), 1.0)
         driving = 0.5 * (1.0 - cos(pi * schedule)) * np.interp(speed, table.speeds, table.torques)
         braking = load.constant * np.tanh(speed * ratio / load.creep_speed) + load.linear * speed * ratio
-        return np.asarray((driving - ratio * braking) / inertia)
+        return np.asarray((driving - ratio * braking - bent * np.tanh(speed * ratio / load.creep_speed)) / inertia)
 
     end = run.drive.simulation.duration
     lumped = solve_ivp(surplus, (0.0, end), [0.0], method="LSODA", rtol=1e-8, dense_output=True, max_step=1e-3)
@@ -165,8 +168,8 @@ def washing_machine(run: Run) -> Iterator[Number]:
     found = float(np.interp(mark, np.maximum.accumulate(speed_of(run, "drum")), times))
     yield Number("time at which the drum reaches 1100 rpm, s", by_hand, found, 0.03 * by_hand)
     torque = load.constant + load.linear * final * ratio
-    yield Number("torque of the motor at 1200 rpm, N m", torque * ratio, summary.pulleys[0].shaft_torque, 0.003)
-    force = torque / large
+    yield Number("torque of the motor at 1200 rpm, N m", torque * ratio + bent, summary.pulleys[0].shaft_torque, 0.003)
+    force = torque / large + float(bending_forces(run.drive)[1])
     tight, slack = (summary.spans[i].tension for i in (1, 0))
     yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
 
@@ -283,30 +286,23 @@ def slip_through(run: Run) -> Iterator[Number]:
 
 
 def slip_and_efficiency(run: Run, tolerance: float) -> Iterator[Number]:
-    """Creep of the last pulley, and what it leaves of the power: 1 - slip, since nothing else is lost."""
+    """Creep of the last pulley, and the efficiency: creep and what bending takes are lost."""
     summary, loss = summarize(run), creep(run)
+    bent = float(bending_forces(run.drive).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
     found = summary.pulleys[-1].slip
     yield Number("slip, %", 100.0 * loss, 100.0 * found, 100.0 * tolerance * loss)
-    yield Number("efficiency, %", 100.0 * (1.0 - found), 100.0 * summary.balance.efficiency, 0.1)
+    yield Number("efficiency, %", 100.0 * (1.0 - loss - bent), 100.0 * summary.balance.efficiency, 0.1)
 
 
 def creep(run: Run) -> float:
-    """Loss of speed from the first pulley to the last by theory, from the tensions of the run.
+    """Loss of speed from the first pulley to the last by elastic creep, from the tensions of the run."""
+    tensions = [span.tension for span in summarize(run).spans]
+    return speed_loss(max(tensions), min(tensions), run.drive.belt.stretch_parameters)
 
-    The creep of a drive with equal arcs, (T1 - T2) / EA and what a finite creep-rate factor adds, as the mean for the
-    arcs of the two pulleys.
-    """
-    belt, spans = run.drive.belt, summarize(run).spans
-    tensions = [span.tension for span in spans]
-    speed = max(span.belt_speed for span in spans)
-    layer = layer_length(
-        run.drive.contact.creep_rate_factor or np.inf, abs(speed), belt.stretch_parameters, mass=belt.mass_per_length
-    )
-    arcs = run.drive.path.wrap_angles * run.drive.radii
-    return 0.5 * sum(
-        creep_speed_loss(max(tensions), min(tensions), belt.stretch_parameters, float(arc), layer)
-        for arc in (arcs[0], arcs[-1])
-    )
+
+def bending_forces(drive: Drive) -> FloatArray:
+    """Force by which bending on to each pulley and off holds the belt back, N."""
+    return bending_loss(drive.belt.bending_stiffness, drive.belt.bending_loss_factor, np.abs(drive.radii))
 
 
 def limit_force(run: Run, tension: float, pulley: int) -> float:
