@@ -22,12 +22,9 @@ WARNINGS = {
         "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, 0.28% "
         "of 0.54% on alternator"
     ],
-    "crossed_belt": ["the belt has too few elements for peak pressure"],
-    "flat_belt_idler": ["the belt has too few elements for peak pressure"],
     "slip_through": [
         "driver and conveyor slide through",
         "the belt slid through on driver from t = 1.",
-        "the belt has too few elements for peak pressure",
     ],
 }
 """How the warnings of a run begin; an example that is not named here has none."""
