@@ -17,6 +17,7 @@ from beltdyn.model.defaults import (
     choose_creep_ratio,
     choose_damping,
     choose_elements,
+    choose_standstill_creep,
     choose_stiffness,
     stiffness_for_tension,
 )
@@ -169,14 +170,24 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
     chosen = []
     if contact.damping is None:
         chosen.append(choose_damping(estimate.stiffness, belt))
+    strain = estimate.tension / belt.axial_stiffness
     if "creep_ratio" in contact.open_keys:
         grip = np.array([friction_on(pulley, belt, contact) for pulley in given.pulleys])
-        strain = estimate.tension / belt.axial_stiffness
         chosen.append(choose_creep_ratio(given.pulleys, grip * path.wrap_angles, strain))
+    if "standstill_creep" in contact.open_keys:
+        ratio = chosen[-1].value if contact.creep_ratio is None else contact.creep_ratio
+        chosen.append(choose_standstill_creep(ratio, _largest_speed(given, path, strain)))
     if belt.elements is None:
         on_path = OnPath(belt, estimate.length, np.abs(path.radii), estimate.stiffness)
         chosen.append(choose_elements(on_path, estimate.tension))
     return tuple(chosen)
+
+
+def _largest_speed(given: Given, path: Path, strain: float) -> float:
+    """Speed of the fastest driven rim, or where none is known what the strain can cause, m/s."""
+    rims = np.array([pulley.driven_speed() for pulley in given.pulleys]) * np.abs(path.radii)
+    wave = float(np.sqrt(given.belt.axial_stiffness / given.belt.mass_per_length))
+    return float(np.max(rims, initial=0.0)) or strain * wave
 
 
 def _chosen(choices: Sequence[Choice], group: str) -> dict[str, float]:

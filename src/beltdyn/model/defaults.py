@@ -22,6 +22,8 @@ DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.001
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
 DAMPING_RATIO = 0.5
 """Damping of contact over the critical one."""
+STANDSTILL = 0.05
+"""Part of the largest speed below which the creep velocity no longer falls: steeper friction spoils the start."""
 CREEP_LENGTHS = 16.0
 """Lengths over which a slip velocity grows e-fold that the smallest gripping arc has at the tension at rest."""
 RESOLVED = {"tension": 0.005, "slip": 0.015}
@@ -132,6 +134,20 @@ def choose_creep_ratio(pulleys: Sequence[Pulley], grips: FloatArray, strain: flo
     return Choice(
         "contact.creep_ratio", grip * strain / CREEP_LENGTHS, "", "adds less than 3% to the slip of elastic creep"
     )
+
+
+def choose_standstill_creep(creep_ratio: float, speed: float) -> Choice:
+    """Choose the creep velocity on pulleys at a standstill.
+
+    Parameters
+    ----------
+    creep_ratio : float
+        That of pulleys that turn.
+    speed : float
+        Largest speed of the rims, m/s.
+    """
+    reason = f"that of {STANDSTILL:.0%} of the largest speed, {speed:.3g} m/s"
+    return Choice("contact.standstill_creep", STANDSTILL * creep_ratio * speed, "m/s", reason)
 
 
 def choose_elements(belt: OnPath, tension: float) -> Choice:

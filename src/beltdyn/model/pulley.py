@@ -1,5 +1,6 @@
 """A pulley: driven with a prescribed speed, or turning freely, with what is behind its rim and on its shaft."""
 
+import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Self
@@ -124,6 +125,15 @@ class Pulley(Part):
                 "or an inertia above zero if it turns freely"
             )
         return self
+
+    def driven_speed(self, duration: float = math.inf) -> float:
+        """Largest speed at which the shaft is driven within a time (s), by its profile or its motors, rad/s.
+
+        It is zero where nothing drives the shaft.
+        """
+        if self.speed is not None:
+            return self.speed.largest(duration)
+        return max((abs(load.driven_speed) for load in self.load), default=0.0)
 
     @model_validator(mode="after")
     def _surface_holds_the_shaft(self) -> Self:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
-from beltdyn.model import Drive, Pulley, install
+from beltdyn.model import Drive, install
 from beltdyn.model.instants import SAME, Instants
 from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
 from beltdyn.system.state import State
@@ -271,13 +271,6 @@ def velocity_scale(drive: Drive) -> float:
         rest times the speed of axial waves, the velocity of a belt end that is let go.
     """
     duration = drive.simulation.duration
-    rims = [radius * _driven_speed(pulley, duration) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
+    rims = [radius * pulley.driven_speed(duration) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
     wave = float(np.sqrt(drive.belt.axial_stiffness / drive.belt.mass_per_length))
     return float(max(*rims, install(drive).strain * wave, 0.0))
-
-
-def _driven_speed(pulley: Pulley, duration: float) -> float:
-    """Largest speed at which a pulley's shaft is driven within a time (s), rad/s; zero where it is not."""
-    if pulley.speed is not None:
-        return pulley.speed.largest(duration)
-    return max((abs(load.driven_speed) for load in pulley.load), default=0.0)

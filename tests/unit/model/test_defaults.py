@@ -23,6 +23,9 @@ BELT = {
 RUN = {"duration": 1.0, "output_interval": 1e-3}
 
 
+SETTLED = {"friction": 0.4, "stiffness": 1e8, "damping": 7.0, "creep_ratio": 1e-3, "standstill_creep": 1e-6}
+
+
 def drive(belt: dict[str, Any] | None = None, **parts: Any) -> Drive:
     given: dict[str, Any] = {
         "belt": BELT | (belt or {}),
@@ -43,17 +46,22 @@ def test_nothing_but_friction_is_needed() -> None:
 
 
 def test_what_is_given_is_not_chosen() -> None:
-    given = drive({"elements": 50}, contact={"friction": 0.4, "stiffness": 1e8, "damping": 7.0, "creep_ratio": 1e-3})
+    given = drive({"elements": 50}, contact=SETTLED)
     assert given.completed.choices == ()
     assert (given.elements, given.contact_stiffness, given.contact_damping) == (50, 1e8, 7.0)
     assert given.friction_parameters.saturation(1.0, 0.4, 10.0) == pytest.approx(1e-2, rel=1e-5)
     some = drive({"elements": 50}, contact={"friction": 0.4, "stiffness": 1e8})
-    assert [choice.key for choice in some.completed.choices] == ["contact.damping", "contact.creep_ratio"]
+    assert [choice.key for choice in some.completed.choices] == [
+        "contact.damping",
+        "contact.creep_ratio",
+        "contact.standstill_creep",
+    ]
 
 
 def test_every_choice_has_its_reason() -> None:
     chosen = {choice.key: choice for choice in drive().completed.choices}
-    assert list(chosen) == ["contact.stiffness", "contact.damping", "contact.creep_ratio", "belt.elements"]
+    of_friction = ["contact.creep_ratio", "contact.standstill_creep"]
+    assert list(chosen) == ["contact.stiffness", "contact.damping", *of_friction, "belt.elements"]
     assert all(choice.reason for choice in chosen.values())
     assert chosen["contact.stiffness"].value == drive().contact_stiffness
     assert chosen["belt.elements"].value == drive().elements
@@ -141,3 +149,13 @@ def test_a_settled_drive_keeps_what_was_chosen() -> None:
 def test_a_belt_that_does_not_slide_has_numbers_too() -> None:
     """Without friction nothing grips, and any creep ratio will do."""
     assert drive(contact={"friction": 0.0}).friction_parameters.saturation(1.0, 0.0, 1.0) > 0.0
+
+
+def test_friction_is_as_steep_as_at_a_twentieth_of_the_speed_where_nothing_turns() -> None:
+    """The motor turns at 100 rad/s; without a motor a belt moves by its own strain, at the speed of axial waves."""
+    contact = drive().completed.contact
+    assert contact.standstill_creep == pytest.approx(0.05 * contact.creep_ratio * 100.0 * drive().radii[0])
+    still = drive(pulley=[{key: MOTOR[key] for key in ("name", "center", "radius")} | {"inertia": 1e-3}, FAN])
+    contact, strain = still.completed.contact, install(still).strain
+    wave = (2e5 / 0.1) ** 0.5
+    assert contact.standstill_creep == pytest.approx(0.05 * contact.creep_ratio * strain * wave, rel=1e-2)

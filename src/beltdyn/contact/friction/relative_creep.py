@@ -72,5 +72,5 @@ def relative_creep(
 _RATIO = Parameter(
     "creep_ratio", "", "the slip velocity over the speed of the rim at which friction is fully used", found=True
 )
-_STANDSTILL = Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at a standstill", default=1e-6)
+_STANDSTILL = Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at a standstill", found=True)
 register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, (_RATIO, _STANDSTILL)))
