@@ -66,10 +66,11 @@ def test_a_law_that_is_not_chosen_leaves_its_parameters_open() -> None:
 
 def test_numbers_of_computation_may_be_left_open() -> None:
     contact = Contact(friction=0.4)
-    assert contact.open_keys == ("stiffness", "damping", "creep_ratio")
+    assert contact.open_keys == ("stiffness", "damping", "creep_ratio", "standstill_creep")
     with pytest.raises(ModelError, match=r"contact\.creep_ratio is open\. Take the contact that a drive completes"):
         _ = contact.friction_parameters
     with pytest.raises(ModelError, match=r"contact\.stiffness is open"):
         _ = contact.normal_parameters
     assert Contact(**GIVEN).open_keys == ()
-    assert Contact(stiffness=1e8, damping=0.0, creep_ratio=1e-3).friction_parameters == RelativeCreep(1e-3, 1e-6)
+    given = Contact(stiffness=1e8, damping=0.0, creep_ratio=1e-3, standstill_creep=1e-6)
+    assert given.friction_parameters == RelativeCreep(1e-3, 1e-6)
