@@ -199,7 +199,7 @@ def describe_time(drive: Drive) -> str:
     if settings.integrator != "generalized_alpha":
         return ""
     element = drive.belt_length / drive.elements
-    passage = element / math.sqrt(belt.axial_stiffness / belt.mass_per_length)
+    passage = element / belt.wave_speed
     rates = {
         f"simulation.rtol = {settings.rtol:g}": 1.0 / (_STEP * math.sqrt(settings.rtol / _DEFAULT_RTOL) * passage),
         f"simulation.output_interval = {settings.output_interval:g} s": 1.0 / settings.output_interval,

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from functools import cached_property
-from math import pi, sin
+from math import pi, sin, sqrt
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -308,6 +308,11 @@ class Belt(Part):
     def mass_per_length(self) -> float:
         """Mass of a metre of unstretched belt, ρ A, kg/m."""
         return self.density * self.area
+
+    @property
+    def wave_speed(self) -> float:
+        """Speed of stretch waves along a belt without strain, √(E A α₁ / ρ A), m/s."""
+        return sqrt(self.axial_stiffness / self.mass_per_length)
 
     @property
     def rotary_inertia(self) -> float:

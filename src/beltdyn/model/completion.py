@@ -186,8 +186,7 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
 def _largest_speed(given: Given, path: Path, strain: float) -> float:
     """Speed of the fastest driven rim, or where none is known what the strain can cause, m/s."""
     rims = np.array([pulley.driven_speed() for pulley in given.pulleys]) * np.abs(path.radii)
-    wave = float(np.sqrt(given.belt.axial_stiffness / given.belt.mass_per_length))
-    return float(np.max(rims, initial=0.0)) or strain * wave
+    return float(np.max(rims, initial=0.0)) or strain * given.belt.wave_speed
 
 
 def _chosen(choices: Sequence[Choice], group: str) -> dict[str, float]:

@@ -1,14 +1,13 @@
 """What stands above a figure: the name of the drive, and the point at which it runs."""
 
 from collections.abc import Sequence
-from math import pi
 
 from matplotlib.figure import Figure
 
+from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import mean_window
 
-_RPM = 30.0 / pi
 _SIZE = 11
 
 
@@ -57,7 +56,7 @@ def _range(run: Run) -> str:
     profile = next((one.speed for one in run.drive.pulleys if one.name == swept), None)
     if profile is None:
         return ""
-    first, last = _RPM * profile.at(run.dataset["time"].values[[0, -1]])
+    first, last = RPM * profile.at(run.dataset["time"].values[[0, -1]])
     return f"{swept} from {_whole(float(first))} to {_whole(float(last))} rpm"
 
 
@@ -66,7 +65,7 @@ def _operating_point(run: Run) -> str:
     with run.recorded() as recorded:
         over = mean_window(recorded, run.drive)
         power = over.product(recorded, "shaft_torque", "shaft_speed")
-        speed = _RPM * over.mean(recorded, "pulley_speed")
+        speed = RPM * over.mean(recorded, "pulley_speed")
         put_in = power_balance(recorded, over).power_in
     first = int(power.argmax()) if put_in > 0.0 else 0
     given = f", {_power(put_in)} in" if put_in > 0.0 else ""

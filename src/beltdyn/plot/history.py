@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from beltdyn.parts.quantity import RPM
 from beltdyn.plot.registry import figure, over_time
 from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, unit
 from beltdyn.results import Run
@@ -22,7 +23,6 @@ _ENERGIES = (
     "spring_energy",
     "potential_energy",
 )
-_RPM = 30.0 / np.pi
 _WAVES = 5.0
 """Vibrations as high as the figure above which dashes cannot be told from them."""
 
@@ -50,7 +50,7 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
             name = f"shaft of {pulley.name}"
             ax.plot(shafts["time"], shafts[:, number], label=name, color=color(number), linewidth=0.9)
     if not ax.child_axes:
-        scale = ax.secondary_yaxis("right", functions=(partial(np.multiply, _RPM), partial(np.multiply, 1.0 / _RPM)))
+        scale = ax.secondary_yaxis("right", functions=(partial(np.multiply, RPM), partial(np.multiply, 1.0 / RPM)))
         scale.set_ylabel("[rpm]")
     name_lines(ax)
     return ax

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import envelope, lines
 from beltdyn.plot.registry import Choice, figure, over_time
-from beltdyn.plot.style import INK, POLAR_SIZE, axes_or_new, color, label, name_lines, new_figure, polar_or_new
+from beltdyn.plot.style import INK, POLAR_SIZE, axes_or_new, color, label, name_lines, new_figure, note, polar_or_new
 from beltdyn.results import Run, derived, power_balance, summarize
 from beltdyn.results.cycles import mean_window
 
@@ -59,7 +59,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
         if slides
         else "dotted: elastic creep; the rest is the slope of the friction law"
     )
-    ax.annotate("\n".join(notes), (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+    note(ax, "\n".join(notes))
     _limit(ax, parts["slip"], _after_start(run, summary.start))
     return ax
 
@@ -263,8 +263,7 @@ def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
     ]
     ax = lines(loads, axes_or_new(ax), names)
     ax.set_ylim(bottom=0.0)
-    note = f"numbers: from {over.start:.4g} to {over.end:.4g} s"
-    ax.annotate(note, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+    note(ax, f"numbers: from {over.start:.4g} to {over.end:.4g} s")
     return ax
 
 

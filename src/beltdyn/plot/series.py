@@ -4,12 +4,13 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run
 
 HUB_LOAD = "hub_load"
 """Magnitude of the hub force."""
 
-_SHOWN = {"rad/s": ("rpm", 30.0 / np.pi), "m": ("mm", 1e3), "rad": ("°", np.degrees(1.0))}
+_SHOWN = {"rad/s": ("rpm", RPM), "m": ("mm", 1e3), "rad": ("°", np.degrees(1.0))}
 """Unit of a variable -> the one that is shown, and the factor on its numbers."""
 
 

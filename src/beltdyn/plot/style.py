@@ -182,6 +182,19 @@ def reserve(ax: Axes, text: str) -> None:
     )
 
 
+def note(ax: Axes, text: str) -> None:
+    """Write into the lower right corner.
+
+    Parameters
+    ----------
+    ax : Axes
+        Where to write.
+    text : str
+        In few lines.
+    """
+    ax.annotate(text, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+
+
 def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
     """Write the legend of lines, by default all, above the axes, or beside them where the names are many."""
     lines = ax.get_legend_handles_labels()[0] if lines is None else lines

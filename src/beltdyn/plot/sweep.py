@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.parts.quantity import RPM
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, figure, on_request
 from beltdyn.plot.series import names_of, series
 from beltdyn.plot.style import INK, axes_or_new, color, dash, label, unit
 from beltdyn.results import Run, derived
 
-_RPM = 30.0 / np.pi
 _RANGE = 60.0
 """Levels below the highest that are told apart, dB."""
 _MAP = "viridis"
@@ -129,7 +129,7 @@ def waterfall(
     ax = axes_or_new(ax)
     mesh = ax.pcolormesh(
         amplitude["frequency"][1:],
-        _RPM * amplitude["speed"],
+        RPM * amplitude["speed"],
         np.maximum(level, top - _RANGE),
         norm=Normalize(top - _RANGE, top),
         cmap=_MAP,
@@ -198,8 +198,8 @@ def orders(
     amplitude = _amplitudes(run, variable, of, pulley)
     ax = axes_or_new(ax)
     overall = derived.overall_level(derived.waterfall(values, run.dataset["pulley_speed"][:, number]))
-    ax.plot(_RPM * overall["speed"], np.sqrt(2.0) * overall, color=INK, linewidth=1.0, label="overall (√2 RMS)")
-    speed, along = _RPM * amplitude["speed"], amplitude["order"].values
+    ax.plot(RPM * overall["speed"], np.sqrt(2.0) * overall, color=INK, linewidth=1.0, label="overall (√2 RMS)")
+    speed, along = RPM * amplitude["speed"], amplitude["order"].values
     chosen = _strongest(along, amplitude.max("speed").fillna(0.0).values) if which is None else which
     for line, order in enumerate(chosen):
         of_mesh = _multiple(order, derived.element_order(run.drive, number))
@@ -245,6 +245,6 @@ def _mark(ax: Axes, order: float, amplitude: xr.DataArray, words: str, style: st
     frequency = order * speed / (2.0 * np.pi)
     shown = frequency <= highest
     if np.any(shown):
-        ax.plot(frequency[shown], _RPM * speed[shown], color="w", linestyle=style, linewidth=0.6, alpha=0.7)
-        place = frequency[shown][-1], _RPM * speed[shown][-1]
+        ax.plot(frequency[shown], RPM * speed[shown], color="w", linestyle=style, linewidth=0.6, alpha=0.7)
+        place = frequency[shown][-1], RPM * speed[shown][-1]
         ax.annotate(words, place, (-3, -3), "data", "offset points", color="w", fontsize=8, ha="right", va="top")

@@ -9,7 +9,7 @@ from beltdyn.results.layout import Layout
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
-from beltdyn.results.resolution import MESH_ERROR, Resolution
+from beltdyn.results.resolution import Resolution, mesh_error_attribute
 from beltdyn.results.result import Result, build_result
 from beltdyn.results.run import Run, open_result, open_run
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "COORDINATES",
-    "MESH_ERROR",
     "RECORDED",
     "VARIABLES",
     "Balance",
@@ -46,6 +45,7 @@ __all__ = [
     "derived",
     "describe_size",
     "expected_bytes",
+    "mesh_error_attribute",
     "open_result",
     "open_run",
     "power_balance",

@@ -10,9 +10,6 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import ERROR_LIMITS, Drive, Running, elements_needed, install, layer_lengths, mesh_errors
 from beltdyn.results.recorded import Recorded
 
-MESH_ERROR = "mesh_error_"
-"""Begins the names of attributes of results that tell errors which an analysis has found."""
-
 _WINDOW = 0.2
 _MOVING = frozenset({"slip", "losses"})
 """What a belt at rest has none of."""
@@ -69,9 +66,20 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
     return mesh_resolution(drive, float(np.mean(_last(recorded, "belt_tension", "field_time"))), square)
 
 
+def mesh_error_attribute(quantity: str) -> str:
+    """Name of the attribute of results that tells the error of a quantity which an analysis has found.
+
+    Parameters
+    ----------
+    quantity : str
+        One of `beltdyn.model.ERROR_LIMITS`.
+    """
+    return f"mesh_error_{quantity.replace(' ', '_')}"
+
+
 def found_errors(recorded: Recorded) -> dict[str, float]:
     """Errors that an analysis has found by a finer mesh; empty without them."""
-    marked = {name: MESH_ERROR + name.replace(" ", "_") for name in ERROR_LIMITS}
+    marked = {name: mesh_error_attribute(name) for name in ERROR_LIMITS}
     known = {name: np.asarray(recorded.attrs[mark]).item() for name, mark in marked.items() if mark in recorded.attrs}
     return dict.fromkeys(ERROR_LIMITS, math.nan) | known if known else {}
 

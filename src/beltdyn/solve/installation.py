@@ -24,9 +24,8 @@ from beltdyn.system.state import State, laid
 
 _DEEPEST_START = 0.1
 """Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
-_STIFFER_FIRST = (64.0, 16.0, 4.0, 1.0)
-_SOFTER_FIRST = (1 / 64, 1 / 16, 1 / 4, 1.0)
-"""Stiffness of contact on the way to equilibrium, over the drive's own."""
+WAYS = (1.0,), (64.0, 16.0, 4.0, 1.0), (1 / 64, 1 / 16, 1 / 4, 1.0)
+"""Ways to equilibrium that are tried one after the other: stiffness of contact, over the drive's own."""
 _DEEPEST = 0.5
 """Depth over radius, beyond which contact pushes a belt back the less the deeper it sinks: no balance is stable."""
 _SOUND = 0.1
@@ -192,13 +191,11 @@ def _at_rest(drive: Drive) -> Rest:
     """
     system, installation = drive_system(drive), install(drive)
     failures = list[ConvergenceError]()
-    for way in ((1.0,), _STIFFER_FIRST, _SOFTER_FIRST):
+    for way in WAYS:
         state = _lying(drive, system, installation, way[0])
         try:
             for factor in way:
-                normal = system.law.normal
-                law = system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness))
-                state = find_equilibrium(system._replace(law=law), state).state
+                state = find_equilibrium(with_stiffer_contact(system, factor), state).state
             return looked_at(drive, system, state)
         except ConvergenceError as error:
             failures.append(error)
@@ -206,15 +203,25 @@ def _at_rest(drive: Drive) -> Rest:
 
 
 def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
-    """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor.
+    """A belt that lies in its pulleys, as deep as in contact stiffer by a factor."""
+    return laid(system, drawn_in(drive, installation, factor), installation.tensioner_positions)
+
+
+def with_stiffer_contact(system: System, factor: float) -> System:
+    """The same system with contact stiffer by a factor."""
+    normal = system.law.normal
+    return system._replace(law=system.law._replace(normal=normal._replace(stiffness=factor * normal.stiffness)))
+
+
+def drawn_in(drive: Drive, installation: Installation, factor: float) -> BeltPath:
+    """The path of a belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor.
 
     On the rims themselves rounding decides which nodes touch, and on coarse meshes with contact at nodes the search
     then finds no step that helps.  Rims drawn in by one depth leave spans and wrap angles as they are.
     """
     path = installation.path
     depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
-    drawn_in = BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
-    return laid(system, drawn_in, installation.tensioner_positions)
+    return BeltPath(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
 
 
 def looked_at(drive: Drive, system: System, state: State) -> Rest:

@@ -4,11 +4,11 @@ import numpy as np
 
 from beltdyn.errors import SlipError
 from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
 from beltdyn.results.checks.sliding import SWEEP_REMEDY
 from beltdyn.results.mechanics import across
 from beltdyn.solve.observer import Arrays
 
-_RPM = 30.0 / np.pi
 _FAST = 0.05
 """Velocity of sliding of a whole arc, over the speed of the swept pulley's rim, from which on it counts."""
 
@@ -56,8 +56,8 @@ class SlipThrough:
         sliding = abs(float(outputs["sliding_speed"][row, number]))
         share = sliding / (abs(speed) * self._radius)
         return (
-            f"the sweep stops at t = {time:.4g} s, {swept} at {_RPM * speed:.4g} rpm: {name} slips through. Since "
-            f"{_RPM * self._speed[number]:.4g} rpm its whole arc slides, now at {sliding:.3g} m/s, "
+            f"the sweep stops at t = {time:.4g} s, {swept} at {RPM * speed:.4g} rpm: {name} slips through. Since "
+            f"{RPM * self._speed[number]:.4g} rpm its whole arc slides, now at {sliding:.3g} m/s, "
             f"{share:.0%} of the speed of {swept}'s rim. When this began it had {self._load[number]:.4g} N m to "
             f"transmit, and with the tensions of {max(before, after):.4g} and {min(before, after):.4g} N beside it "
             "friction transmits no more."

@@ -159,7 +159,7 @@ class _Search:
     """Belt and tensioners on their way to equilibrium, with the linearised equations where they stand."""
 
     def __init__(self, system: System, start: State) -> None:
-        self._system = system._replace(bodies=_only_tensioners(system))
+        self._system = system._replace(bodies=only_tensioners(system))
         self.position, self._velocity = start.position.copy(), start.velocity
         self._multipliers = no_multipliers(system)
         self._here: Equations = new_equations(self._system)
@@ -243,8 +243,14 @@ def _with_sides_of_its_own(equations: Equations) -> Equations:
     )
 
 
-def _only_tensioners(system: System) -> Records:
-    """The bodies when nothing turns and tensioners move."""
+def only_tensioners(system: System) -> Records:
+    """The bodies when nothing turns and tensioners move.
+
+    Parameters
+    ----------
+    system
+        Belt, pulleys, tensioners.
+    """
     bodies, count = system.bodies.copy(), system.tensioners.size
     bodies["unknown"] = -1
     bodies["unknown"][bodies.size - count :] = np.arange(count)

@@ -9,7 +9,8 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.graded_mesh import Arc, graded_mesh, layer_length
 from beltdyn.model.resolution import layer_lengths
-from beltdyn.solve.installation import looked_at, tighten
+from beltdyn.solve.installation import WAYS, drawn_in, looked_at, tighten, with_stiffer_contact
+from beltdyn.solve.static import only_tensioners
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
@@ -29,11 +30,6 @@ MOST_ELEMENTS = 1500
 _SETTLED = 1e-3
 """Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
 _MOST = 60
-_DEEPEST_START = 0.1
-"""Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
-_STIFFER_FIRST = (64.0, 16.0, 4.0, 1.0)
-_SOFTER_FIRST = (1 / 64, 1 / 16, 1 / 4, 1.0)
-"""Stiffness of contact on the way to equilibrium, over the drive's own."""
 _SAMPLES = 16
 """Points of an element at which the ends of arcs are looked for."""
 
@@ -161,7 +157,7 @@ def stand(
         arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
         lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
     system = staying_system(drive, lengths)
-    for way in ((1.0,), _STIFFER_FIRST, _SOFTER_FIRST):
+    for way in WAYS:
         state = _lying(drive, system, installation, span, way[0])
         anchor = anchor_at(system, state, True)
         if all(_balance(drive, system, state, anchor, factor) for factor in way):
@@ -175,27 +171,23 @@ def stand(
 
 def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:
     """Bring a state to equilibrium with contact stiffer by a factor; False if that fails."""
-    law = system.law._replace(normal=system.law.normal._replace(stiffness=factor * system.law.normal.stiffness))
-    still = without_friction(system)._replace(law=law)
+    still = without_friction(with_stiffer_contact(system, factor))
     tolerance = TOLERANCE * float(np.min(drive.radii))
     return find_steady(still, state.at(0.0), anchor, tolerance, _MOST, steady_work(still))[0] == FOUND
 
 
 def without_friction(system: System) -> System:
     """The same system with a belt that slides without friction on pulleys that stand still."""
-    pulleys, bodies, count = system.pulleys.copy(), system.bodies.copy(), system.tensioners.size
+    pulleys = system.pulleys.copy()
     pulleys["friction"] = 0.0
-    bodies["unknown"] = -1
-    bodies["unknown"][bodies.size - count :] = np.arange(count)
-    return system._replace(pulleys=pulleys, bodies=bodies)
+    return system._replace(pulleys=pulleys, bodies=only_tensioners(system))
 
 
 def _lying(drive: Drive, system: System, installation: Installation, span: int, factor: float) -> State:
     """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
-    path = installation.path
-    depth = min(np.min(installation.penetrations) / factor, _DEEPEST_START * np.min(drive.radii))
-    drawn_in = Path(path.centers, path.radii - depth * np.sign(path.radii), path.ends)
-    return Laid.on(drawn_in, drive.belt_length, span).state(system, installation.tensioner_positions)
+    return Laid.on(drawn_in(drive, installation, factor), drive.belt_length, span).state(
+        system, installation.tensioner_positions
+    )
 
 
 def found_arcs(system: System, state: State) -> list[Arc]:

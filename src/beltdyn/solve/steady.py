@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.results import MESH_ERROR, Run
+from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.staying import bring_to_stand
@@ -91,7 +91,7 @@ def steady_state(
             **search.friction_band(rest.system.tensioners),
             belt_parameter=search.belt_parameter,
             newton_iterations_of_search=search.iterations,
-            **{MESH_ERROR + name.replace(" ", "_"): error for name, error in errors.items()},
+            **{mesh_error_attribute(name): error for name, error in errors.items()},
         )
     return recording.run()
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths
 from beltdyn.system.observe import observe
@@ -12,7 +13,6 @@ _FULL = 0.9
 """Use of friction of a pulley that slips through, at least."""
 _ALIKE = 0.98
 """Of pulleys that use so much of the friction that the worst one does, the one that takes most power is named."""
-_RPM = 30.0 / np.pi
 
 
 def slips_through(drive: Drive, system: System, state: State, load: float) -> str:
@@ -38,7 +38,7 @@ def slips_through(drive: Drive, system: System, state: State, load: float) -> st
     taken = seen.pulley_torque[0] * state.velocity[system.first_body :][: used.size]
     worst = int(np.argmax(np.where(used > _ALIKE * used.max(), taken, -np.inf)))
     name, torque = drive.pulleys[worst].name, abs(float(seen.pulley_torque[0, worst]))
-    speed = _RPM * abs(float(state.velocity[system.first_body + worst]))
+    speed = RPM * abs(float(state.velocity[system.first_body + worst]))
     if used[worst] < _FULL:
         return (
             f"the search ends at {load:.1%} of the loads, where {name} uses {used[worst]:.0%} of its friction. Look at "

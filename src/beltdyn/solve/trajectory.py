@@ -272,5 +272,4 @@ def velocity_scale(drive: Drive) -> float:
     """
     duration = drive.simulation.duration
     rims = [radius * pulley.driven_speed(duration) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
-    wave = float(np.sqrt(drive.belt.axial_stiffness / drive.belt.mass_per_length))
-    return float(max(*rims, install(drive).strain * wave, 0.0))
+    return float(max(*rims, install(drive).strain * drive.belt.wave_speed, 0.0))

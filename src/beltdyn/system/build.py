@@ -47,18 +47,8 @@ def drive_system(drive: Drive) -> System:
     System
         Its belt, with its ends or closed as ``drive.simulation.joint`` says, and its pulleys.
     """
-    completed = drive.completed
-    return belt_system(
-        completed.belt,
-        completed.pulleys,
-        completed.contact,
-        "open" if drive.ends else drive.simulation.joint,
-        tensioners=completed.tensioners,
-        path=completed.path,
-        gravity=drive.gravity,
-        passing=passing_strains(drive) if drive.belt.has_hysteresis else None,
-        **_at_ends(drive),
-    )
+    belt, contact = drive.completed.belt, drive.completed.contact
+    return _system_of(drive, belt, contact, "open" if drive.ends else drive.simulation.joint, **_at_ends(drive))
 
 
 def staying_system(drive: Drive, lengths: FloatArray) -> System:
@@ -76,23 +66,30 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
     System
         With a belt that does not flow.
     """
-    completed = drive.completed
-    belt = completed.belt.replace(
+    belt = drive.completed.belt.replace(
         discretization=QUINTIC.name, elements=lengths.size, integration="full", quadrature_points=_STAYING_ELASTIC
     )
-    contact = completed.contact.replace(sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT)
-    system = belt_system(
+    contact = drive.completed.contact.replace(
+        sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT
+    )
+    system = _system_of(drive, belt, contact, "shared_node", lengths=lengths)
+    return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
+
+
+def _system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:
+    """Arrays of a drive with a belt and a contact in place of its own."""
+    completed = drive.completed
+    return belt_system(
         belt,
         completed.pulleys,
         contact,
-        "shared_node",
+        closure,
         tensioners=completed.tensioners,
         path=completed.path,
         gravity=drive.gravity,
-        lengths=lengths,
         passing=passing_strains(drive) if drive.belt.has_hysteresis else None,
+        **more,
     )
-    return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
 
 
 def belt_system(
