@@ -7,6 +7,7 @@ of what they transmit at most.  Slip is compared with the elastic creep of their
 from math import asin, pi, tanh
 from typing import Any, NamedTuple
 
+import numpy as np
 import pytest
 
 from beltdyn import steady_state
@@ -49,8 +50,6 @@ DRIVES = {
     "mill": Layout(section(0.8, 8e-3, 2e7, 30.0, 8.0), (0.3, 1.0), 4.0, 50e3, 25.0, 0.35),
     "round cord": Layout({"profile": "round-85A", "diameter": 6e-3}, (0.03, 0.06), 0.25, 25.0, 3.0, 0.5),
 }
-THICK = ("washing machine",)
-"""Belts so stiff for a pulley that bending shifts the ratio of speeds by more than 3 % of the slip, loaded or not."""
 
 
 def drive_of(layout: Layout, use: float) -> Drive:
@@ -84,19 +83,25 @@ def summaries(request: pytest.FixtureRequest) -> tuple[str, list[Summary]]:
 @pytest.mark.slow
 def test_slip_is_elastic_creep(summaries: tuple[str, list[Summary]]) -> None:
     """Within 3 %: that of half the load, and what it has more than that of a fifth, where bending has no part."""
-    name, (half, fifth) = summaries
+    (half, fifth) = summaries[1]
     (slip, creep), (less, least) = ((one.pulleys[1].slip, one.pulleys[1].elastic_creep) for one in (half, fifth))
     assert slip - less == pytest.approx(creep - least, rel=0.03)
-    assert name in THICK or slip == pytest.approx(creep, rel=0.03)
+    assert slip == pytest.approx(creep, rel=0.03)
 
 
 @pytest.mark.slow
 def test_losses_are_those_of_creep(summaries: tuple[str, list[Summary]]) -> None:
-    """Friction loses what creep does, within 6 %; contact damping takes less than 0.1 % under half the load."""
-    _, (half, fifth) = summaries
+    """Friction loses what creep does, within 6 %; contact damping takes less than 0.1 % under half the load.
+
+    Under a fifth of it the strain that the belt takes on as it bends to the smallest pulley counts beside creep: friction
+    takes a part of it.
+    """
+    name, (half, fifth) = summaries
+    drive = drive_of(DRIVES[name], LOADS[1])
+    bending = float(np.abs(drive.belt.bent_strain(drive.radii)).max())
     assert half.balance.losses["contact damping"] < 1e-3 * half.balance.power_in
-    for summary in (half, fifth):
+    for summary, strain in ((half, 0.0), (fifth, bending)):
         balance, creep = summary.balance, summary.pulleys[1].elastic_creep
         friction = balance.losses["friction"] / balance.power_in
-        assert friction == pytest.approx(creep, rel=0.06)
+        assert friction == pytest.approx(creep, abs=0.06 * creep + strain)
         assert balance.efficiency > 0.95

@@ -1,8 +1,8 @@
 """Verified: belts of quintic elements, bent into arcs by a moment and laid on pulleys.
 
 A cantilever with the moment m at its end takes on one curvature theta' and one stretch g.  With the energy
-EA (g^2 - 1)^2 / 8 + EI g^2 theta'^2 / 2 a length, both follow from EI g^2 theta' = m and
-EA (g^2 - 1) / 2 + EI theta'^2 = 0.
+EA (g^2 - 1)^2 / 8 + EI (3 g^2 - 1) theta'^2 / 4 + E I4 theta'^4 / 8 a length, both follow from
+EI (3 g^2 - 1) theta' / 2 + E I4 theta'^3 / 2 = m and EA (g^2 - 1) / 2 + 3/2 EI theta'^2 = 0.
 """
 
 from collections.abc import Callable
@@ -54,16 +54,16 @@ def bent(elements: int) -> tuple[float, float, float]:
 
 def exact() -> tuple[float, float, float]:
     belt = cantilever(1 + 2)
-    bending, axial, moment = (
-        belt.bending_stiffness,
-        belt.axial_stiffness,
-        belt.bending_stiffness * TURN / belt.given_length,
-    )
+    bending, axial, quartic = belt.bending_stiffness, belt.axial_stiffness, belt.youngs_modulus * belt.fourth_moment
+    moment = bending * TURN / belt.given_length
 
     def metric(curvature: float) -> float:
-        return 1.0 - 2.0 * bending * curvature**2 / axial
+        return 1.0 - 3.0 * bending * curvature**2 / axial
 
-    curvature = float(brentq(lambda k: bending * metric(k) * k - moment, 0.0, 2.0 * TURN, xtol=1e-15))
+    def missing(curvature: float) -> float:
+        return 0.5 * curvature * (bending * (3.0 * metric(curvature) - 1.0) + quartic * curvature**2) - moment
+
+    curvature = float(brentq(missing, 0.0, 2.0 * TURN, xtol=1e-15))
     radius = metric(curvature) ** 0.5 / curvature
     angle = curvature * belt.given_length
     return radius * sin(angle), radius * (1.0 - cos(angle)), angle

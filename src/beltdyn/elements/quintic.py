@@ -1,11 +1,11 @@
 """Quintic element: r, dr/dx and d2r/dx2 at the nodes, and sections that stay normal to the centreline (Eqs. 13, 14).
 
-With q = dr/dx, w = d2r/dx2, G = q . q and c = q x w the strain energy is
+With q = dr/dx, w = d2r/dx2, G = q . q, c = q x w and the rate theta' = c / G at which the belt turns, the strain energy is
+that of the paper's element without shear,
 
-    U = integral of W(G) + EI alpha2 / 2 c^2 / G over the reference length,
+    U = integral of W(G) + EI alpha2 / 2 (3 G - 1) / 2 theta'^2 + E I4 alpha2 / 8 theta'^4 over the reference length,
 
-the energy W of the law of stretch, and the first bending term of Eq. 14 without shear.  The curvature is continuous
-from element to element.
+with the energy W of the law of stretch.  The curvature is continuous from element to element.
 """
 
 from math import comb
@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.kind import ElementKind
 from beltdyn.elements.planar_curve import Density, add_density, combine, curve_scratch
 from beltdyn.elements.planar_curve_damping import (
@@ -66,6 +67,32 @@ def bends(xi: float, length: float) -> Six:
     )
 
 
+class Bending(NamedTuple):
+    """Energy of bending per reference length, J/m, and its derivatives in G and c."""
+
+    energy: float
+    g: float
+    c: float
+    gg: float
+    gc: float
+    cc: float
+
+
+@kernel(inline=True)
+def bending_of(section: Section, metric: float, cross: float) -> Bending:
+    """Give (EI alpha2 / 2) (3 G - 1) / 2 theta'^2 + (E I4 alpha2 / 8) theta'^4 with theta' = c / G."""
+    first, second, turning = section.bending, section.quartic, cross / metric
+    square, stiffer = turning * turning, 1.5 * metric - 0.5
+    return Bending(
+        square * (0.5 * first * stiffer + 0.125 * second * square),
+        square / metric * (first * (0.5 - 0.75 * metric) - 0.5 * second * square),
+        turning / metric * (first * stiffer + 0.5 * second * square),
+        square / (metric * metric) * (first * 1.5 * (metric - 1.0) + 2.5 * second * square),
+        turning / (metric * metric) * (first * (1.0 - 1.5 * metric) - 2.0 * second * square),
+        (first * stiffer + 1.5 * second * square) / (metric * metric),
+    )
+
+
 @kernel
 def quintic_energy(element: Quintic, e: FloatArray, length: float) -> float:
     """Strain energy of an element; see `ElementKind.energy`."""
@@ -75,7 +102,7 @@ def quintic_energy(element: Quintic, e: FloatArray, length: float) -> float:
         wx, wy = combine(e, bends(points[k], length))
         metric, cross = qx * qx + qy * qy, qx * wy - qy * wx
         along = stretching(element.section.stretch, metric).energy
-        total += weights[k] * length * (along + 0.5 * element.section.bending * cross * cross / metric)
+        total += weights[k] * length * (along + bending_of(element.section, metric, cross).energy)
     return total
 
 
@@ -89,16 +116,15 @@ def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, 
     for k in range(points.size):
         slope, bend = slopes(points[k], length), bends(points[k], length)
         q, w = combine(e, slope), combine(e, bend)
-        weight, bending = weights[k] * length, weights[k] * length * element.section.bending
-        metric = q[0] * q[0] + q[1] * q[1]
-        turning = (q[0] * w[1] - q[1] * w[0]) / metric
+        weight, metric = weights[k] * length, q[0] * q[0] + q[1] * q[1]
         along = stretching(element.section.stretch, metric)
+        across = bending_of(element.section, metric, q[0] * w[1] - q[1] * w[0])
         density = Density(
-            weight * along.slope - 0.5 * bending * turning * turning,
-            bending * turning,
-            weight * along.curvature + bending * turning * turning / metric,
-            -bending * turning / metric,
-            bending / metric,
+            weight * (along.slope + across.g),
+            weight * across.c,
+            weight * (along.curvature + across.gg),
+            weight * across.gc,
+            weight * across.cc,
         )
         add_density(density, slope, bend, q, w, wanted, work)
 
@@ -160,5 +186,5 @@ QUINTIC = ElementKind(
     damping=quintic_damping,
     scratch=curve_scratch(6) | curve_damping_scratch(6),
     turned=2,
-    bent_strain=-1.0,  # least energy EA e^2 / 2 + EI (1 + 2 e) / (2 R^2) at a small strain e
+    bent_strain=ANCF.bent_strain,
 )

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
-from beltdyn.elements.quintic import QUINTIC, Quintic, bends, slopes
+from beltdyn.elements.ancf.strain_energy import energy_density
+from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes
 from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
-from beltdyn.stretch import Green
+from beltdyn.stretch import Green, stretching
 
-LENGTH, AXIAL, BENDING, MASS = 0.05, 1e4, 0.02, 0.1
-SECTION = Section(Green(AXIAL), *[0.0] * 7)._replace(bending=BENDING, mass=MASS)
+LENGTH, AXIAL, BENDING, QUARTIC, MASS = 0.05, 1e4, 0.02, 2e-6, 0.1
+SECTION = Section(Green(AXIAL), *[0.0] * 7)._replace(bending=BENDING, quartic=QUARTIC, mass=MASS)
 ELEMENT = Quintic(SECTION, gauss_points(4))
 SCALE = np.tile([LENGTH, LENGTH, 1.0, 1.0, 1.0 / LENGTH, 1.0 / LENGTH], 2)
 """Changes of the coordinates that strain alike."""
@@ -75,7 +76,7 @@ def test_uniform_stretch(stretch: float) -> None:
 
 
 def test_energy_of_an_arc() -> None:
-    """EI L / 2 R^2: a quintic through nodes on a circle misses it by the sixth power of the angle that it covers."""
+    """EI L / 2 R^2 + E I4 L / 8 R^4: a quintic through nodes on a circle misses it by the sixth power of its angle."""
     errors = []
     for angle in (0.8, 0.4):
         radius = LENGTH / angle
@@ -84,9 +85,19 @@ def test_energy_of_an_arc() -> None:
         tangent = np.stack([np.cos(turned), np.sin(turned)], axis=1)
         bend = np.stack([-np.sin(turned), np.cos(turned)], axis=1) / radius
         energy = QUINTIC.energy(ELEMENT, QUINTIC.nodal(place, tangent, bend).ravel(), LENGTH)
-        errors.append(abs(energy / (0.5 * BENDING * LENGTH / radius**2) - 1.0))
+        errors.append(abs(energy / (LENGTH * (0.5 * BENDING / radius**2 + 0.125 * QUARTIC / radius**4)) - 1.0))
     assert errors[0] < 1e-5
     assert np.log2(errors[0] / errors[1]) > 5.5
+
+
+@pytest.mark.parametrize("stretch", [0.95, 1.1])
+@pytest.mark.parametrize("turning", [-3.0, 20.0])
+def test_energy_is_that_of_the_papers_element_without_shear(stretch: float, turning: float) -> None:
+    """At a point: G and theta' are all that sections normal to the centreline leave of Eqs. 14 and 15."""
+    expected = energy_density(stretch**2, turning, 0.0, 0.0, SECTION)
+    along = stretching(SECTION.stretch, stretch**2).energy
+    found = along + bending_of(SECTION, stretch**2, stretch**2 * turning).energy
+    assert found == pytest.approx(expected, rel=1e-14)
 
 
 def test_factors_are_the_derivatives_of_the_curve_that_contact_sees() -> None:
