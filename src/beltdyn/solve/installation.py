@@ -24,8 +24,10 @@ from beltdyn.system.state import State, laid
 
 _DEEPEST_START = 0.1
 """Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
-WAYS = (1.0,), (64.0, 16.0, 4.0, 1.0), (1 / 64, 1 / 16, 1 / 4, 1.0)
-"""Ways to equilibrium that are tried one after the other: stiffness of contact, over the drive's own."""
+STARTS = 1.0, 64.0, 1 / 64
+"""Stiffness of contact over the drive's own, from which equilibrium is followed, one after the other."""
+_LONGEST_RATIO, _SHORTEST_RATIO = 4.0, 1.1
+"""Of one stiffness on the way to the next."""
 _DEEPEST = 0.5
 """Depth over radius, beyond which contact pushes a belt back the less the deeper it sinks: no balance is stable."""
 _SOUND = 0.1
@@ -191,15 +193,52 @@ def _at_rest(drive: Drive) -> Rest:
     """
     system, installation = drive_system(drive), install(drive)
     failures = list[ConvergenceError]()
-    for way in WAYS:
-        state = _lying(drive, system, installation, way[0])
+
+    def balance(factor: float) -> bool:
+        nonlocal state
         try:
-            for factor in way:
-                state = find_equilibrium(with_stiffer_contact(system, factor), state).state
-            return looked_at(drive, system, state)
+            state = find_equilibrium(with_stiffer_contact(system, factor), state).state
         except ConvergenceError as error:
             failures.append(error)
+            return False
+        return True
+
+    for start in STARTS:
+        state = _lying(drive, system, installation, start)
+        if follow(start, balance):
+            try:
+                return looked_at(drive, system, state)
+            except ConvergenceError as error:
+                failures.append(error)
     raise ConvergenceError(f"{failures[0]}{_cause(drive, installation)}")
+
+
+def follow(start: float, balance: Callable[[float], bool]) -> bool:
+    """Follow equilibria from a stiffness of contact to the drive's own, in shorter steps where long ones fail.
+
+    Parameters
+    ----------
+    start
+        Stiffness of contact to begin with, over the drive's own.
+    balance
+        Finds the equilibrium with contact stiffer by a factor from the one that was found last; where it does not,
+        it returns False and keeps that one.
+
+    Returns
+    -------
+    bool
+        Whether the drive's own equilibrium was found.
+    """
+    found, ratio = start, _LONGEST_RATIO
+    if not balance(start):
+        return False
+    while found != 1.0 and ratio > _SHORTEST_RATIO:
+        ahead = max(found / ratio, 1.0) if found > 1.0 else min(found * ratio, 1.0)
+        if balance(ahead):
+            found = ahead
+        else:
+            ratio **= 0.5
+    return found == 1.0
 
 
 def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:

@@ -1,5 +1,6 @@
 """A belt at rest on a mesh that stays, and from one such mesh to another."""
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.graded_mesh import Arc, graded_mesh, layer_length
 from beltdyn.model.resolution import layer_lengths
-from beltdyn.solve.installation import WAYS, drawn_in, looked_at, tighten, with_stiffer_contact
+from beltdyn.solve.installation import STARTS, drawn_in, follow, looked_at, tighten, with_stiffer_contact
 from beltdyn.solve.static import only_tensioners
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System
@@ -157,10 +158,10 @@ def stand(
         arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
         lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
     system = staying_system(drive, lengths)
-    for way in WAYS:
-        state = _lying(drive, system, installation, span, way[0])
+    for start in STARTS:
+        state = _lying(drive, system, installation, span, start)
         anchor = anchor_at(system, state, True)
-        if all(_balance(drive, system, state, anchor, factor) for factor in way):
+        if follow(start, partial(_balance, drive, system, state, anchor)):
             tension = looked_at(drive, system, state).tension
             return Standing(drive, system, state, state.position.copy(), tension, layer, fineness, span)
     raise ConvergenceError(
@@ -170,10 +171,13 @@ def stand(
 
 
 def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:
-    """Bring a state to equilibrium with contact stiffer by a factor; False if that fails."""
-    still = without_friction(with_stiffer_contact(system, factor))
+    """Bring a state to equilibrium with contact stiffer by a factor; if that fails, False, and the state as it was."""
+    still, begun = without_friction(with_stiffer_contact(system, factor)), state.position.copy()
     tolerance = TOLERANCE * float(np.min(drive.radii))
-    return find_steady(still, state.at(0.0), anchor, tolerance, _MOST, steady_work(still))[0] == FOUND
+    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, steady_work(still))[0] == FOUND
+    if not found:
+        state.position[:] = begun
+    return found
 
 
 def without_friction(system: System) -> System:

@@ -12,6 +12,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, install, loads, tensioner_balances
 from beltdyn.results import open_run
 from beltdyn.solve import bring_to_rest, equilibrium, simulate
+from beltdyn.solve.installation import follow
 from beltdyn.solve.static import tensioner_compliance
 
 Circle = tuple[str, float, float, float, str]
@@ -248,3 +249,30 @@ def test_the_stable_balance_is_found_on_either_side() -> None:
         here = next(balance for balance in found if balance.here)
         assert here.stable
         assert abs(here.position) == min(abs(balance.position) for balance in found if balance.stable)
+
+
+@pytest.mark.parametrize("start", [1.0, 64.0, 1 / 64])
+@pytest.mark.parametrize("reach", [5.0, 2.5, 1.3])
+def test_equilibria_are_followed_in_steps_that_succeed(start: float, reach: float) -> None:
+    """A solver that gets no further than a ratio of stiffnesses; each is found from the one before."""
+    found = [start]
+
+    def balance(factor: float) -> bool:
+        near = 1 / reach <= factor / found[-1] <= reach
+        found.extend([factor] * near)
+        return near
+
+    assert follow(start, balance)
+    assert found[-1] == 1.0
+
+
+@pytest.mark.parametrize("lost", [64.0, 4.0, 1.0])
+def test_equilibria_that_end_are_given_up(lost: float) -> None:
+    tried = list[float]()
+
+    def balance(factor: float) -> bool:
+        tried.append(factor)
+        return factor > lost
+
+    assert not follow(64.0, balance)
+    assert len(tried) < 20
