@@ -93,8 +93,8 @@ def test_slip_is_elastic_creep(summaries: tuple[str, list[Summary]]) -> None:
 def test_losses_are_those_of_creep(summaries: tuple[str, list[Summary]]) -> None:
     """Friction loses what creep does, within 6 %; contact damping takes less than 0.1 % under half the load.
 
-    Under a fifth of it the strain that the belt takes on as it bends to the smallest pulley counts beside creep: friction
-    takes a part of it.
+    Under a fifth of it the strain that the belt takes on as it bends to the smallest pulley counts beside creep:
+    friction takes a part of it.
     """
     name, (half, fifth) = summaries
     drive = drive_of(DRIVES[name], LOADS[1])

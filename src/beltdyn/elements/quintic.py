@@ -1,7 +1,7 @@
 """Quintic element: r, dr/dx and d2r/dx2 at the nodes, and sections that stay normal to the centreline (Eqs. 13, 14).
 
-With q = dr/dx, w = d2r/dx2, G = q . q, c = q x w and the rate theta' = c / G at which the belt turns, the strain energy is
-that of the paper's element without shear,
+With q = dr/dx, w = d2r/dx2, G = q . q, c = q x w and the rate theta' = c / G at which the belt turns, the strain energy
+is that of the paper's element without shear,
 
     U = integral of W(G) + EI alpha2 / 2 (3 G - 1) / 2 theta'^2 + E I4 alpha2 / 8 theta'^4 over the reference length,
 
