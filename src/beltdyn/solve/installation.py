@@ -193,6 +193,7 @@ def _at_rest(drive: Drive) -> Rest:
     """
     system, installation = drive_system(drive), install(drive)
     failures = list[ConvergenceError]()
+    state: State
 
     def balance(factor: float) -> bool:
         nonlocal state
