@@ -39,6 +39,7 @@ ELSEWHERE = {
     "solve/observer.py": "unit/solve/test_recording.py",
     "solve/result_layout.py": "unit/solve/test_recording.py",
     "solve/steady_newton.py": "unit/solve/test_steady.py",
+    "solve/steady_neighbour.py": "unit/solve/test_steady.py",
     "solve/steady_refinement.py": "unit/solve/test_steady.py",
     "solve/steady_search.py": "unit/solve/test_steady.py",
     "solve/steady_slip.py": "unit/solve/test_steady.py",

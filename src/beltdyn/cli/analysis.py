@@ -13,8 +13,8 @@ from beltdyn.analyses import Analysis
 from beltdyn.cli.batch import analyse_several
 from beltdyn.cli.output import analyse_to, doubt, ended, require_output, write_tables
 
-SHARED = ("output", "progress", "overwrite")
-"""Parameters of functions that every command fills in itself."""
+SHARED = ("output", "progress", "overwrite", "start")
+"""Parameters of functions that every command fills in itself, or leaves alone."""
 
 _ABOUT = """
 Several drives are computed side by side on all cores. Ctrl-C, or the signal to terminate, ends the command and keeps

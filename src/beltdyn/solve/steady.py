@@ -1,6 +1,8 @@
 """An analysis: the steady running of a drive, on a mesh that stays while the belt flows through it."""
 
 import time
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,6 +12,7 @@ from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.staying import bring_to_stand
+from beltdyn.solve.steady_neighbour import require_neighbour, search_from, with_length_of
 from beltdyn.solve.steady_refinement import refine
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.solve.trajectory import Chunk
@@ -28,6 +31,7 @@ def steady_state(
     at: float | None = None,
     force_tolerance: float = 0.01,
     elements: int | None = None,
+    start: Run | None = None,
     progress: Report | None = None,
 ) -> Run:
     """Find the steady running of a drive, without a simulation over time.
@@ -46,6 +50,12 @@ def steady_state(
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
     elements
         Number of equal elements, in place of the graded mesh.
+    start
+        Steady running of the same drive under other speeds, torques or loads, or of one that differs in some numbers.
+        The search begins there, on its mesh, of which the errors are taken over; where that fails, or the errors are
+        larger than `force_tolerance`, it begins at rest.
+        It is quick where the length of the belt is known: of the same drive at another instant, or of copies of
+        ``start.drive``.
     progress
         Called now and then with a `Progress`.
 
@@ -68,32 +78,60 @@ def steady_state(
     >>> round(float(run.dataset.pulley_speed.isel(time=-1, pulley=1)), 4)  # rad/s
     12.0
     """
-    instant = drive.simulation.duration if at is None else at
     _require_steady(drive, force_tolerance, elements)
+    instant = drive.simulation.duration if at is None else at
+    if start is not None:
+        require_neighbour(drive, start, elements)
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    rest = bring_to_stand(drive, elements)
-    search, begun = SteadySearch(rest, instant), time.perf_counter()
-    search.run()
-    errors = refine(search, rest, force_tolerance, elements)
-    duration = _TURNS * rest.drive.belt_length / abs(search.belt_parameter)
-    shown = rest.drive.replace(
-        simulation=drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
-    )
+    found = _continued(drive, start, instant, force_tolerance) if start is not None else None
+    search, errors, seconds = found or _from_rest(drive, instant, force_tolerance, elements)
+    duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
+    turns = drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
+    shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
     title = f"Belt drive in steady running, as at {instant:g} s"
     with Recording(shown, search.constant, None, title, None) as recording:
-        recording.start(rest.drive, search.constant, ())
+        recording.start(search.drive, search.constant, ())
         recording.take(_running(search.constant, search.state, duration))
         recording.note(
             drive_as_given=drive.text,
             steady_at=instant,
-            wall_time=time.perf_counter() - begun,
-            **search.friction_band(rest.system.tensioners),
+            wall_time=seconds,
+            **search.friction_band(),
             belt_parameter=search.belt_parameter,
             newton_iterations_of_search=search.iterations,
             **{mesh_error_attribute(name): error for name, error in errors.items()},
         )
     return recording.run()
+
+
+class _Found(NamedTuple):
+    """Steady running, and how it was found."""
+
+    search: SteadySearch
+    errors: Mapping[str, float]
+    """Of the mesh, relative."""
+    seconds: float
+    """Of the search, s."""
+
+
+def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None) -> _Found:
+    """Find steady running from the belt at rest."""
+    rest = bring_to_stand(drive, elements)
+    search, begun = SteadySearch(rest.drive, rest.system, rest.state, instant), time.perf_counter()
+    search.run(rest)
+    errors = refine(search, rest, force_tolerance, elements)
+    return _Found(search, errors, time.perf_counter() - begun)
+
+
+def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float) -> _Found | None:
+    """Find steady running from that of a neighbour, on its mesh; None if that fails, or the mesh is too coarse."""
+    if start.resolution.errors["peak pressure"] > force_tolerance:
+        return None
+    installed = with_length_of(drive, start) or bring_to_stand(drive).drive
+    search, begun = search_from(installed, start, instant), time.perf_counter()
+    errors = {name: error for name, error in start.resolution.errors.items() if np.isfinite(error)}
+    return _Found(search, errors, time.perf_counter() - begun) if search.resume() else None
 
 
 def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) -> None:

@@ -12,7 +12,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.loads.shaft import shaft_torque
-from beltdyn.records import Records
+from beltdyn.model import Drive
 from beltdyn.solve.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.solve.steady_slip import slips_through
@@ -55,23 +55,23 @@ class SteadySearch:
 
     Parameters
     ----------
-    rest
-        The drive at rest on a mesh that stays.
+    drive, system, state
+        The drive on a mesh that stays. The state is changed in place.
     time
         At which speeds, torques and schedules are taken, s.
     """
 
-    def __init__(self, rest: Standing, time: float) -> None:
-        self.drive, self._time, self._rest = rest.drive, time, rest
-        self.state, self.iterations, self.setting = rest.state, 0, Setting()
+    def __init__(self, drive: Drive, system: System, state: State, time: float) -> None:
+        self.drive, self._time = drive, time
+        self.state, self.iterations, self.setting = state, 0, Setting()
         self._held: int | None = None
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
-        self._work_on(rest.system)
+        self._work_on(system)
 
     def _work_on(self, system: System) -> None:
         """Take a mesh."""
-        self.constant = constant_drive(system, self._time)
+        self.constant, self._tensioners = constant_drive(system, self._time), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
         self._hold(self._held)
@@ -92,8 +92,17 @@ class SteadySearch:
         """Length of unstretched belt that passes in a second, m/s."""
         return float(self.constant.frame.speed[0])
 
-    def run(self) -> None:
+    def resume(self) -> bool:
+        """Find steady running under the loads that are asked for from that under others; False if that fails."""
+        return self._try(Setting())
+
+    def run(self, rest: Standing) -> None:
         """Find steady running under the loads that are asked for.
+
+        Parameters
+        ----------
+        rest
+            The same drive at rest, on the same mesh.
 
         Raises
         ------
@@ -106,8 +115,8 @@ class SteadySearch:
         if driver is not None:
             self._held_speed = speed / float(self.drive.path.radii[driver])
             self._hold(driver)
-        gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed))
-        if not any(self._start(speed, gentle._replace(speed=first)) for first in _FIRST_SPEEDS):
+        gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
+        if not any(self._start(rest.place, speed, gentle._replace(speed=first)) for first in _FIRST_SPEEDS):
             raise ConvergenceError(
                 "steady running not found: the search does not even begin, under a twentieth of the loads. Check the "
                 "drive with `beltdyn check`, and its run over time with `beltdyn run`."
@@ -137,13 +146,8 @@ class SteadySearch:
                 "force_tolerance."
             )
 
-    def friction_band(self, tensioners: Records) -> dict[str, FloatArray]:
+    def friction_band(self) -> dict[str, FloatArray]:
         """Where dry friction holds tensioners at most, m or rad.
-
-        Parameters
-        ----------
-        tensioners
-            With their dry friction.
 
         Returns
         -------
@@ -154,7 +158,7 @@ class SteadySearch:
         place, own = self.state, self.constant.tensioners.push
         given, found = own.copy(), dict[str, FloatArray]()
         for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
-            friction = dry_friction_of(tensioners, f"{name}_friction")
+            friction = dry_friction_of(self._tensioners, f"{name}_friction")
             self.state = State(place.position.copy(), place.velocity.copy(), place.acceleration)
             speed = self.belt_parameter
             if np.any(friction) and all(self._pushed(own, given + part * sense * friction) for part in _PUSHES):
@@ -169,17 +173,17 @@ class SteadySearch:
         own[:] = push
         return self._try(self.setting)
 
-    def _gentle(self, speed: float) -> float:
+    def _gentle(self, speed: float, tension: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""
         pulleys = self._system.pulleys
-        limits = self._system.law.friction.saturation(self._rest.tension / self.drive.radii, pulleys.friction, speed)
+        limits = self._system.law.friction.saturation(tension / self.drive.radii, pulleys.friction, speed)
         least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
         return max(1.0, _GENTLE * abs(speed) / least)
 
-    def _start(self, speed: float, setting: Setting) -> bool:
-        """Begin at a setting, from rest, with a belt of a speed (m/s) that sticks to all pulleys."""
+    def _start(self, place: FloatArray, speed: float, setting: Setting) -> bool:
+        """Begin at a setting, from a place at rest, with a belt of a speed (m/s) that sticks to all pulleys."""
         state, running, path = self.state, setting.speed * speed, self.drive.path
-        state.position[:] = self._rest.place
+        state.position[:] = place
         self.constant.frame.speed[0] = running * self.drive.belt_length / path.length
         state.velocity[self._system.first_body :][: path.count] = running / path.radii
         guess_hubs(self._at(setting), state.velocity)

@@ -102,6 +102,16 @@ def test_dry_friction_holds_a_tensioner_within_a_band(machines: Drive) -> None:
         assert f"tensioner_position_after_{name}" not in other.attrs
 
 
+def test_a_neighbour_of_a_drive_with_a_given_tension(machines: Drive) -> None:
+    """Of the same drive at another instant the length is known; hubs, clutches and arm are taken along."""
+    run = steady_state(machines)
+    found = steady_state(machines, at=1.4, start=run).dataset
+    assert found.attrs["newton_iterations_of_search"] < 40
+    other = steady_state(machines, at=1.4).dataset
+    for name in ("pulley_speed", "shaft_speed", "tensioner_position", "span_tension", "hub_force"):
+        np.testing.assert_allclose(found[name], other[name], rtol=1e-3, atol=1e-6)
+
+
 def test_an_open_clutch_lets_its_load_stop(machines: Drive) -> None:
     """At 0.2 s the compressor's clutch is open, and dry friction has its shaft."""
     found = steady_state(machines, at=0.2).dataset
@@ -123,6 +133,39 @@ def test_the_belt_wears_evenly(run: Run) -> None:
     nodes = run.dataset.node_coordinate.values
     lengths = 2.0 * (coordinates - nodes)
     np.testing.assert_allclose(work / lengths, np.full(work.size, work.sum() / lengths.sum()), rtol=1e-6)
+
+
+def test_a_neighbour_begins_where_another_ended(loaded: Drive, run: Run) -> None:
+    """On its mesh, in a few iterations, to the same state as from rest."""
+    driver, driven = run.drive.pulleys
+    lighter = run.drive.replace(pulley=[driver, driven.replace(torque={"kind": "constant", "value": -40.0})])
+    found, other = steady_state(lighter, start=run).dataset, steady_state(lighter).dataset
+    assert found.attrs["newton_iterations_of_search"] <= 5 < other.attrs["newton_iterations_of_search"]
+    np.testing.assert_array_equal(found.node_coordinate, run.dataset.node_coordinate)
+    np.testing.assert_allclose(found.pulley_speed, other.pulley_speed, rtol=1e-5)
+    np.testing.assert_allclose(found.span_tension, other.span_tension, rtol=1e-4)
+    slower = steady_state(loaded, at=0.05 + 0.25 * 0.55, start=run).dataset
+    assert slower.attrs["newton_iterations_of_search"] <= 5
+    assert float(slower.pulley_speed[0, 0]) == pytest.approx(30.0)
+
+
+def test_a_start_that_is_far_off_or_not_resolved_does_no_harm(loaded: Drive, run: Run) -> None:
+    still = loaded.pulleys[0].replace(speed={"kind": "constant", "value": -120.0})
+    other_way = loaded.replace(pulley=[still, loaded.pulleys[1]])
+    found = steady_state(other_way, start=run)
+    assert float(found.dataset.pulley_speed[0, 1]) < -100.0
+    assert steady_state(loaded, start=run, force_tolerance=1e-4).resolution.errors["peak pressure"] < 1e-4
+
+
+def test_starts_that_do_not_fit(loaded: Drive, run: Run) -> None:
+    short = loaded.replace(simulation=loaded.simulation.replace(duration=1e-3))
+    with pytest.raises(ModelError, match="start holds no steady running"):
+        steady_state(loaded, start=bd.simulate(short))
+    renamed = loaded.replace(pulley=[loaded.pulleys[0], loaded.pulleys[1].replace(name="other")])
+    with pytest.raises(ModelError, match="start has the pulleys driver, driven and 0 moving tensioners; the drive has"):
+        steady_state(renamed, start=run)
+    with pytest.raises(ModelError, match="elements = 30 does not go with start"):
+        steady_state(loaded, start=run, elements=30)
 
 
 def test_drives_that_cannot_run_steadily(loaded: Drive) -> None:
