@@ -190,7 +190,8 @@ def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     if not installation.tension > 0:
         return []
     running = Running(installation.tension)
-    return unresolved(drive.belt, mesh_errors(drive, running, drive.elements), elements_needed(drive, running))
+    errors, needed = mesh_errors(drive, running, drive.elements), elements_needed(drive, running)
+    return unresolved(errors, needed, pressures=drive.belt.elements is not None)
 
 
 def describe_time(drive: Drive) -> str:

@@ -155,19 +155,19 @@ def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
     return many
 
 
-def unresolved(belt: Belt, errors: Mapping[str, float], needed: Mapping[str, int]) -> list[Finding]:
+def unresolved(errors: Mapping[str, float], needed: Mapping[str, int], *, pressures: bool) -> list[Finding]:
     """Say what a mesh does not resolve, and which ones would; nothing if it resolves all.
 
     Parameters
     ----------
-    belt
-        As given; where it leaves the number of elements open, pressures are not asked for.
     errors
         Result of `mesh_errors`; an error that is not known, NaN, counts as resolved.
     needed
         Result of `elements_needed`.
+    pressures
+        Whether pressures are asked for, as where the number of elements is given; that which is chosen leaves them out.
     """
-    asked = ERROR_LIMITS if belt.elements is not None else ERROR_LIMITS.keys() - PRESSURES
+    asked = ERROR_LIMITS if pressures else ERROR_LIMITS.keys() - PRESSURES
     names = sorted((name for name in asked if errors[name] > ERROR_LIMITS[name]), key=lambda name: -needed[name])
     if not names:
         return []

@@ -56,3 +56,11 @@ def test_layers(run: Run) -> None:
     tension = install(run.drive).tension
     assert bending == pytest.approx(math.sqrt(run.drive.belt.bending_stiffness / tension), rel=1e-3)
     assert contact == pytest.approx(math.sqrt(tension / run.drive.contact_stiffness), rel=1e-3)
+
+
+def test_pressures_are_not_asked_for_on_a_mesh_that_was_chosen(run: Run) -> None:
+    """The drive of a run with an installed tension holds the chosen number as if it were given; the file does not."""
+    assert any("peak pressure" in text for text in run.warnings)
+    given = run.drive.replace(belt=run.drive.belt.replace(elements=None))
+    chosen = Run(run.dataset.assign_attrs(drive_as_given=given.text), run.drive)
+    assert not any("pressure" in text for text in chosen.warnings)

@@ -1,5 +1,6 @@
 """What the mesh does not resolve, and which one would."""
 
+import tomllib
 from collections.abc import Iterator
 
 from beltdyn.model import ERROR_LIMITS, unresolved
@@ -19,4 +20,11 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
             "Leave `elements` out for a graded mesh, or lower `force_tolerance`.",
         )
     if not found:
-        yield from unresolved(evidence.drive.belt, evidence.resolution.errors, evidence.resolution.needed)
+        errors, needed = evidence.resolution.errors, evidence.resolution.needed
+        yield from unresolved(errors, needed, pressures=_given(evidence))
+
+
+def _given(evidence: Evidence) -> bool:
+    """Whether the drive file gives the number of elements; the drive of a run may hold one that was chosen."""
+    text = evidence.recorded.attrs.get("drive_as_given")
+    return evidence.drive.belt.elements is not None if text is None else "elements" in tomllib.loads(str(text))["belt"]
