@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from beltdyn.kernel import kernel
-from beltdyn.solve.alpha_impulse import follow_profiles
+from beltdyn.solve.alpha_impulse import follow_torques
 from beltdyn.solve.alpha_method import Method, method_of
 from beltdyn.solve.alpha_step import Step, new_step, try_step
 from beltdyn.solve.integrator_state import IntegratorState, Settings, Steps, allowed_error, motion_of, trial_motion
@@ -171,7 +171,7 @@ def _accept(
     taken = numerical_loss(system, motion_of(state), end, state.impulse, work)
     state.work[NUMERICAL_LOSS] += taken
     missed_work(system, motion_of(state), end, state.impulse, state.missed)
-    follow_profiles(system, method, state, step.length)
+    follow_torques(system, method, state, step.length)
     for k in range(power.size):
         state.work[k] += 0.5 * step.length * (state.power[k] + power[k]) + state.missed[k]
         state.power[k] = power[k]

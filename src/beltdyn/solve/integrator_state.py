@@ -82,7 +82,8 @@ class IntegratorState(NamedTuple):
     impulse: FloatArray
     """Impulses on the bodies that the ends of the step in hand miss, from `missed_impulses`, shape (2, n N + D)."""
     lagged: FloatArray
-    """What the method makes of each profile, as A is of the acceleration; nan after a jump; shape (profiles,)."""
+    """What the method makes of each profile and then each load over the angle, as A is of the acceleration; nan after a
+    jump; shape (profiles + loads,)."""
     missed: FloatArray
     """Works that the powers at its ends miss, from `missed_work`, J, shape (8,)."""
     losses: np.record
@@ -177,7 +178,7 @@ def new_state(system: System, time: float, step: float, position: FloatArray, ve
         work=np.zeros(len(ENERGY_WORKS)),
         power=np.zeros(len(POWERS)),
         impulse=np.zeros((2, size)),
-        lagged=np.full(system.profiles.table.size - 1, np.nan),
+        lagged=np.full(system.profiles.table.size + system.shaft_loads.table.size - 2, np.nan),
         missed=np.zeros(len(POWERS)),
         losses=blank(LOSSES),
         trial=Trial(np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size)),

@@ -13,8 +13,15 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.machines.links.registry import link_torque
-from beltdyn.machines.loads.shaft import load_bend, shaft_torque
-from beltdyn.machines.profiles.functions import NO_SCHEDULE, after_jump, prescribed_motion, profile_bend, profile_value
+from beltdyn.machines.loads.shaft import load_bend, load_torque, shaft_torque
+from beltdyn.machines.profiles.functions import (
+    NO_SCHEDULE,
+    after_jump,
+    prescribed_motion,
+    profile_bend,
+    profile_value,
+    schedule_value,
+)
 from beltdyn.system.arrays import COUPLING_LOSS, DRIVER_WORK, TORQUE_WORK, Motion, System
 
 _PARTS: Final = 4
@@ -179,11 +186,26 @@ def action_at(system: System, source: int, motion: Motion, time: float) -> float
 @kernel
 def extrapolated_torque(system: System, pulley: int, motion: Motion, time: float) -> float:
     """Torque on a free shaft at an instant (s), with its motion extrapolated."""
-    i, since = system.first_body + system.pulleys[pulley].shaft, time - motion.time
-    speed = motion.velocity[i] + since * motion.acceleration[i]
-    angle = motion.position[i] + 0.5 * since * (motion.velocity[i] + speed)
+    angle, speed = _extrapolated(system, pulley, motion, time)
     states = motion.position[system.first_body :]
     return shaft_torque(system.profiles, system.shaft_loads, pulley, time, angle, speed, states).torque
+
+
+@kernel
+def extrapolated_load(system: System, pulley: int, load: int, motion: Motion, time: float) -> float:
+    """Torque of one load, with its schedule, on a shaft at an instant (s), with its motion extrapolated."""
+    angle, speed = _extrapolated(system, pulley, motion, time)
+    states = motion.position[system.first_body :]
+    scale = schedule_value(system.profiles, system.shaft_loads.table[load].schedule, time)
+    return scale * load_torque(system.profiles, system.shaft_loads, load, time, angle, speed, states).torque
+
+
+@kernel(inline=True)
+def _extrapolated(system: System, pulley: int, motion: Motion, time: float) -> tuple[float, float]:
+    """Angle and speed of a shaft at an instant (s), with its acceleration kept."""
+    i, since = system.first_body + system.pulleys[pulley].shaft, time - motion.time
+    speed = motion.velocity[i] + since * motion.acceleration[i]
+    return motion.position[i] + 0.5 * since * (motion.velocity[i] + speed), speed
 
 
 @kernel
