@@ -27,6 +27,8 @@ ELSEWHERE = {
     "elements/section.py": "unit/elements/test_kind.py",
     "system/body_forces.py": "unit/system/test_bodies.py",
     "system/dense_block.py": "unit/system/test_ring_matrix.py",
+    "system/coupling.py": "unit/system/test_assembly.py",
+    "system/flow_tangent.py": "unit/system/test_flowing_element.py",
     "system/element_state.py": "unit/system/test_discretization.py",
     "system/moving_center.py": "unit/system/test_bodies.py",
     "system/observations.py": "unit/system/test_observe.py",

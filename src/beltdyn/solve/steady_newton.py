@@ -6,11 +6,10 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
-from beltdyn.records import blank
 from beltdyn.system.arrays import Equations, Motion, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.ring_matrix import factorise_ring, ring_matrix, substitute
-from beltdyn.system.steady_assembly import Anchor, assemble_steady, flow_record
+from beltdyn.system.steady_assembly import Anchor, assemble_steady
 
 FOUND: Final = 0
 NOT_FOUND: Final = 1
@@ -23,7 +22,6 @@ class SteadyWork(NamedTuple):
 
     equations: Equations
     """With one unknown more than the system's bodies have."""
-    flow: np.record
     ahead_node: FloatArray
     """The correction that the present tangent would make after a step, shape (N, n)."""
     ahead_border: FloatArray
@@ -35,8 +33,7 @@ def steady_work(system: System) -> SteadyWork:
     given, dof = new_equations(system), len(system.scale)
     border = int(np.max(system.bodies.unknown, initial=-1)) + 2
     equations = given._replace(matrix=ring_matrix(dof, system.nodes, border), border_part=np.zeros(border))
-    flow = blank(flow_record(len(system.vectors), 2 * dof))
-    return SteadyWork(equations, flow, np.zeros((system.nodes, dof)), np.zeros(border))
+    return SteadyWork(equations, np.zeros((system.nodes, dof)), np.zeros(border))
 
 
 @kernel
@@ -65,9 +62,9 @@ def find_steady(
     status, iterations : int
         `FOUND`, `NOT_FOUND` or `SINGULAR`.
     """
-    equations, flow = work.equations, work.flow
+    equations = work.equations
     node_part, border_part = equations.node_part, equations.border_part
-    assemble_steady(system, motion, anchor, True, equations, flow)
+    assemble_steady(system, motion, anchor, True, equations)
     for iteration in range(1, most + 1):
         if not factorise_ring(equations.matrix, True):
             return SINGULAR, iteration
@@ -75,7 +72,7 @@ def find_steady(
         size, length = _size(system, node_part, border_part), 1.0
         while True:
             _step(system, motion, anchor, -length, node_part, border_part)
-            assemble_steady(system, motion, anchor, False, equations, flow)
+            assemble_steady(system, motion, anchor, False, equations)
             substitute(equations.matrix, True, work.ahead_node, work.ahead_border)
             ahead = _size(system, work.ahead_node, work.ahead_border)
             if ahead <= max((1.0 - 0.25 * length) * size, tolerance):
@@ -86,7 +83,7 @@ def find_steady(
                 return NOT_FOUND, iteration
         if ahead <= tolerance:
             return FOUND, iteration
-        assemble_steady(system, motion, anchor, True, equations, flow)
+        assemble_steady(system, motion, anchor, True, equations)
     return NOT_FOUND, most
 
 

@@ -3,6 +3,8 @@
 M a + dU/de + dR/dv - Q_c(e, v, omega) - F + C^T lambda = 0        belt
 I domega/dt - moment - T_a = 0                              free bodies (Eq. 23)
 C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
+
+In a mesh that stays a is the acceleration of material points (`flowing_element`).
 """
 
 import numpy as np
@@ -12,10 +14,13 @@ from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
-from beltdyn.kernel import kernel
+from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arrays import BodyForces, Equations, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.body_forces import add_contact, add_machines, clear_body_forces, differentiates_forces
+from beltdyn.system.coupling import couple_rim, scatter, take_contact
 from beltdyn.system.element_state import add_material_damping, centreline, gather, gather_motion
+from beltdyn.system.flowing_element import flowing_element, hold_mesh, hold_nothing
+from beltdyn.system.frame import Flowing, Travelling
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import clear
@@ -54,14 +59,12 @@ def assemble(
     for element in range(system.length.size):
         gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         gather(system, element, motion.acceleration, work.coordinates[2])
-        _elastic_and_inertia(system, element, factors, wanted, work)
-        add_material_damping(system, element, factors, work, forces)
-        for curve in range(system.control.shape[1]):
-            piece = centreline(system, element, curve, work)
-            _contact(system, motion, factors, element, piece, equations)
+        elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
+        _add_element(system.frame, system, motion, factors, element, equations)
         scatter(system, element, wanted, work, matrix)
     add_machines(system, motion, factors, matrix.corner, forces)
     _bodies(system, motion.acceleration, factors.by_acceleration, matrix, forces)
+    _hold_mesh(system.frame, motion, factors, matrix)
     if system.joint:
         _joint(system, motion.acceleration, multipliers, factors.by_acceleration, wanted, matrix)
     add_nodal_loads(system, motion.position, factors.by_position, matrix)
@@ -69,10 +72,22 @@ def assemble(
         hold_fixed(system, matrix)
 
 
+@kernel
+def _travelling_element(
+    frame: Travelling, system: System, motion: Motion, factors: TangentFactors, element: int, equations: Equations
+) -> None:
+    """Inertia, losses and contact of an element that travels with the belt."""
+    wanted = factors.by_acceleration != 0.0 or differentiates_forces(factors)
+    _add_inertia(system, element, factors, wanted, equations.work)
+    add_material_damping(system, element, factors, equations.work, equations.forces)
+    for curve in range(system.control.shape[1]):
+        piece = centreline(system, element, curve, equations.work)
+        _contact(system, motion, factors, element, piece, equations)
+
+
 @kernel(inline=True)
-def _elastic_and_inertia(system: System, element: int, factors: TangentFactors, wanted: bool, work: np.record) -> None:
-    """Overwrite residual and tangent of the element by those of elasticity and inertia."""
-    elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
+def _add_inertia(system: System, element: int, factors: TangentFactors, wanted: bool, work: np.record) -> None:
+    """Add inertia to the residual of an element, and make the tangent that of elasticity and inertia."""
     gradient, whole = work.element.gradient, work.element.tangent
     dof, mass, acceleration = len(system.scale), system.mass[element], work.coordinates[2]
     for row in range(2 * dof):
@@ -123,51 +138,11 @@ def _contact(
             couple_center(system, element, center, factor, work.contact, work.drift, matrix)
 
 
-@kernel(inline=True)
-def take_contact(system: System, wanted: bool, work: np.record) -> None:
-    """Take contact force and tangent off the residual and tangent of the element."""
-    contact, gradient, tangent = work.contact, work.element.gradient, work.element.tangent
-    for a in range(len(system.vectors)):
-        row = system.vectors[a]
-        gradient[row] -= contact.force[a, 0]
-        gradient[row + 1] -= contact.force[a, 1]
-        if not wanted:
-            continue
-        for b in range(len(system.vectors)):
-            column = system.vectors[b]
-            tangent[row, column] -= contact.xx[a, b]
-            tangent[row, column + 1] -= contact.xy[a, b]
-            tangent[row + 1, column] -= contact.yx[a, b]
-            tangent[row + 1, column + 1] -= contact.yy[a, b]
+_add_element = by_type({Travelling: _travelling_element, Flowing: flowing_element}, "add_element")
+"""Add inertia, losses and contact to residual and tangent of an element, which are those of its elasticity."""
 
-
-@kernel(inline=True)
-def couple_rim(system: System, element: int, unknown: int, contact: np.record, matrix: RingMatrix) -> None:
-    """Coupling of the element with angle and speed of a free pulley."""
-    dof, node_j = len(system.scale), (element + 1) % system.nodes
-    for a in range(len(system.vectors)):
-        first = system.vectors[a]
-        node, c = (element, first) if first < dof else (node_j, first - dof)
-        for axis in range(2):
-            matrix.column[node, c + axis, unknown] -= contact.by_turn[a, axis]
-            matrix.row[node, unknown, c + axis] -= contact.moment[a, axis]
-
-
-@kernel(inline=True)
-def scatter(system: System, element: int, wanted: bool, work: np.record, matrix: RingMatrix) -> None:
-    """Add residual and tangent of the element to those of its nodes i and j."""
-    i, j = element, (element + 1) % system.nodes
-    dof, gradient, tangent = len(matrix.unknowns), work.element.gradient, work.element.tangent
-    for row in range(dof):
-        matrix.node_side[i, row] += gradient[row]
-        matrix.node_side[j, row] += gradient[dof + row]
-        if not wanted:
-            continue
-        for column in range(dof):
-            matrix.diagonal[i, row, column] += tangent[row, column]
-            matrix.upper[i, row, column] += tangent[row, dof + column]
-            matrix.lower[i, row, column] += tangent[dof + row, column]
-            matrix.diagonal[j, row, column] += tangent[dof + row, dof + column]
+_hold_mesh = by_type({Travelling: hold_nothing, Flowing: hold_mesh}, "hold_mesh")
+"""Keep a mesh that stays in its place along the belt."""
 
 
 @kernel(inline=True)

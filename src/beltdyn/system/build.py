@@ -20,10 +20,10 @@ from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import records
-from beltdyn.system.arrays import Supports, System
+from beltdyn.system.arrays import BODY, Supports, System
 from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
 from beltdyn.system.discretization import discretize
-from beltdyn.system.frame import Travelling, staying
+from beltdyn.system.frame import Travelling, flowing, staying
 from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.weight import weight_forces
 
@@ -74,6 +74,29 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
     )
     system = _system_of(drive, belt, contact, "shared_node", lengths=lengths)
     return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
+
+
+def flowing_system(system: System, direction: FloatArray) -> System:
+    """The same drive for equations over time: how much belt has passed is a coordinate before those of tensioners.
+
+    Parameters
+    ----------
+    system
+        From `staying_system`.
+    direction : ndarray, shape (2,)
+        Unit vector along the belt at node 0.
+
+    Returns
+    -------
+    System
+        The unknown of its flow is the last of the border.
+    """
+    at = system.bodies.size - system.tensioners.size
+    last = int(np.max(system.bodies.unknown, initial=-1)) + 1
+    own = records(BODY, inertia=[0.0], kinetic=[0.0], unknown=[last], reach=[1.0])
+    frame = flowing(system.frame, system.mass, system.vectors, system.first_body + at, direction)
+    bodies = np.concatenate([system.bodies[:at], own, system.bodies[at:]]).view(np.recarray)
+    return system._replace(bodies=bodies, frame=frame)
 
 
 def _system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:

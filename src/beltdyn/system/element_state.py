@@ -11,7 +11,7 @@ from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, BodyForces, System, TangentFactors
 from beltdyn.system.discretization import element_kind
-from beltdyn.system.frame import add_flow
+from beltdyn.system.frame import Travelling, add_flow, flow_record, flow_speed
 from beltdyn.system.hysteresis import add_hysteresis, hysteresis_scratch
 from beltdyn.system.moving_center import drift_record
 
@@ -19,8 +19,10 @@ from beltdyn.system.moving_center import drift_record
 def element_workspace(system: System) -> np.record:
     """Make the scratch arrays for one element after the other of a system."""
     count, vectors = system.control.shape[2:]
+    flow = {} if isinstance(system.frame, Travelling) else {"flow": flow_record(vectors, 2 * len(system.scale))}
     return blank(
         record(
+            **flow,
             element=element_kind(system).workspace,  # residual and tangent of one element
             contact=contact_record(count, vectors),
             coordinates=f"(3,{2 * len(system.scale)})f8",  # position, velocity and acceleration of one element
@@ -72,7 +74,8 @@ def gather_motion(
     """
     gather(system, element, position, coordinates[0])
     gather(system, element, velocity, coordinates[1])
-    add_flow(system.frame, element, system.vectors, coordinates[0], coordinates[1])
+    speed = flow_speed(system.frame, velocity)
+    add_flow(system.frame, element, system.vectors, speed, coordinates[0], coordinates[1])
 
 
 @kernel(inline=True)

@@ -3,7 +3,10 @@
 In a mesh that stays, the point r(sigma, t) of the centreline is that of the material point sigma - s(t), with s the
 length of unstretched belt that has passed.  Its velocity is dr/dt + (ds/dt) dr/dsigma.  Within an element the second
 term is a polynomial like r itself, so that vectors D e of the element's own carry it exactly; derivatives of second and
-third order, which jump from element to element, make these vectors differ from those of the neighbour.
+third order, which jump from element to element, make these vectors differ from those of the neighbour.  Its
+acceleration is
+
+    d2r/dt2 + 2 (ds/dt) d2r/dt dsigma + (d2s/dt2) dr/dsigma + (ds/dt)^2 d2r/dsigma2.
 """
 
 from collections.abc import Callable
@@ -15,6 +18,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import by_type, kernel
 from beltdyn.quadrature import gauss_points
+from beltdyn.records import record
 
 
 class Travelling(NamedTuple):
@@ -33,6 +37,21 @@ class Staying(NamedTuple):
     """D, vectors of dr/dsigma from those of r, 1/m, shape (elements, v, v)."""
     inertia: FloatArray
     """C, the integral of rho A S'^T S' over the vectors, kg/m, shape (elements, v, v)."""
+
+
+class Flowing(NamedTuple):
+    """The mesh stays in place, and the length of belt that has passed is a coordinate beside those of the bodies."""
+
+    place: int
+    """Of this coordinate s in a state."""
+    derivative: FloatArray
+    """As for `Staying`."""
+    second: FloatArray
+    """D D, vectors of d2r/dsigma2 from those of r, 1/m^2, shape (elements, v, v)."""
+    mass: FloatArray
+    """Integral of rho A S^T S over the vectors, kg, shape (elements, v, v)."""
+    direction: FloatArray
+    """t, unit vector along which node 0 does not move, shape (2,)."""
 
 
 def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
@@ -57,6 +76,53 @@ def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
     return Staying(np.zeros(1), np.ascontiguousarray(derivative), inertia)
 
 
+def flowing(given: Staying, mass: FloatArray, vectors: tuple[int, ...], place: int, direction: FloatArray) -> Flowing:
+    """Make the frame of a mesh that stays, for equations over time.
+
+    Parameters
+    ----------
+    given
+        The same mesh in steady running.
+    mass : ndarray, shape (elements, 2 n, 2 n)
+        Mass matrices of the elements.
+    vectors
+        Where among the 2 n coordinates the vectors begin.
+    place
+        Of the length that has passed in a state.
+    direction : ndarray, shape (2,)
+        Unit vector along which node 0 does not move.
+    """
+    first = np.array(vectors)
+    own = np.ascontiguousarray(mass[:, first[:, None], first])
+    return Flowing(place, given.derivative, given.derivative @ given.derivative, own, direction)
+
+
+def flow_record(vectors: int, coordinates: int) -> np.dtype[np.void]:
+    """Kind of the scratch arrays for the derivatives by velocity of one element.
+
+    Parameters
+    ----------
+    vectors
+        Number v of its vectors.
+    coordinates
+        Number 2 n of its coordinates.
+    """
+    square = f"({vectors},{vectors})f8"
+    return record(
+        xx=square,  # derivatives of contact forces by velocity, as in `contact_record`
+        xy=square,
+        yx=square,
+        yy=square,
+        moment=f"({vectors},2)f8",
+        by_turn=f"({vectors},2)f8",
+        moment_by_turn="f8",
+        rate=f"({vectors},2)f8",  # vectors D e
+        by_speed=f"{coordinates}f8",  # derivative of the residual with respect to the unknown of the flow
+        gradient=f"{coordinates}f8",  # residual and tangent of an element without damping
+        tangent=f"({coordinates},{coordinates})f8",
+    )
+
+
 def _hodograph(degree: int) -> FloatArray:
     """Control points of the derivative of a Bezier curve, raised to the same degree, from those of the curve."""
     change = degree * (np.eye(degree, degree + 1, 1) - np.eye(degree, degree + 1))
@@ -70,16 +136,42 @@ def _hodograph(degree: int) -> FloatArray:
 
 
 @kernel
+def _still(frame: Travelling, velocity: FloatArray) -> float:
+    """Nodes move with the belt."""
+    return 0.0
+
+
+@kernel
+def _given_speed(frame: Staying, velocity: FloatArray) -> float:
+    """The speed of steady running."""
+    return float(frame.speed[0])
+
+
+@kernel
+def _own_speed(frame: Flowing, velocity: FloatArray) -> float:
+    """The rate of the coordinate."""
+    return float(velocity[frame.place])
+
+
+flow_speed: Callable[[Any, FloatArray], float] = by_type(
+    {Travelling: _still, Staying: _given_speed, Flowing: _own_speed}, "flow_speed"
+)
+"""Length of unstretched belt that passes the mesh in a unit of time, m/s, from velocities of shape (n N + D,)."""
+
+
+@kernel
 def _no_flow(
-    frame: Travelling, element: int, vectors: tuple[int, ...], position: FloatArray, velocity: FloatArray
+    frame: Travelling, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
 ) -> None:
     """Leave the velocity: nodes move with the belt."""
 
 
 @kernel
-def _flow(frame: Staying, element: int, vectors: tuple[int, ...], position: FloatArray, velocity: FloatArray) -> None:
+def _flow(
+    frame: Any, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
+) -> None:
     """Add speed D e to the velocity."""
-    speed, derivative = frame.speed[0], frame.derivative[element]
+    derivative = frame.derivative[element]
     for a in range(len(vectors)):
         for axis in range(2):
             total = 0.0
@@ -88,7 +180,7 @@ def _flow(frame: Staying, element: int, vectors: tuple[int, ...], position: Floa
             velocity[vectors[a] + axis] += speed * total
 
 
-add_flow: Callable[[Any, int, tuple[int, ...], FloatArray, FloatArray], None] = by_type(
-    {Travelling: _no_flow, Staying: _flow}, "add_flow"
+add_flow: Callable[[Any, int, tuple[int, ...], float, FloatArray, FloatArray], None] = by_type(
+    {Travelling: _no_flow, Staying: _flow, Flowing: _flow}, "add_flow"
 )
-"""Add to the velocity of an element, shape (2 n,), what the belt's flow through the mesh gives its material points."""
+"""Add to the velocity of an element, shape (2 n,), what the belt's flow at a speed (m/s) gives its material points."""

@@ -3,8 +3,43 @@
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
+from beltdyn.kernel import by_type, kernel
 from beltdyn.system.arrays import Motion, System
+from beltdyn.system.frame import Flowing, Travelling
+
+
+@kernel
+def _no_flow(frame: Travelling, system: System, element: int, before: Motion, after: Motion, work: np.record) -> None:
+    """Nodes move with the belt."""
+
+
+@kernel
+def _flow_of_step(frame: Flowing, system: System, element: int, before: Motion, after: Motion, work: np.record) -> None:
+    """Make way, change of velocity, mean acceleration and mean velocity of an element those of material points."""
+    passed = 0.5 * (after.position[frame.place] - before.position[frame.place])
+    vectors, dof, node_j = system.vectors, len(system.scale), (element + 1) % system.nodes
+    derivative, second, speed = frame.derivative[element], frame.second[element], work.element.gradient
+    for end in range(2):
+        motion, sign = (before, -1.0) if end == 0 else (after, 1.0)
+        flow, change = motion.velocity[frame.place], motion.acceleration[frame.place]
+        for a in range(len(vectors)):
+            for axis in range(2):
+                c = vectors[a] + axis
+                rate = bend = turn = 0.0
+                for b in range(len(vectors)):
+                    k = vectors[b] + axis
+                    i = dof * element + k if k < dof else dof * node_j + k - dof
+                    rate += derivative[a, b] * motion.position[i]
+                    bend += second[a, b] * motion.position[i]
+                    turn += derivative[a, b] * motion.velocity[i]
+                work.coordinates[0, c] += passed * rate
+                work.coordinates[1, c] += sign * flow * rate
+                work.coordinates[2, c] += 0.5 * (2.0 * flow * turn + change * rate + flow * flow * bend)
+                speed[c] += 0.5 * flow * rate
+
+
+_add_flow_of_step = by_type({Travelling: _no_flow, Flowing: _flow_of_step}, "add_flow_of_step")
+"""Make what nodes do in a step what material points do."""
 
 
 @kernel
@@ -45,6 +80,7 @@ def numerical_loss(system: System, before: Motion, after: Motion, impulse: Float
             way[c], change[c] = after.position[i] - before.position[i], after.velocity[i] - before.velocity[i]
             mean[c] = 0.5 * (after.acceleration[i] + before.acceleration[i])
             speed[c] = 0.5 * (after.velocity[i] + before.velocity[i])
+        _add_flow_of_step(system.frame, system, element, before, after, work)
         mass = system.mass[element]
         taken[:] = 0.0
         for row in range(2 * dof):

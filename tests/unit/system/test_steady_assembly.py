@@ -23,7 +23,7 @@ SPEED = 3.0
 
 
 def residual(system: System, state: State, anchor: Anchor, work: SteadyWork, wanted: bool = False) -> FloatArray:
-    interpreted(assemble_steady)(system, state.at(0.0), anchor, wanted, work.equations, work.flow)
+    interpreted(assemble_steady)(system, state.at(0.0), anchor, wanted, work.equations)
     matrix = work.equations.matrix
     return np.concatenate([matrix.node_side.ravel(), matrix.border_side])
 
