@@ -187,7 +187,7 @@ def _penetration(drive: Drive, installation: Installation) -> list[Finding]:
 
 def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     """Judge the mesh as that of a drive that runs slowly with the tension at rest."""
-    if not installation.tension > 0:
+    if not installation.tension > 0 or drive.simulation.frame == "staying":
         return []
     running = Running(installation.tension)
     errors, needed = mesh_errors(drive, running, drive.elements), elements_needed(drive, running)
@@ -197,7 +197,7 @@ def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
 def describe_time(drive: Drive) -> str:
     """Say about how long a run will take, and what makes it so where that is long; empty where nothing is known."""
     settings, belt = drive.simulation, drive.belt
-    if settings.integrator != "generalized_alpha":
+    if settings.integrator != "generalized_alpha" or settings.frame == "staying":
         return ""
     element = drive.belt_length / drive.elements
     passage = element / belt.wave_speed

@@ -25,8 +25,14 @@ class Simulation(Part):
         description="the time between two outputs of what is recorded along the belt, in s; by default a hundredth of "
         "the duration",
     )
-    start: Literal["equilibrium", "laid"] = Field(
-        "equilibrium", description="the state at time zero: static equilibrium, or the belt laid on its path"
+    frame: Literal["travelling", "staying"] = Field(
+        "travelling",
+        description="whether the mesh travels with the belt, or stays in place while the belt flows through it",
+    )
+    start: Literal["equilibrium", "laid", "steady"] = Field(
+        "equilibrium",
+        description="the state at time zero: static equilibrium, the belt laid on its path, or, on a mesh that stays, "
+        "steady running under the speeds and loads of that instant",
     )
     integrator: Literal["generalized_alpha", "cvode", "ida", "bdf", "radau"] = Field(
         "generalized_alpha", description="the time integrator"
@@ -47,6 +53,27 @@ class Simulation(Part):
         wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
         stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
         return Instants(self.output_interval, self.duration, stride)
+
+    @model_validator(mode="after")
+    def _fits_the_frame(self) -> Self:
+        if self.frame == "travelling":
+            if self.start == "steady":
+                raise ValueError(
+                    'start = "steady" does not fit frame = "travelling", whose equal elements would ring. '
+                    'Set frame = "staying", or start = "equilibrium"'
+                )
+            return self
+        for key, value, fits in (
+            ("start", self.start, ("equilibrium", "steady")),
+            ("integrator", self.integrator, ("generalized_alpha",)),
+            ("joint", self.joint, ("shared_node",)),
+        ):
+            if value not in fits:
+                raise ValueError(
+                    f'{key} = "{value}" does not fit frame = "staying". Set {key} = "{fits[0]}", or '
+                    'frame = "travelling"'
+                )
+        return self
 
     @model_validator(mode="after")
     def _outputs_fit_the_duration(self) -> Self:

@@ -77,7 +77,10 @@ def turn_window(recorded: Recorded, drive: Drive) -> Window:
         turn = _belt_turns(recorded, drive, time)
         element = Cycle(turn.phase * (drive.belt.element_kind.curves * drive.elements), 1)
         waves = tuple(_waves(recorded, drive, turn))
-        for cycles, turns in (((turn, *waves), 1), ((element, *waves), 0), ((turn,), 1), ((element,), 0)):
+        repeats = [((turn, *waves), 1), ((element, *waves), 0), ((turn,), 1), ((element,), 0)]
+        if drive.simulation.frame == "staying":
+            repeats = [*repeats[::2], (waves, 0)] if waves else repeats[::2]
+        for cycles, turns in repeats:
             window = Window(time, cycles, turns)
             begun = all(cycle.phase[-1] - cycle.phase[0] >= cycle.count for cycle in cycles)
             if begun and 0.0 < window.end - window.start <= longest:

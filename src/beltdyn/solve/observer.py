@@ -17,7 +17,7 @@ from beltdyn.solve.flutter import Flutter, FlutterWatch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import BENDING_LOSS, ENERGY_WORKS, STRETCH_LOSS, System
 from beltdyn.system.discretization import curve_lengths
-from beltdyn.system.frame import Staying
+from beltdyn.system.frame import Flowing, Travelling
 from beltdyn.system.observations import OBSERVED
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.pulley_state import pulley_speeds
@@ -60,7 +60,7 @@ class Observer:
         self._shares = lengths / np.sum(lengths)
         self._friction_work = FrictionWork(drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
         self._energy = EnergyAccount()
-        self._flutter = FlutterWatch(system)
+        self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
 
     def see(self, states: Chunk, shown: BoolArray) -> Seen:
         """Every recorded variable at further states but those that are coordinates and their rates.
@@ -82,14 +82,15 @@ class Observer:
         aside = mid_span_displacements(self._drive, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)
         on_arc, on_belt = self._friction_work.take(Touch(states.time, centers, places, touched, lost), shown)
-        if isinstance(self._system.frame, Staying):  # all of the belt passes
+        if not isinstance(self._system.frame, Travelling):  # all of the belt passes
             on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares
         potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
         stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy[shown]
         closure = self._energy.closure(stored, potential, states.work, shown)
         every = seen._asdict() | {"mid_span_displacement": aside}
         _require_numbers(states.time, shown, every)
-        self._flutter.take(states.time, states.position, states.velocity, every)
+        if self._flutter:
+            self._flutter.take(states.time, states.position, states.velocity, every)
         rows = {name: values if name in _OF_SHOWN else values[shown] for name, values in every.items()}
         at_outputs = {
             **rows,
@@ -109,8 +110,8 @@ class Observer:
         return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})
 
     def find_flutter(self) -> Flutter | None:
-        """The largest growth of vibrations while the belt slid; None where none grows."""
-        return self._flutter.find()
+        """The largest growth of vibrations while the belt slid; None where none grows, or the mesh does not travel."""
+        return self._flutter.find() if self._flutter else None
 
 
 def _require_numbers(time: FloatArray, shown: BoolArray, seen: Arrays) -> None:

@@ -4,8 +4,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import get_args
 
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Simulation
-from beltdyn.results import Run, require_room
+from beltdyn.results import Run, mesh_error_attribute, require_room
+from beltdyn.solve.flowing_start import Beginning, begin_flowing
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import bring_to_rest
 from beltdyn.solve.observer import Arrays
@@ -14,6 +16,7 @@ from beltdyn.solve.recording import Recording
 from beltdyn.solve.settling import Start
 from beltdyn.solve.standard import Name, StandardIntegrator
 from beltdyn.solve.trajectory import Integrator, drive_task
+from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
 
@@ -99,26 +102,58 @@ def record_run(
         As `simulate` gives it.
     """
     require_room(drive, Path(output) if output is not None else None)
-    system, settings = drive_system(drive), drive.simulation
-    title = f"Belt drive, {settings.duration:g} s"
+    integrator = integrator or choose_integrator(drive)
+    flowing = None
+    if drive.simulation.frame == "staying":
+        _require_flowing(integrator, begin)
+        flowing = begin_flowing(drive, progress)
+    system = flowing.system if flowing else drive_system(drive)
+    title = f"Belt drive, {drive.simulation.duration:g} s"
     with Recording(drive, system, output, title, progress, overwrite, **attributes) as recording:
         recording.prepare()
-        rest = None
-        if drive.belt.installed_tension is not None or settings.start == "equilibrium":
-            rest = bring_to_rest(drive, progress)
-            drive, system = rest.drive, rest.system
-        state = rest.state if rest and settings.start == "equilibrium" else laid(system, drive.path)
-        integrator = integrator or choose_integrator(drive)
+        drive, system, state, unstable = flowing or _begin_travelling(drive, system, progress)
         recording.integrator, recording.watch = integrator.name, watch
         if begin is not None:
             system, state, said = begin(drive, state, integrator, progress)
             recording.note(**said)
-        recording.start(drive, system, rest.unstable if rest else ())
+        recording.start(drive, system, unstable)
+        if flowing:
+            recording.note(**{mesh_error_attribute("peak pressure"): float("nan")})  # no finer mesh was tried
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in integrator(task):
             recording.take(chunk)
         recording.check()
     return recording.run()
+
+
+def _begin_travelling(drive: Drive, system: System, progress: Report | None) -> Beginning:
+    """The state in which a run on the mesh that travels begins."""
+    start = drive.simulation.start
+    if drive.belt.installed_tension is None and start == "laid":
+        return Beginning(drive, system, laid(system, drive.path))
+    rest = bring_to_rest(drive, progress)
+    state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
+    return Beginning(rest.drive, rest.system, state, rest.unstable)
+
+
+def _require_flowing(integrator: Integrator, begin: Begin | None) -> None:
+    """Make sure that a run may be one on a mesh that stays.
+
+    Raises
+    ------
+    ModelError
+        If not.
+    """
+    if not isinstance(integrator, GeneralizedAlpha):
+        raise ModelError(
+            f'the integrator "{integrator.name}" does not fit simulation.frame = "staying", whose flow it does not '
+            'know. Leave the integrator out, or set simulation.frame = "travelling".'
+        )
+    if begin is not None:
+        raise ModelError(
+            'a run-up that settles first does not fit simulation.frame = "staying". '
+            'Set simulation.frame = "travelling".'
+        )
 
 
 def choose_integrator(drive: Drive) -> Integrator:

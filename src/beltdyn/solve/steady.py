@@ -78,7 +78,8 @@ def steady_state(
     >>> round(float(run.dataset.pulley_speed.isel(time=-1, pulley=1)), 4)  # rad/s
     12.0
     """
-    _require_steady(drive, force_tolerance, elements)
+    require_steady(drive)
+    _require_sense(force_tolerance, elements)
     instant = drive.simulation.duration if at is None else at
     if start is not None:
         require_neighbour(drive, start, elements)
@@ -134,8 +135,8 @@ def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float)
     return _Found(search, errors, time.perf_counter() - begun) if search.resume() else None
 
 
-def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) -> None:
-    """Make sure that a drive may run steadily, and that the options make sense.
+def require_steady(drive: Drive) -> None:
+    """Make sure that a drive may run steadily.
 
     Raises
     ------
@@ -159,6 +160,10 @@ def _require_steady(drive: Drive, force_tolerance: float, elements: int | None) 
             "steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor as "
             "`speed`, or simulate the drive with `beltdyn run`."
         )
+
+
+def _require_sense(force_tolerance: float, elements: int | None) -> None:
+    """Make sure that the options make sense."""
     if not 0.0 < force_tolerance < 1.0:
         raise ModelError(f"force_tolerance = {force_tolerance:g} must lie between 0 and 1, such as 0.01 for 1 %.")
     if elements is not None and elements < 3:

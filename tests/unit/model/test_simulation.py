@@ -34,6 +34,10 @@ def test_fields_are_recorded_at_least_as_often_as_asked_for(settings: dict[str, 
         ({"rtol": 1.0}, "must be less than 1"),
         ({"spectral_radius": -0.1}, "must be at least 0"),
         ({"integrator": "euler"}, "is not a choice here"),
+        ({"start": "steady"}, 'start = "steady" does not fit frame = "travelling"'),
+        ({"frame": "staying", "start": "laid"}, 'start = "laid" does not fit frame = "staying". Set start'),
+        ({"frame": "staying", "integrator": "bdf"}, 'integrator = "bdf" does not fit frame = "staying"'),
+        ({"frame": "staying", "joint": "multipliers"}, 'joint = "multipliers" does not fit frame = "staying"'),
     ],
 )
 def test_what_does_not_fit_is_refused(settings: dict[str, Any], sentence: str) -> None:
