@@ -4,6 +4,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
+PARALLEL := --numprocesses auto --dist worksteal
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -27,11 +28,11 @@ test: install ## linters, types, layers, unit and verification tests
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
-	$(BIN)/pytest -m "not slow" $(wildcard tests/unit tests/verification tests/fuzz)
+	$(BIN)/pytest $(PARALLEL) -m "not slow" $(wildcard tests/unit tests/verification tests/fuzz)
 
 validate: install ## slow verification tests and comparisons with the literature
-	$(BIN)/pytest -m slow $(wildcard tests/unit tests/verification tests/fuzz)
-	$(if $(wildcard tests/validation),$(BIN)/pytest tests/validation)
+	$(BIN)/pytest $(PARALLEL) -m slow $(wildcard tests/unit tests/verification tests/fuzz)
+	$(if $(wildcard tests/validation),$(BIN)/pytest $(PARALLEL) tests/validation)
 	$(MAKE) compatibility
 
 compatibility: ## kernels with the oldest Numba, the last one known and the newest, each in an environment of its own

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from filelock import FileLock
 
 ROOT = Path(__file__).parents[2]
 INDEX = ROOT / "docs" / "extending.md"
@@ -59,20 +60,29 @@ def apply(block: Block, tree: Path) -> None:
     file.write_text(text[1:end] + "".join(line + "\n" for line in block.added) + text[end:], encoding="utf-8")
 
 
+def contents(folder: Path) -> dict[Path, bytes]:
+    """What the files below a folder hold."""
+    files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    return {path.relative_to(folder): path.read_bytes() for path in files}
+
+
 @pytest.fixture(scope="module")
-def extended(pytestconfig: pytest.Config) -> Path:
+def extended(pytestconfig: pytest.Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder of the kernels, and of a copy of the source with the examples of all pages.
 
-    Its place and the times of its files stay the same, so that kernels are compiled only where something has changed.
+    It is the same for all processes and for later runs, so that kernels are compiled only where something has changed.
     """
-    extended = Path(pytestconfig.cache.mkdir("extended"))
-    shutil.rmtree(extended / "src", ignore_errors=True)
-    shutil.copytree(ROOT / "src", extended / "src", ignore=shutil.ignore_patterns("__pycache__"))
+    new, extended = tmp_path_factory.mktemp("new"), Path(pytestconfig.cache.mkdir("extended"))
+    shutil.copytree(ROOT / "src", new / "src", ignore=shutil.ignore_patterns("__pycache__"))
     for page in PAGES:
         for block in blocks(page):
             if not block.is_check:
-                apply(block, extended)
-                shutil.copystat(page, extended / block.caption)
+                apply(block, new)
+                shutil.copystat(page, new / block.caption)
+    with FileLock(extended / "lock"):
+        if contents(new / "src") != contents(extended / "src"):
+            shutil.rmtree(extended / "src", ignore_errors=True)
+            shutil.copytree(new / "src", extended / "src")
     return extended
 
 

@@ -6,12 +6,15 @@ with all that it calls, and kept on disk.
 """
 
 import gc
-from collections.abc import Callable
-from contextlib import suppress
+import hashlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numba
+from filelock import FileLock
 from llvmlite.binding import parse_assembly
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.codegen import JITCodeLibrary
@@ -64,7 +67,10 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
         return self._code.get_overload(sig)
 
     def compile(self, sig: Any) -> Any:
-        """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects."""
+        """Compile, or load from disk, without the pauses that Python makes to look through the compiler's objects.
+
+        Where another process compiles the same, it is waited for.
+        """
         if self._folder:
             with setting("CACHE_DIR", self._folder), suppress(RuntimeError):  # no file holds what was typed
                 self._cache = _Cache(self.py_func)
@@ -72,11 +78,26 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
         collecting = gc.isenabled()
         gc.disable()
         try:
-            with setting("OPT", _OPTIMISATION):
+            with setting("OPT", _OPTIMISATION), _alone(self._cache, f"{self.py_func.__qualname__} {sig}"):
                 return super().compile(sig)
         finally:
             if collecting:
                 gc.enable()
+
+
+@contextmanager
+def _alone(cache: Any, task: str) -> Iterator[None]:
+    """Keep other processes from a task in a folder of kernels, where there is one and its file system has locks."""
+    if cache.cache_path is None:
+        yield
+        return
+    lock = FileLock(Path(cache.cache_path) / f"{hashlib.sha256(task.encode()).hexdigest()[:16]}.lock")
+    with suppress(NotImplementedError, OSError):
+        lock.acquire()
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 def choice_type(kernel_for: Callable[..., Any]) -> Any:
@@ -126,7 +147,10 @@ class _Stored(CompileResultCacheImpl):  # type: ignore[misc]
 
 
 class _Cache(FunctionCache):  # type: ignore[misc]
-    """Numba's cache, which loads machine code without filling the tables that only compilation needs."""
+    """Numba's cache, which loads machine code without filling the tables that only compilation needs.
+
+    Its list of what it holds is read, lengthened and written by one process at a time.
+    """
 
     _impl_class = _Stored
 
@@ -134,6 +158,11 @@ class _Cache(FunctionCache):  # type: ignore[misc]
         """Load the machine code for some types of arguments; None where there is none."""
         with self._guard_against_spurious_io_errors():
             return self._load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep the machine code for some types of arguments."""
+        with _alone(self, self._impl.filename_base):
+            super().save_overload(sig, data)
 
 
 class _CodeCompiler(Compiler):  # type: ignore[misc]

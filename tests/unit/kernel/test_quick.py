@@ -21,6 +21,50 @@ law = ContactLaw(NoPull(1e7, 0.0), ForceSlope(1e5), follow_zone=True)
 here = Approach(**{name: 0.0 for name in Approach._fields} | {"penetration": 1e-3, "lever": 0.08})
 print(point_force(here, PulleyState(0.0, 0.0, Round(0.081), 0.0, 1.2), law).normal.force)
 """
+_AREAS = """
+import time
+from typing import NamedTuple
+from beltdyn.kernel import by_type, kernel
+
+class Disc(NamedTuple):
+    radius: float
+
+@kernel
+def disc_area(disc, count):
+    return 3.0 * disc.radius**2 * count
+
+area = by_type({Disc: disc_area}, "area")
+choose = area.kernel_for
+
+def choose_slowly(*types):
+    print("compiled", flush=True)
+    time.sleep(1.0)
+    return choose(*types)
+
+area.kernel_for = choose_slowly
+
+@kernel
+def twice(disc, count):
+    return 2.0 * area(disc, count)
+"""
+
+
+def test_of_processes_that_need_the_same_one_compiles_and_the_others_load(tmp_path: Path) -> None:
+    """None that needs something else is lost, either."""
+    (tmp_path / "areas.py").write_text(_AREAS, encoding="utf-8")
+    environment = os.environ | {CACHE_VARIABLE: str(tmp_path / "cache")}
+
+    def start(count: str) -> subprocess.Popen[str]:
+        command = [sys.executable, "-c", f"import areas; print(areas.twice(areas.Disc(2.0), {count}))"]
+        return subprocess.Popen(command, cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True)
+
+    outputs = []
+    for _ in range(2):
+        processes = [start(count) for count in ("1", "1", "1.0", "1.0")]
+        outputs.append([process.communicate()[0].split() for process in processes])
+    assert [output[-1] for output in outputs[0]] == ["24.0"] * 4
+    assert ["compiled" in output for output in outputs[0]].count(True) == 2
+    assert outputs[1] == [["24.0"]] * 4
 
 
 @pytest.mark.slow
