@@ -4,6 +4,7 @@ In kernels `table[k].name` is a number or an array of fixed shape, and a row alo
 """
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ Records = np.recarray[Any, Any]
 """Rows of one kind: `table.name` is a column, `table[k].name` a value."""
 
 
+@cache
 def record(**fields: str | np.dtype[np.void]) -> np.dtype[np.void]:
     """Kind of the rows of a table.
 

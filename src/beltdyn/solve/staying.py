@@ -49,8 +49,6 @@ class Standing(NamedTuple):
     """Length of the layers at the ends of arcs, m."""
     fineness: float
     """Of its graded mesh."""
-    span: int
-    """In the middle of which the belt's coordinate begins."""
 
 
 class Laid(NamedTuple):
@@ -116,16 +114,10 @@ def bring_to_stand(drive: Drive, elements: int | None = None) -> Standing:
     while elements is None and change > _SETTLED and rest.system.nodes < MOST_ELEMENTS:
         finer = stand(drive, fineness=FINER * rest.fineness)
         change, rest = abs(finer.tension / rest.tension - 1.0), finer
-    return tighten(rest, wanted, lambda other: stand(other, like=rest))  # other meshes would have other errors
+    return tighten(rest, wanted, partial(stand_like, like=rest))
 
 
-def stand(
-    drive: Drive,
-    elements: int | None = None,
-    *,
-    fineness: float = FIRST_FINENESS,
-    like: Standing | None = None,
-) -> Standing:
+def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_FINENESS) -> Standing:
     """Find the equilibrium at rest, without friction, of a drive with the length that it has.
 
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
@@ -138,8 +130,6 @@ def stand(
         Number of equal elements; by default the mesh is graded.
     fineness
         Of a graded mesh.
-    like
-        The drive with another length, of which the mesh is taken in proportion.
 
     Raises
     ------
@@ -149,10 +139,7 @@ def stand(
     installation = install(drive)
     layer = layer_length(*layer_lengths(drive, installation.tension))
     span = int(np.argmax(installation.path.span_lengths))
-    if like is not None:  # of spans of one length rounding would choose another
-        fineness, span = like.fineness, like.span
-        lengths = like.system.length * (drive.belt_length / like.drive.belt_length)
-    elif elements is not None:
+    if elements is not None:
         lengths = np.full(elements, drive.belt_length / elements)
     else:
         arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
@@ -160,14 +147,56 @@ def stand(
     system = staying_system(drive, lengths)
     for start in STARTS:
         state = _lying(drive, system, installation, span, start)
-        anchor = anchor_at(system, state, True)
-        if follow(start, partial(_balance, drive, system, state, anchor)):
+        if follow(start, partial(_balance, drive, system, state, anchor_at(system, state, True))):
             tension = looked_at(drive, system, state).tension
-            return Standing(drive, system, state, state.position.copy(), tension, layer, fineness, span)
-    raise ConvergenceError(
+            return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
+    raise _no_rest(system)
+
+
+def stand_like(drive: Drive, like: Standing) -> Standing:
+    """Find the equilibrium of a drive that differs a little, in the length of its belt, from that of the other.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    like
+        The other one, of which the mesh is taken in proportion: another mesh would have other errors.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found from there.
+    """
+    longer = drive.belt_length / like.drive.belt_length
+    system = staying_system(drive, longer * like.system.length)
+    nodes, bodies = np.split(like.place, [system.first_body])
+    state = at_rest(system, stretched(nodes.reshape(system.nodes, -1), longer))
+    state.position[system.first_body :] = bodies
+    if not _balance(drive, system, state, anchor_at(system, state, True), 1.0):
+        raise _no_rest(system)
+    tension = looked_at(drive, system, state).tension
+    return like._replace(drive=drive, system=system, state=state, place=state.position.copy(), tension=tension)
+
+
+def _no_rest(system: System) -> ConvergenceError:
+    return ConvergenceError(
         f"no equilibrium at rest found on a mesh of {system.nodes} elements. Check tension and stiffness of contact "
         "with `beltdyn check`."
     )
+
+
+def stretched(nodes: FloatArray, longer: float) -> FloatArray:
+    """The same curve for a longer belt: nodal coordinates of quintic elements, shape (N, 6).
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (N, 6)
+        r, dr/dx and d2r/dx2 of the nodes.
+    longer
+        Its unstretched length, over that of the belt of these coordinates.
+    """
+    return nodes * np.repeat(longer ** np.array([0.0, -1.0, -2.0]), 2)
 
 
 def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:

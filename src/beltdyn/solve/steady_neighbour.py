@@ -6,6 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run
+from beltdyn.solve.staying import stretched
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
@@ -77,8 +78,7 @@ def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
     found, longer = start.dataset.isel(time=-1, field_time=-1), drive.belt_length / start.drive.belt_length
     lengths = longer * np.diff(found.node_coordinate.values, append=start.drive.belt_length)
     system = staying_system(drive, lengths)
-    per_length = np.repeat(longer ** np.array([0.0, -1.0, -2.0]), 2)
-    state = at_rest(system, found.nodal_coordinates.values * per_length)
+    state = at_rest(system, stretched(found.nodal_coordinates.values, longer))
     if system.tensioners.size:
         state.position[-system.tensioners.size :] = found.tensioner_position.values
     bodies = state.velocity[system.first_body :]

@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.solve.staying import Laid, bring_to_stand, found_arcs, stand, transfer
+from beltdyn.solve.staying import Laid, bring_to_stand, found_arcs, stand, stand_like, stretched, transfer
 from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points
+from beltdyn.system.state import at_rest
+
+
+def with_length(drive: Drive, length: float) -> Drive:
+    return drive.replace(belt=drive.belt.replace(length=length))
 
 
 def test_arcs_of_a_laid_belt(drive: Drive) -> None:
@@ -22,16 +27,24 @@ def test_at_rest_the_tension_is_the_one_asked_for(drive: Drive) -> None:
     assert bring_to_stand(wanted).tension == pytest.approx(100.0, rel=1e-6)
 
 
-@pytest.mark.parametrize("span", [0, 1])
-def test_a_mesh_is_laid_from_the_span_that_it_was_made_for(drive: Drive, span: int) -> None:
-    """Of two equal spans rounding chooses the longest; the mesh of a small and a large pulley must not turn with it."""
-    small, large = drive.pulleys
-    unequal = drive.replace(pulley=[small, large.replace(radius=1.3 * large.radius)])
-    rest = stand(unequal, like=stand(unequal, 60)._replace(span=span))
-    found, laid = found_arcs(rest.system, rest.state), Laid.on(unequal.path, unequal.belt_length, span).arcs()
-    assert rest.span == span
-    assert found[0].radius == pytest.approx(unequal.radii[1 - span])
-    np.testing.assert_allclose(found, laid, atol=0.02)
+def test_rest_with_a_little_more_tension_is_found_next_to_the_one_before(drive: Drive) -> None:
+    """On a mesh in proportion, as from a laid belt."""
+    rest, tighter = stand(drive, 60), with_length(drive, drive.belt_length - 1e-4)
+    found = stand_like(tighter, rest)
+    np.testing.assert_allclose(found.system.length, rest.system.length * tighter.belt_length / drive.belt_length)
+    assert found.tension > rest.tension
+    assert found.tension == pytest.approx(stand(tighter, 60).tension, rel=1e-8)
+
+
+def test_a_curve_for_a_longer_belt(drive: Drive) -> None:
+    """The same places, at coordinates in proportion."""
+    rest, other = stand(drive), with_length(drive, drive.belt_length - 0.01)
+    longer = other.belt_length / drive.belt_length
+    system = staying_system(other, longer * rest.system.length)
+    position = at_rest(system, stretched(rest.state.nodes(rest.system), longer)).position
+    along = np.linspace(0.0, drive.belt_length * 0.999, 500)
+    found = centreline_points(system, position, longer * along)[0]
+    np.testing.assert_allclose(found, centreline_points(rest.system, rest.state.position, along)[0], atol=1e-12)
 
 
 def test_graded_and_fine_meshes_have_the_same_equilibrium(drive: Drive) -> None:
