@@ -201,6 +201,9 @@ def _complete(dataset: "xr.Dataset") -> "xr.Dataset":
     complete = int(np.count_nonzero(np.isfinite(times)))
     last = times[complete - 1] if complete else -np.inf
     result = _with_parts(dataset.isel({name: slice(np.count_nonzero(dataset[name].values <= last)) for name in TIMES}))
+    for name in TIMES:
+        if not np.all(np.diff(result[name].values) > 0.0):
+            raise ValueError(f"the instants of `{name}` do not grow")
     result.set_close(dataset.close)
     return result
 

@@ -126,3 +126,12 @@ def test_the_first_files_which_say_no_format_open(change: Callable[..., Path]) -
 def test_a_format_that_is_no_version_is_damage(change: Callable[..., Path]) -> None:
     with pytest.raises(ModelError, match="cannot be read as a result file"):
         open_run(change(lambda file: file.attrs.update(format="new")))
+
+
+@pytest.mark.parametrize("name", ["time", "field_time", "filtered_time"])
+def test_instants_that_do_not_grow_are_damage(change: Callable[..., Path], name: str) -> None:
+    def repeat(file: h5py.File) -> None:
+        file[name][3] = file[name][2]
+
+    with pytest.raises(ModelError, match=f"the instants of `{name}` do not grow"):
+        open_run(change(repeat))
