@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import example_numbers as by_hand
+import example_tensioners as tensioned
 import examples_accessory_drive as accessory
 from PIL import Image
 
@@ -58,6 +59,8 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
             by_hand.worth_of_the_idler,
         ),
         "band_brake": Example(("span_tensions", "configuration", "capstan_margins"), by_hand.band_brake),
+        "conveyor": Example(("configuration", "span_tensions", "tensioners"), tensioned.conveyor),
+        "alternator_drive": Example(("speeds", "span_tensions", "tensioners", "hub_loads"), tensioned.alternator_drive),
         "slip_through": Example(("speeds", "torques", "capstan_margins", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study
@@ -89,8 +92,11 @@ def make(name: str, folder: Path) -> None:
     bd.plot.save_layout(run.drive, folder / "layout.png")
     bd.plot.save_all(run, folder, example.figures)
     show_summary(run)
-    rows = [(number.what, f"{number.hand:.5g}", f"{number.found:.5g}") for number in example.numbers(run)]
-    lines = [" | ".join(row) for row in (("", "by hand", "run"), ("---", "---", "---"), *rows)]
+    rows = [
+        (number.what, f"{number.hand:.5g}", f"{number.found:.5g}", f"{number.found / number.hand - 1.0:+.2%}")
+        for number in example.numbers(run)
+    ]
+    lines = [" | ".join(row) for row in (("", "by hand", "run", "difference"), ("---",) * 4, *rows)]
     sys.stdout.write("".join(f"| {line} |\n" for line in lines))
     for line in example.study(run, folder):
         sys.stdout.write(f"{line}\n")
