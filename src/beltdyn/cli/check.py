@@ -26,6 +26,8 @@ _PULLEY_HEADINGS = (
 )
 
 
+_SAME_TENSION = 5e-4
+"""Part of the tension by which bending and soft contact may change it without a word."""
 _HALF_TURN = 179.95
 """Degrees from which on a direction is written as 180.0."""
 
@@ -97,6 +99,7 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
 
     length, path = drive.belt_length, installation.path.length
     return [
+        *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
@@ -131,6 +134,8 @@ def _origin(drive: "Drive", installation: "Installation", asked_for: bool) -> st
     if any(not end.held for end in drive.ends):
         return ", which the pulled end sets"
     gained = installation.tension / installation.laid_tension - 1
+    if abs(gained) < _SAME_TENSION:
+        return asked
     change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than the {installation.laid_tension:.4g} N"
     return f"{asked}: {change} of a limp belt on hard pulleys"
 

@@ -26,6 +26,8 @@ def show_summary(run: "Run") -> None:
         show("Nothing was computed before the run ended.")
         return
     summary = summarize(run)
+    if run.drive.name:
+        show(f"\n{run.drive.name}")
     over = _window(summary)
     show_table(f"\nPulleys{over}", *_pulleys(summary))
     show_table(
@@ -147,11 +149,11 @@ def _tensioners(summary: "Summary") -> list[tuple[str, str]]:
 
 def _solver(summary: "Summary") -> list[tuple[str, str]]:
     """What the solver did: of steady running, which takes no steps, the mesh and the time; at rest the time."""
-    steps = f"{summary.steps} steps, {summary.rejected_steps} rejected, {summary.newton_iterations} Newton iterations"
+    steps = f"{summary.steps}, and {summary.rejected_steps} tried in vain"
     facts = [
         ("errors of mesh", _mesh(summary.resolution)),
         ("energy balance", f"closes within {abs(summary.energy_closure):.1e} of the energy put in"),
-        ("solver", f"{steps}; {summary.outputs} outputs"),
+        ("time steps", f"{steps}; {summary.outputs} outputs"),
     ]
     took = f"{summary.wall_time:.3g} s{_pace(summary)}, and {summary.compile_time:.3g} s to prepare"
     known = not math.isnan(summary.wall_time)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from beltdyn.contact.friction import LAWS
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
@@ -192,6 +193,17 @@ def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     running = Running(installation.tension)
     errors, needed = mesh_errors(drive, running, drive.elements), elements_needed(drive, running)
     return unresolved(errors, needed, pressures=drive.belt.elements is not None)
+
+
+def other_creep(drive: Drive, factor: float) -> str:
+    """Say what to set for friction that takes hold within a slip which is larger by a factor, or smaller."""
+    chosen = LAWS[drive.contact.friction_law]
+    if any(parameter.found for parameter in chosen.parameters):
+        ratio = drive.completed.contact.given("creep_ratio")
+        verb = "raise" if factor > 1.0 else "lower"
+        return f"{verb} contact.creep_ratio = {ratio:.1e} to {factor * ratio:.0e}"
+    keys = " and ".join(f"contact.{key}" for key in ("friction_law", *(one.name for one in chosen.parameters)))
+    return f"leave out {keys}: the friction law that is chosen without them creeps with the speed of the belt"
 
 
 def describe_time(drive: Drive) -> str:

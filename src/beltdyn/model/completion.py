@@ -306,7 +306,8 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
     if wanted is not None and not 0 < path <= (1 + _LARGEST_STRAIN) * length:
         raise ValueError(
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
-            f"than {_LARGEST_STRAIN:.0%} of its length. Lower it, or make belt and contact stiffer"
+            f"than {_LARGEST_STRAIN:.0%} of its length. Lower it, or give a belt of more axial stiffness than "
+            f"{given.belt.axial_stiffness:.3g} N"
         )
     least = _SMALLEST_STRAIN * given.belt.axial_stiffness
     if wanted is not None and wanted < least:
@@ -319,8 +320,8 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
         _check_place(given, pulleys, estimate.path)
     if not estimate.tension > 0:
         raise ValueError(
-            "the belt loses all tension by penetration into the pulleys: it is only "
-            f"{path - length:.3g} m shorter than its path. Shorten it, or make contact stiffer"
+            f"the belt loses all tension, since it sinks into the pulleys: it is only {1e3 * (path - length):.3g} mm "
+            "shorter than its path. Shorten it, or leave out contact.stiffness so that it is chosen"
         )
 
 

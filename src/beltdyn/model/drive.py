@@ -26,7 +26,7 @@ from beltdyn.model.static_estimate import StaticEstimate
 from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import Acceleration
+from beltdyn.parts.quantity import Acceleration, Title, Words
 from beltdyn.parts.text_file import parse_toml
 
 
@@ -34,7 +34,7 @@ class Drive(Part):
     """A belt drive: what is given, checked, and what follows from it.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner` and
-    `end` (lists) and `simulation`, each a part or a mapping of its arguments, and `gravity`.
+    `end` (lists) and `simulation`, each a part or a mapping of its arguments, `gravity`, and `name` and `description`.
 
     The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
     the drive: `belt_length`, also of a belt of given tension; `path` and `centers`, where fixed tensioners hold their
@@ -42,6 +42,10 @@ class Drive(Part):
     computation are left open. `completed.choices` has their values and the reasons.
     """
 
+    name: Title | None = Field(
+        None, description="the name of the drive, which titles and summaries show, in place of that of a file"
+    )
+    description: Words | None = Field(None, description="what the drive is, for who reads the file or looks at it")
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
     contact: Contact = Field(default_factory=Contact, description="the group [contact]")
@@ -88,6 +92,11 @@ class Drive(Part):
         if any(end.turning_held for end in self.ends) and self.belt.element_kind.turned < 0:
             raise ValueError(f'end.clamped does not fit {kind}, whose nodes do not turn. Choose "ancf"')
         return self
+
+    @property
+    def title(self) -> str:
+        """Its name, or what it is."""
+        return self.name or "Belt drive"
 
     @property
     def path_ends(self) -> tuple[PathEnd, ...]:

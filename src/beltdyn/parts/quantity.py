@@ -150,4 +150,8 @@ LineDamping = Annotated[float, quantity("N*s/m^2")]
 Ratio = Annotated[float, quantity("")]
 Count = Annotated[int, BeforeValidator(_read_count, json_schema_input_type=int)]
 Flag = Annotated[bool, Strict()]
+Title = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=100, pattern=r"^[^\r\n]+$")]
+"""A line of text that stands above figures."""
+Words = Annotated[str, StringConstraints(strip_whitespace=True, max_length=4000)]
+"""Text of some lines."""
 Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]

@@ -17,14 +17,14 @@ def write_headline(page: Figure, text: str) -> None:
 
 
 def headlines(results: Sequence[Result]) -> str:
-    """The headline of one result, or the names of several, as far as they have names."""
+    """The headline of one result, or the names of the drives of several, as far as they have names."""
     if len(results) == 1:
         return headline(results[0])
-    return ", ".join(name for name in map(name_of, results) if name)
+    return ", ".join(dict.fromkeys(name for name in map(name_of, results) if name))
 
 
 def headline(result: Result) -> str:
-    """Say which drive a result is of, by the name of its file, and at which point it runs.
+    """Say which drive a result is of, by its name or that of the file, and at which point it runs.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def headline(result: Result) -> str:
     Returns
     -------
     str
-        Such as "fan: motor 1440 rpm, 2.21 kW in"; without a name where the result is in memory.
+        Such as "fan: motor 1440 rpm, 2.21 kW in"; without a name where a drive in memory has none.
     """
     if isinstance(result, Run):
         point = _range(result) or _operating_point(result)
@@ -46,7 +46,12 @@ def headline(result: Result) -> str:
 
 
 def name_of(result: Result) -> str:
-    """Name of a result: that of its file without suffix; empty in memory."""
+    """Name of a result: that of its drive, or of its file without suffix; empty in memory without either."""
+    return result.drive.name or file_name(result)
+
+
+def file_name(result: Result) -> str:
+    """Name of a result's file without suffix; empty in memory."""
     return result.path.stem if result.path is not None else ""
 
 

@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 
 from beltdyn.model import Drive, loads
-from beltdyn.plot.headline import name_of
+from beltdyn.plot.headline import file_name, name_of
 from beltdyn.plot.style import INK, dash, name_lines
 from beltdyn.results import Result
 
@@ -64,11 +64,12 @@ def names_of_results(results: Sequence[Result]) -> list[str]:
     Returns
     -------
     list of str
-        The names of their files; or what differs in their drive files, at most two keys; or their numbers.
+        The names of their drives or files; or what differs in their drive files, at most two keys; or their numbers.
     """
-    names = [name_of(result) for result in results]
-    if all(names) and len(set(names)) == len(names):
-        return names
+    for name in (name_of, file_name):
+        names = [name(result) for result in results]
+        if all(names) and len(set(names)) == len(names):
+            return names
     given = [dict(_keys(_drive_as_given(result).data)) for result in results]
     keys = list(dict.fromkeys(key for one in given for key in one))
     differing = [key for key in keys if len({str(one.get(key)) for one in given}) > 1][:_MOST_KEYS]

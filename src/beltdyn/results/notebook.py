@@ -22,6 +22,7 @@ def run_html(run: Run) -> str:
         templates()
         .get_template("run.html.jinja")
         .render(
+            drive=run.drive,
             picture=picture(run.drive),
             summary=summarize(run) if run.outputs else None,
             warnings=run.warnings,

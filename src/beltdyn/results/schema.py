@@ -119,7 +119,7 @@ _OUTPUTS = {
     ),
     "kinetic_energy": Variable(_OVER_TIME, "J", "Kinetic energy"),
     "strain_energy": Variable(_OVER_TIME, "J", "Strain energy", at_rest=True),
-    "penalty_energy": Variable(_OVER_TIME, "J", "Penalty energy", at_rest=True),
+    "penalty_energy": Variable(_OVER_TIME, "J", "Energy of contact", at_rest=True),
     "spring_energy": Variable(_OVER_TIME, "J", "Energy of tensioners and couplings", at_rest=True),
     "potential_energy": Variable(_OVER_TIME, "J", "Potential energy of weight and forces at ends", at_rest=True),
     "driver_work": Variable(_OVER_TIME, "J", "Work of the drivers"),

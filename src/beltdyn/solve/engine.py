@@ -181,7 +181,9 @@ def restart(system: System, state: IntegratorState, equations: Equations) -> Non
     after = motion_of(state)._replace(time=float(np.nextafter(state.clock.time, np.inf)))
     speeds = state.velocity.copy()
     if not accelerate(system, after, state.multipliers, equations):
-        raise ConvergenceError("the mass matrix is singular: a node or a pulley has no mass. Give it some.")
+        raise ConvergenceError(
+            "a part of the drive that moves has no mass. Give belt, pulleys, tensioners and hubs mass or inertia."
+        )
     state.auxiliary[:] = state.acceleration
     state.lagged[:] = np.nan
     state.work[DRIVER_WORK] += jump_work(system, speeds, state.velocity)

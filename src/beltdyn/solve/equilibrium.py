@@ -38,7 +38,7 @@ def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult
     """
     rest = bring_to_rest(drive, progress)
     system = standing(rest.system)
-    recording = Recording(drive, system, None, "Belt drive in static equilibrium", progress)
+    recording = Recording(drive, system, None, f"{drive.title} at rest, in static equilibrium", progress)
     recording.start(rest.drive, system, rest.unstable)
     recording.take(Chunk.start(system, rest.state), "equilibrium")
     recording.end("completed")

@@ -13,6 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Installation, describe, install
 from beltdyn.model import Path as BeltPath
+from beltdyn.parts.finding import listing
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.progress import Phase, Progress, Report
 from beltdyn.solve.static import find_equilibrium, standing, tensioner_compliance
@@ -278,16 +279,21 @@ def looked_at(drive: Drive, system: System, state: State) -> Rest:
         drive.pulleys, drive.radii, seen.wrap_angle[0], map(np.max, depths), strict=True
     ):
         if not wrap > 0.0:
-            raise ConvergenceError(f'no static equilibrium found on all pulleys: the belt leaves "{pulley.name}".')
+            raise ConvergenceError(
+                f'at rest the belt leaves "{pulley.name}", and it has to touch all pulleys. Move "{pulley.name}" '
+                "against the belt, or raise the tension."
+            )
         if depth > _DEEPEST * radius:
             raise ConvergenceError(
-                f'no static equilibrium found on all pulleys: the belt sinks into "{pulley.name}" by {depth:.2g} m, '
-                f"more than {_DEEPEST:.0%} of its radius."
+                f'at rest the belt sinks into "{pulley.name}" by {1e3 * depth:.2g} mm, more than {_DEEPEST:.0%} of its '
+                "radius. Leave out contact.stiffness so that it is chosen, or raise it, or lower the tension."
             )
-    if not np.all(np.isfinite(seen.span_tension)):
+    known = np.isfinite(seen.span_tension[0])
+    short = [f"{start} to {end}" for (start, end), one in zip(drive.spans, known, strict=True) if not one]
+    if short:
         raise ConvergenceError(
-            "no static equilibrium found: a span is shorter than the distance of contact points on the belt, which "
-            "then has no tension of its own. Give the belt more elements."
+            f"the span {listing(short)} is shorter than one element of the belt, so that its tension is not known. "
+            "Raise belt.elements, or move the pulleys apart."
         )
     return Rest(drive, system, state, seen)
 

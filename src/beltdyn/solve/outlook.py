@@ -1,21 +1,24 @@
 """What makes the steps of a simulation as short as they are."""
 
-from beltdyn.model.simulation import Simulation
+from beltdyn.model import Drive
+from beltdyn.model.advice import other_creep
 from beltdyn.solve.trajectory import Statistics
 
 _MANY = 0.1
 """Share of steps tried in vain from which on they are what makes a run long."""
+_GENTLER = 10.0
+"""Factor on the slip with which friction takes hold, by which a run is to be quicker."""
 _NEAR = 0.4
 """Mean step over a bound from which on the bound is felt."""
 
 
-def step_bound(simulation: Simulation, statistics: Statistics, reached: float) -> str:
+def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
     """Say what bounds the time steps, and what would let them be longer.
 
     Parameters
     ----------
-    simulation
-        Settings.
+    drive
+        The drive.
     statistics
         What the solver did so far.
     reached
@@ -26,15 +29,16 @@ def step_bound(simulation: Simulation, statistics: Statistics, reached: float) -
     str
         One or two sentences; empty before the first step.
     """
+    simulation = drive.simulation
     taken, rejected = statistics.steps, statistics.rejected_steps
     if taken == 0:
         return ""
     mean, share = reached / taken, rejected / (taken + rejected)
     if share > _MANY:
         return (
-            f"{share:.0%} of the time steps are tried in vain, since friction builds up steeply with the slip "
-            "velocity, or contact is hard. A smaller contact.creep_rate_factor (or a larger contact.creep_velocity) or "
-            "contact.stiffness makes it quicker."
+            f"{share:.0%} of the time steps are tried in vain, since friction takes hold within a small slip, or "
+            f"contact is hard. To make it quicker, {other_creep(drive, _GENTLER)}, which adds to the slip; or lower "
+            f"contact.stiffness = {drive.contact_stiffness:.2g} N/m^2, which costs tension."
         )
     if simulation.max_step is not None and mean > _NEAR * simulation.max_step:
         return f"simulation.max_step = {simulation.max_step:g} s bounds the steps."
@@ -43,5 +47,6 @@ def step_bound(simulation: Simulation, statistics: Statistics, reached: float) -
         return f"Steps end on outputs: a longer simulation.output_interval than {interval:g} s is quicker."
     return (
         f"Steps are as short as simulation.rtol = {simulation.rtol:g} asks for where the belt vibrates on its pulleys. "
-        "A larger one, fewer belt.elements, or a smaller contact.stiffness or slope of friction makes it quicker."
+        f"A larger one makes it quicker, or fewer belt.elements than {drive.elements}; `beltdyn check` tells "
+        "what that costs in accuracy."
     )

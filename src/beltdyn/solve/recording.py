@@ -170,7 +170,7 @@ class Recording:
             duration = self._drive.simulation.duration
             outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
             elapsed = time.perf_counter() - self._started if phase == "integrating" else 0.0
-            bound = step_bound(self._drive.simulation, self.statistics, reached)
+            bound = step_bound(self._drive, self.statistics, reached)
             pace = self._pace.at(elapsed, reached)
             self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound, pace))
 

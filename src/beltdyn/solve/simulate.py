@@ -108,7 +108,7 @@ def record_run(
         _require_flowing(integrator, begin)
         flowing = begin_flowing(drive, progress)
     system = flowing.system if flowing else drive_system(drive)
-    title = f"Belt drive, {drive.simulation.duration:g} s"
+    title = f"{drive.title}, {drive.simulation.duration:g} s"
     with Recording(drive, system, output, title, progress, overwrite, **attributes) as recording:
         recording.prepare()
         drive, system, state, unstable = flowing or _begin_travelling(drive, system, progress)

@@ -181,8 +181,8 @@ def stand_like(drive: Drive, like: Standing) -> Standing:
 
 def _no_rest(system: System) -> ConvergenceError:
     return ConvergenceError(
-        f"no equilibrium at rest found on a mesh of {system.nodes} elements. Check tension and stiffness of contact "
-        "with `beltdyn check`."
+        f"the belt comes to no rest, with {system.nodes} elements. Look at tension and depth of contact with `beltdyn "
+        "check`; give the belt another tension or length, or leave out contact.stiffness so that it is chosen."
     )
 
 

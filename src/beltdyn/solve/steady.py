@@ -90,7 +90,7 @@ def steady_state(
     duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
     turns = drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
     shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
-    title = f"Belt drive in steady running, as at {instant:g} s"
+    title = f"{drive.title} in steady running, as at {instant:g} s"
     with Recording(shown, search.constant, None, title, None) as recording:
         recording.start(search.drive, search.constant, ())
         recording.take(_running(search.constant, search.state, duration))

@@ -118,8 +118,9 @@ class SteadySearch:
         gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
         if not any(self._start(rest.place, speed, gentle._replace(speed=first)) for first in _FIRST_SPEEDS):
             raise ConvergenceError(
-                "steady running not found: the search does not even begin, under a twentieth of the loads. Check the "
-                "drive with `beltdyn check`, and its run over time with `beltdyn run`."
+                f"no steady running at t = {self._time:g} s, not even at {_FIRST_SPEEDS[-1]:.0%} of the speed "
+                f"and under {_FIRST_LOAD:.0%} of the loads. Check speeds, loads and tension with `beltdyn check`, "
+                "or look at a run over time with `beltdyn run`."
             )
         for target in (gentle, gentle._replace(smoothing=1.0), Setting()):
             self._follow(target)
@@ -142,8 +143,8 @@ class SteadySearch:
         target = self.setting
         if not (self._try(target._replace(stretch_length=_SOFT)) and self._reach(target)):
             raise ConvergenceError(
-                f"steady running not found on a mesh of {system.nodes} elements, though on a coarser one. Raise "
-                "force_tolerance."
+                f"steady running is found with fewer elements, but not with the {system.nodes} that force_tolerance "
+                "asks for. Raise force_tolerance, such as to 0.05."
             )
 
     def friction_band(self) -> dict[str, FloatArray]:

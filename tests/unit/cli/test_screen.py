@@ -31,10 +31,15 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "1.2 W: friction 1.08 W, contact damping 0.12 W",
         "driven-driver 60.00 60.00 60.00 0.9750",
         "energy balance closes within 1.0e-04 of the energy",
-        "1200 steps, 14 rejected, 4900 Newton iterations; 101 outputs",
+        "time steps 1200, and 14 tried in vain; 101 outputs",
     ):
         assert part in output
     assert "computing time 0.5 s, 0.5 s for each simulated second, and 2.5 s to prepare" in output
+
+
+def test_the_name_of_a_drive_stands_above(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    show_summary(Run(run.dataset, run.drive.replace(name="Fan of the paint shop")))
+    assert capsys.readouterr().out.startswith("\nFan of the paint shop\n")
 
 
 def test_tensioners_stand_in_degrees_or_millimetres(

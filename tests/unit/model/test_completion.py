@@ -102,7 +102,7 @@ def test_what_cannot_come_to_rest(
 
 
 def test_penetration_that_takes_all_tension(make_drive: MakeDrive) -> None:
-    with pytest.raises(ModelError, match="loses all tension by penetration"):
+    with pytest.raises(ModelError, match="loses all tension, since it sinks"):
         make_drive("open", length=1.81, contact={"allowed_penetration": 5e-3})
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, advise, describe_time, install
+from beltdyn.model import Drive, advise, describe_time, dumps, install, loads
 from beltdyn.published import loaded_two_pulley
 
 MakeDrive = Callable[..., Drive]
@@ -226,3 +226,14 @@ def test_friction_is_the_pulleys_or_the_contacts_or_the_belts(drive: Drive) -> N
     assert left.frictions == pytest.approx([0.3, 0.5])
     with pytest.raises(ModelError, match="friction is missing"):
         drive.replace(contact=drive.contact.replace(friction=None))
+
+
+def test_a_drive_may_have_a_name_and_a_description(drive: Drive) -> None:
+    named = drive.replace(name="  Fan of the paint shop ", description="Two belts.\nInstalled in spring.")
+    assert (named.name, named.title, drive.title) == ("Fan of the paint shop", "Fan of the paint shop", "Belt drive")
+    assert loads(dumps(named)) == named
+    assert "Fan of the paint shop" in named._repr_html_()
+    assert "Installed in spring." in named._repr_html_()
+    for name in ("", " ", "two\nlines", "x" * 101):
+        with pytest.raises(ModelError, match="name"):
+            drive.replace(name=name)

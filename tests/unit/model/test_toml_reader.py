@@ -47,7 +47,17 @@ def test_tables_are_read_beside_the_drive_file(drive_file: Path) -> None:
 
 def test_schema_knows_every_group() -> None:
     schema = json_schema()
-    assert set(schema["properties"]) == {"belt", "pulley", "contact", "tensioner", "end", "simulation", "gravity"}
+    assert set(schema["properties"]) == {
+        "belt",
+        "pulley",
+        "contact",
+        "tensioner",
+        "end",
+        "simulation",
+        "gravity",
+        "name",
+        "description",
+    }
     assert {"Belt", "Pulley", "Contact", "Simulation"} <= set(schema["$defs"])
     assert "in m" in json.dumps(schema["$defs"]["Belt"]["properties"]["length"])
 

@@ -17,6 +17,11 @@ def test_a_run_is_named_with_its_operating_point(run: Run) -> None:
     assert headline(run) == headline(named).removeprefix("fan: ")
 
 
+def test_the_name_of_a_drive_goes_before_that_of_its_file(run: Run) -> None:
+    named = Run(run.dataset, run.drive.replace(name="Fan of the paint shop"), Path("fan.nc"))
+    assert headline(named).startswith("Fan of the paint shop: driver ")
+
+
 def test_a_sweep_is_named_with_its_speeds(run: Run) -> None:
     swept = Run(run.dataset.assign_attrs(swept_pulley="driver"), run.drive)
     assert headline(swept).startswith("driver from ")

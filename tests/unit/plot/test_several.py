@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 
 from beltdyn import plot
+from beltdyn.plot.headline import headlines
 from beltdyn.plot.several import names_of_results
 from beltdyn.results import Run
 
@@ -58,6 +59,15 @@ def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path:
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
     assert names == ["speeds", "torques", "span_tensions", "slip", "capstan_margins", "powers", "hub_load_sizes"]
+
+
+def test_runs_of_one_drive_are_told_by_their_files(pair: list[Run]) -> None:
+    """A name that all have stands above, once."""
+    same = [Run(one.dataset, one.drive.replace(name="Fan"), one.path) for one in pair]
+    assert names_of_results(same) == ["one", "other"]
+    assert headlines(same) == "Fan"
+    other = [Run(one.dataset, one.drive.replace(name=name), one.path) for one, name in zip(pair, "AB", strict=True)]
+    assert names_of_results(other) == ["A", "B"]
 
 
 def test_runs_in_memory_are_named_by_what_differs(run: Run) -> None:

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from beltdyn.contact.friction import LAWS
-from beltdyn.model import Drive
+from beltdyn.model.advice import other_creep
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
 
@@ -73,7 +72,7 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
             "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, "
             f"{listing(parts)}.",
             f"Slip is too large by as much, and friction losses by about {losses:.2g} W.",
-            f"To have the slip of the belt, {_steeper(evidence.drive)}.",
+            f"To have the slip of the belt, {other_creep(evidence.drive, 0.1)}.",
         )
 
 
@@ -83,13 +82,3 @@ def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
     passed = abs(evidence.pulleys[0].speed) * float(drive.rolling_radii[0]) * (window.end - window.start)
     stretch = drive.belt.stretch_parameters.stretch(evidence.recorded["span_tension"][window.first :])
     return abs(slip) * passed > float(np.ptp(stretch, axis=0).max()) * drive.belt_length
-
-
-def _steeper(drive: Drive) -> str:
-    """Say how to get a steeper slope."""
-    chosen = LAWS[drive.contact.friction_law]
-    if any(parameter.found for parameter in chosen.parameters):
-        ratio = drive.completed.contact.given("creep_ratio")
-        return f"lower contact.creep_ratio = {ratio:.1e} to {0.1 * ratio:.0e}"
-    keys = " and ".join(f"contact.{key}" for key in ("friction_law", *(one.name for one in chosen.parameters)))
-    return f"leave out {keys}: the friction law that is chosen without them creeps with the speed of the belt"
