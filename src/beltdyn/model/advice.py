@@ -222,10 +222,10 @@ def describe_time(drive: Drive) -> str:
     cause = max(rates, key=rates.__getitem__)
     steps = settings.duration * rates[cause]
     seconds = steps * drive.elements * _ELEMENT_TIME
-    about = f"about {_spoken(seconds)}, a third or three times as much"
+    about = f"about {_spoken(seconds)}, a fifth or four times as much"
     if seconds < _LONG:
         return about
-    return f"{about}: {settings.duration:g} s in {steps:.1g} steps, as short as {cause} asks for"
+    return f"{about}: {settings.duration:g} s in {float(f'{steps:.1g}'):,.0f} steps, as short as {cause} asks for"
 
 
 def _spoken(seconds: float) -> str:

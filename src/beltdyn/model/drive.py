@@ -60,7 +60,10 @@ class Drive(Part):
     _source: str | None = PrivateAttr(None)
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
-        """Travel between processes as a drive file."""
+        """Travel between processes as a drive file, which holds no functions of Python."""
+        from beltdyn.model.toml_writer import refuse_functions
+
+        refuse_functions(self, "a drive goes to other processes as a text, without functions", "run it in this process")
         return _from_text, (self.text,)
 
     @model_validator(mode="after")

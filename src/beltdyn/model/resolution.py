@@ -78,7 +78,14 @@ class Running:
 
 
 def layer_lengths(drive: OnPulleys, tension: float) -> tuple[float, float]:
-    """Lengths within which a belt under a tension (N) turns at the ends of an arc.
+    """Lengths within which a belt under a tension turns at the ends of an arc.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    tension : float
+        N.
 
     Returns
     -------

@@ -30,10 +30,27 @@ def dumps(drive: Drive) -> str:
     >>> bd.loads(bd.dumps(drive)) == drive
     True
     """
+    refuse_functions(drive, "a drive file cannot hold a function of Python", "keep the drive in a script")
+    return tomli_w.dumps(drive.data, multiline_strings=False)
+
+
+def refuse_functions(drive: Drive, rule: str, remedy: str) -> None:
+    """Make sure that all of a drive can be written as text.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    rule, remedy : str
+        Why it must be, and what to do beside giving a table.
+
+    Raises
+    ------
+    ModelError
+        If a load is a function of Python.
+    """
     for pulley in drive.pulleys:
         if any(isinstance(load, FunctionLoad) for load in pulley.load):
             raise ModelError(
-                f'pulley "{pulley.name}" has a load of kind "function": a drive file cannot hold a function of Python. '
-                "Give the load as a table, or keep the drive in a script"
+                f'pulley "{pulley.name}" has a load of kind "function": {rule}. Give the load as a table, or {remedy}'
             )
-    return tomli_w.dumps(drive.data, multiline_strings=False)

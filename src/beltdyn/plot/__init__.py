@@ -11,10 +11,10 @@ from beltdyn.plot.history import speeds as speeds
 from beltdyn.plot.history import torques as torques
 from beltdyn.plot.layout import layout as layout
 from beltdyn.plot.layout import save_layout as save_layout
+from beltdyn.plot.losses import losses as losses
 from beltdyn.plot.pulleys import capstan_margins as capstan_margins
 from beltdyn.plot.pulleys import hub_load_sizes as hub_load_sizes
 from beltdyn.plot.pulleys import hub_loads as hub_loads
-from beltdyn.plot.pulleys import losses as losses
 from beltdyn.plot.pulleys import powers as powers
 from beltdyn.plot.pulleys import slip as slip
 from beltdyn.plot.registry import FIGURES as FIGURES

@@ -23,25 +23,26 @@ _KILO = 1e3
 _SLIDING = "#f6d9c9"
 
 
-def _pulleys(run: Result, choice: Choice) -> list[list[int]]:
-    """Numbers of the chosen pulleys, in rows."""
-    return rows(list(range(len(run.drive.pulleys))) if choice.pulley is None else [choice.pulley])
+def _pulleys(run: Result, choice: Choice) -> list[list[str]]:
+    """Names of the chosen pulleys, in rows."""
+    names = [pulley.name for pulley in run.drive.pulleys]
+    return rows(names if choice.pulley is None else [names[choice.pulley]])
 
 
 def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each kind of force and pulley."""
     blocks = [(block, kind) for block in _pulleys(run, choice) for kind in get_args(Kind)]
-    return panels([[partial(draw, run, number, kind=kind) for number in block] for block, kind in blocks])
+    return panels([[partial(draw, run, name, kind=kind) for name in block] for block, kind in blocks])
 
 
 def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each pulley, with one legend for all."""
-    page = panels([[partial(draw, run, number) for number in row] for row in _pulleys(run, choice)])
+    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(run, choice)])
     page.legend(*page.axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
     return page
 
 
-@figure(always, _kinds_by_pulleys, of=(RUN, STATIC))
+@figure(always, _kinds_by_pulleys, of=(RUN, STATIC), compares=True)
 def contact_forces(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
 ) -> Axes:
@@ -97,7 +98,7 @@ def contact_forces(
     return ax
 
 
-@figure(always, _by_pulleys, of=(RUN, STATIC))
+@figure(always, _by_pulleys, of=(RUN, STATIC), compares=True)
 def contact_pressure(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, ax: Axes | None = None
 ) -> Axes:

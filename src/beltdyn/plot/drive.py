@@ -16,6 +16,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
 from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
+from beltdyn.plot.tensioner import TensionerPicture
 from beltdyn.results import Run, StaticResult
 from beltdyn.results.mechanics import element_lengths
 
@@ -33,7 +34,7 @@ _ROUNDS = 8
 
 
 class DrivePicture:
-    """Belt with its tension in color, pulleys with names, marks and the direction of rotation.
+    """Belt with its tension in color, pulleys with names and marks that turn, and tensioners that move.
 
     Parameters
     ----------
@@ -58,6 +59,7 @@ class DrivePicture:
         self._belt.set_snap(False)
         ax.add_collection(self._belt)
         self._title = ax.set_title("")
+        self._tensioners = [TensionerPicture(ax, run.drive, carrier) for carrier in run.drive.carriers]
         _draw_scale(ax, self._belt, run.dataset["belt_tension"])
         _frame(ax, run)
 
@@ -77,6 +79,8 @@ class DrivePicture:
             direction = np.array([np.cos(angle), np.sin(angle)])
             body.mark.set_data(*(center[:, None] + radius * np.outer(direction, _MARK)))
             body.rim.center = body.hub.center = tuple(center)
+        for tensioner in self._tensioners:
+            tensioner.show(centers)
         self._title.set_text(f"t = {float(instant['time']):.4g} s")
 
 
@@ -198,11 +202,8 @@ def _draw_pulley(ax: Axes, pulley: Pulley, number: int) -> _Body:
 def _frame(ax: Axes, run: Run | StaticResult) -> None:
     """Make room for the pulleys, and for the belt at any time."""
     positions = run.dataset["node_position"]
-    centers = run.drive.centers
-    radii = np.array([[pulley.radius] for pulley in run.drive.pulleys])
-    places = positions.values.reshape(-1, 2)
-    low = np.min([places.min(axis=0), *(centers - radii)], axis=0)
-    high = np.max([places.max(axis=0), *(centers + radii)], axis=0)
+    places, (left, right) = positions.values.reshape(-1, 2), extent_of(run.drive, run.drive.path)
+    low, high = np.minimum(places.min(axis=0), left), np.maximum(places.max(axis=0), right)
     ax.set(xlabel=f"x [{positions.attrs['units']}]", ylabel=f"y [{positions.attrs['units']}]")
     make_room(ax, np.array([low, high]))
 

@@ -15,14 +15,14 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, Tensioner
 from beltdyn.model import Drive, Installation, Path, install
-from beltdyn.model.carrier import Carrier
 from beltdyn.model.clearance import crossings
 from beltdyn.model.end import End
 from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
+from beltdyn.plot.tensioner import LINE, TENSIONER, draw_pivot, draw_stops
 
-_BELT, _TENSIONER = COLORS[0], COLORS[1]
+_BELT = COLORS[0]
 _WAY, _POINTS = 1.4, 20
 """Length of a way that is drawn, over the radius of the pulley, and its points."""
 _ARROW = "-|>,head_length=5,head_width=2.4"
@@ -57,7 +57,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
         _draw_pulley(ax, drive, path, number)
     _draw_belt(ax, path)
     for carrier in drive.carriers:
-        _draw_stops(ax, drive, carrier)
+        draw_stops(ax, drive, carrier)
     for tensioner, way in _ways(drive, installation):
         _draw_tensioner(ax, tensioner, way)
     if path.ends is not None:
@@ -68,8 +68,9 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
         write_pulley(ax, path, number, text, float(np.ptp(extent, axis=0).max()))
     _write_spans(ax, path)
     ax.set(xlabel="x [m]", ylabel="y [m]")
+    name = f"{drive.name}: " if drive.name else ""
     ax.set_title(
-        f"belt {drive.belt_length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
+        f"{name}belt {drive.belt_length:.5g} m on a path of {path.length:.5g} m, {installation.tension:.4g} N at rest"
     )
     make_room(ax, extent)
     return ax
@@ -157,28 +158,13 @@ def _ways(drive: Drive, installation: Installation) -> Iterator[tuple[Tensioner,
 
 def _draw_tensioner(ax: Axes, tensioner: Tensioner, way: FloatArray) -> None:
     """Draw the arm or the line of a tensioner, and an arrow the way in which it tensions the belt."""
-    line: dict[str, Any] = {"color": _TENSIONER, "linewidth": 2.0, "zorder": 4}
     center, pivot = way[0], tensioner.anchor
     if pivot is None:
-        ax.plot(*np.array([2.0 * center - way[-1], center]).T, linestyle=":", **line)
+        ax.plot(*np.array([2.0 * center - way[-1], center]).T, linestyle=":", **LINE)
     else:
-        ax.plot(*np.array([pivot, center]).T, **line)
-        ax.plot(*pivot, marker="o", markersize=7, markeredgecolor=_TENSIONER, markerfacecolor="white", zorder=4.1)
-    ax.add_patch(_arrow(way, _TENSIONER, 9))
-
-
-def _draw_stops(ax: Axes, drive: Drive, carrier: Carrier) -> None:
-    """Draw the way of a tensioned pulley from stop to stop, dotted, and its rim at both, dashed."""
-    if carrier.tensioner.stops is None:
-        return
-    lower, upper = carrier.tensioner.stops
-    way = np.array([carrier.place(position)[0] for position in np.linspace(lower, upper, _POINTS)])
-    ax.plot(*way.T, color=_TENSIONER, linewidth=1.2, linestyle=":", zorder=4)
-    radius = drive.pulleys[carrier.pulley].radius
-    for center, name in ((way[0], "lower stop"), (way[-1], "upper stop")):
-        rim = Circle(center, radius, fill=False, edgecolor=_TENSIONER, linewidth=0.8, linestyle="--", zorder=1.5)
-        rim.set_label(name)
-        ax.add_patch(rim)
+        ax.plot(*np.array([pivot, center]).T, **LINE)
+        draw_pivot(ax, pivot)
+    ax.add_patch(_arrow(way, TENSIONER, 9))
 
 
 def _draw_end(ax: Axes, end: End, point: FloatArray, way: FloatArray) -> None:
@@ -190,7 +176,7 @@ def _draw_end(ax: Axes, end: End, point: FloatArray, way: FloatArray) -> None:
         tuple(point),
         xytext=tuple((18.0 if end.held else 36.0) * way),
         textcoords="offset points",
-        arrowprops=None if end.held else {"arrowstyle": "<|-", "color": _TENSIONER, "linewidth": 1.6},
+        arrowprops=None if end.held else {"arrowstyle": "<|-", "color": TENSIONER, "linewidth": 1.6},
         horizontalalignment="center",
         verticalalignment="center",
         color=INK,

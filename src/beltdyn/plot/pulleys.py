@@ -1,4 +1,4 @@
-"""Figures of the pulleys: hub loads, slip, capstan margin, powers and losses."""
+"""Figures of the pulleys: hub loads, slip, capstan margin and powers."""
 
 from collections.abc import Callable
 
@@ -12,8 +12,8 @@ from matplotlib.ticker import MaxNLocator
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import envelope, lines
 from beltdyn.plot.registry import Choice, figure, over_time
-from beltdyn.plot.style import INK, POLAR_SIZE, axes_or_new, color, label, name_lines, new_figure, note, polar_or_new
-from beltdyn.results import Run, derived, power_balance, summarize
+from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, new_figure, note, polar_or_new
+from beltdyn.results import Run, derived, summarize
 from beltdyn.results.cycles import mean_window
 
 _LARGEST_MARGIN = 10.0
@@ -128,56 +128,6 @@ def powers(run: Run, ax: Axes | None = None) -> Axes:
     return lines(derived.pulley_powers(run)["power_in"], axes_or_new(ax))
 
 
-@figure(over_time)
-def losses(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw where the power goes that is lost, by cause: means over the end of the run, as in the summary.
-
-    Friction and contact damping are laid out by pulley. What gives power, which no loss can, stands left of zero.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    ax : Axes, optional
-        Where to draw; a new figure by default.
-
-    Returns
-    -------
-    Axes
-        The axes.
-
-    Raises
-    ------
-    ModelError
-        If the run holds no output.
-    """
-    run.require_output()
-    ax = axes_or_new(ax)
-    over = mean_window(run.dataset, run.drive)
-    balance = power_balance(run.dataset, over)
-    by_pulley = derived.pulley_powers(run).map(lambda power: xr.DataArray(over.mean_of(power.values), dims="pulley"))
-    by_pulley = by_pulley.assign_coords(pulley=run.dataset["pulley"])
-    parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}
-    drawn = {cause: power for cause, power in balance.losses.items() if power != 0.0 or cause in parts}
-    for row, (cause, power) in enumerate(drawn.items()):
-        ends = _stack(ax, row, parts[cause]) if cause in parts else (min(power, 0.0), max(power, 0.0))
-        if cause not in parts:
-            ax.barh(row, power, color="0.55", height=0.6)
-        share = f" ({power / balance.power_in:.2%})" if balance.power_in > 0.0 else ""
-        place = (max(ends), row)
-        ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center")
-    ax.set_yticks(range(len(drawn)), list(drawn))
-    ax.invert_yaxis()
-    ax.grid(axis="y", visible=False)
-    ax.margins(x=0.3)
-    if ax.dataLim.x0 >= 0.0:
-        ax.set_xlim(left=0.0)
-    ax.axvline(0.0, color=INK, linewidth=0.8)
-    ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {over.start:.4g} to {over.end:.4g} s")
-    name_lines(ax)
-    return ax
-
-
 def _one_polar_panel(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
     """Lay out a figure of one polar panel."""
     page = new_figure(POLAR_SIZE)
@@ -273,16 +223,6 @@ def _widest_gap(directions: np.ndarray) -> float:
     gaps = np.diff(angles, append=angles[0] + 360.0)
     widest = int(gaps.argmax())
     return float(angles[widest] + 0.5 * gaps[widest])
-
-
-def _stack(ax: Axes, row: int, powers: xr.DataArray) -> tuple[float, float]:
-    """Draw bars of the pulleys on end, losses to the right of zero and gains to its left; give where both end."""
-    left, right = 0.0, 0.0
-    for number, (name, power) in enumerate(zip(powers["pulley"].values, powers.values.tolist(), strict=True)):
-        begin = left if power < 0.0 else right
-        ax.barh(row, power, left=begin, color=color(number), height=0.6, label=str(name) if row == 0 else None)
-        left, right = min(left, begin + power), max(right, begin + power)
-    return left, right
 
 
 def _limit(ax: Axes, variable: xr.DataArray, from_: float) -> None:

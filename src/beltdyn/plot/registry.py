@@ -18,6 +18,8 @@ from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run
 
 P = ParamSpec("P")
+Together = Callable[[Sequence[Any], Axes | None], Axes]
+"""What draws several results into one pair of axes."""
 
 
 class Choice(NamedTuple):
@@ -80,7 +82,7 @@ def figure(
     by_default: Callable[[Any], bool] = on_request,
     arrange: Callable[[Callable[..., Axes], Any, Choice], Figure] = one_panel,
     of: tuple[str, ...] = (RUN,),
-    compares: bool = False,
+    compares: bool | Together = False,
 ) -> Callable[[Callable[P, Axes]], Callable[P, Axes]]:
     """Register a figure under the name of the function that draws it, and draw it in the style of this package.
 
@@ -94,8 +96,9 @@ def figure(
         ``arrange(draw, run, choice) -> Figure`` lays its panels out where it is saved; one panel by default.
     of : tuple of str
         Kinds of the results that it is drawn of, names of analyses: of runs by default.
-    compares : bool
-        Whether it takes a sequence of results too, whose lines are laid over each other.
+    compares : bool or callable
+        Whether it takes a sequence of results too, whose lines are laid over each other; or what draws several:
+        ``compares(results, ax) -> Axes``.
 
     Returns
     -------
@@ -117,7 +120,10 @@ def figure(
                 return painted(*bound.args, **bound.kwargs)
 
             ax = bound.arguments.get("ax")
-            made = on(results[0], ax) if len(results) == 1 else styled(overlay)(on, results, ax)
+            if len(results) == 1:
+                made = on(results[0], ax)
+            else:
+                made = styled(compares)(results, ax) if callable(compares) else styled(overlay)(on, results, ax)
             if ax is None:
                 write_headline(made.figure.figure, headlines(results))
             return made
@@ -133,7 +139,7 @@ def figure(
             write_headline(made, headlines(results))
             return made
 
-        FIGURES[name] = Registered(page, by_default, of, compares)
+        FIGURES[name] = Registered(page, by_default, of, bool(compares))
         return drawn
 
     return register

@@ -7,6 +7,8 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.text import Text
 
 from beltdyn.model import Drive, loads
 from beltdyn.plot.headline import file_name, name_of
@@ -44,8 +46,9 @@ def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Resul
         new = [artist for artist in ax.get_children() if artist not in before]
         drawn.append([artist for artist in new if isinstance(artist, Line2D)])
         _tell_apart(new, number)
-        for repeated in (artist for artist in new if number and artist in (*ax.texts, *ax.patches)):
-            repeated.remove()
+        for one in new:
+            if isinstance(one, Patch) or (number and isinstance(one, Text)):  # areas would hide each other
+                one.remove()
     assert ax is not None
     if len(titles) > 1:
         ax.set_title("")

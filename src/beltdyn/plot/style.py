@@ -162,9 +162,10 @@ def label(variable: xr.DataArray) -> str:
     Returns
     -------
     str
-        Such as "Span tension [N]".
+        Such as "Span tension [N]"; of a ratio without unit.
     """
-    return f"{variable.attrs['long_name']} [{unit(variable)}]"
+    name, units = str(variable.attrs["long_name"]), unit(variable)
+    return name if units == "1" else f"{name} [{units}]"
 
 
 def reserve(ax: Axes, text: str) -> None:

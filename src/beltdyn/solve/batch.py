@@ -17,6 +17,7 @@ from typing import Any
 
 from beltdyn.analyses import ANALYSES, RUN, Analysis
 from beltdyn.model import Drive
+from beltdyn.model.toml_writer import refuse_functions
 from beltdyn.results import Run
 from beltdyn.solve.compilation import compile_kernels, usable_cores
 from beltdyn.solve.progress import BatchProgress
@@ -88,9 +89,17 @@ def analyse_all(
     -------
     dict
         Result file -> how its analysis ended, in the order of `drives`.
+
+    Raises
+    ------
+    ModelError
+        If a load is a function of Python, before anything is computed.
     """
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}
+    for file, drive in files.items():
+        rule = f"{file.name} is computed by another process, which a function of Python does not reach"
+        refuse_functions(drive, rule, "call `simulate` or another analysis for this drive by itself.")
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
     stop = _SPAWN.Event()
 

@@ -1,12 +1,12 @@
 """An analysis: a run-up, in which the speed of a pulley rises linearly."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
 from beltdyn.errors import ModelError
-from beltdyn.machines import Constant, Profile
+from beltdyn.machines import Constant, FunctionLoad, Load, Profile
 from beltdyn.model import Drive
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import to_si
@@ -38,8 +38,9 @@ def sweep(
     """Run a drive up through a range of speeds, for waterfall and order plots.
 
     The speed of one pulley rises linearly in place of what the drive says; its harmonics stay. Whatever else changes
-    over time, as schedules of loads, keeps its final value. The run begins at the first speed, when the transients of
-    the start have died; what goes before is not recorded. It ends early where a pulley slips through. Spectra reach
+    over time, as schedules of loads, keeps its final value, and a motor runs in delta; a function of Python is given
+    the time of the run-up, and before it that of the settling. The run begins at the first speed, when the transients
+    of the start have died; what goes before is not recorded. It ends early where a pulley slips through. Spectra reach
     0.375 over simulation.output_interval; `beltdyn plot FILE --figures waterfall,orders` draws them.
 
     Parameters
@@ -129,8 +130,13 @@ def without_schedules(drive: Drive) -> tuple[Drive, list[str]]:
         return part.replace(**values, **others) if values or others else part
 
     def all_constant(parts: Sequence[_Part], name: str) -> list[_Part]:
-        return [constant(part, f"{name}[{number}]") for number, part in enumerate(parts, 1)]
+        return [constant(part, f"{name}[{number}]", **_lasting(part)) for number, part in enumerate(parts, 1)]
 
+    for one in drive.pulleys:
+        for number, load in enumerate(one.load, 1):
+            held.extend(f"{one.name}.load[{number}] past its {key}" for key in load.lasting)
+            if isinstance(load, FunctionLoad):
+                held.append(f"{one.name}.load[{number}] not, a function that is given the time of the run-up")
     pulleys = [
         constant(
             one,
@@ -141,6 +147,11 @@ def without_schedules(drive: Drive) -> tuple[Drive, list[str]]:
         for one in drive.pulleys
     ]
     return drive.replace(pulley=pulleys), held
+
+
+def _lasting(part: Part) -> Mapping[str, Any]:
+    """What a load has after all has changed over time."""
+    return part.lasting if isinstance(part, Load) else {}
 
 
 def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float) -> Drive:

@@ -59,9 +59,9 @@ def test_the_time_that_a_run_takes(drive: Drive) -> None:
     def told(**simulation: float) -> str:
         return describe_time(drive.replace(simulation=drive.simulation.replace(**simulation)))
 
-    assert told(duration=100.0, rtol=1e-4) == "about 34 s, a third or three times as much"
+    assert told(duration=100.0, rtol=1e-4) == "about 34 s, a fifth or four times as much"
     assert told(duration=1000.0, rtol=1e-4) == (
-        "about 5.7 minutes, a third or three times as much: 1000 s in 3e+06 steps, as short as simulation.rtol = "
+        "about 5.7 minutes, a fifth or four times as much: 1000 s in 3,000,000 steps, as short as simulation.rtol = "
         "0.0001 asks for"
     )
     stepped = told(duration=1000.0, rtol=1e-2, max_step=1e-4)

@@ -66,15 +66,6 @@ def test_powers(run: Run, ax: Axes) -> None:
     assert np.asarray(ax.lines[0].get_ydata())[-1] == pytest.approx(12.0 * 30.0 * 0.08125)
 
 
-def test_losses_by_cause_and_pulley(run: Run, ax: Axes) -> None:
-    """Friction takes 1.08 W, half of it on each pulley, of 29.25 W; what takes nothing is not drawn."""
-    plot.losses(run, ax)
-    assert [label.get_text() for label in ax.get_yticklabels()] == ["friction", "contact damping"]
-    widths = [patch.get_width() for patch in ax.patches[:2]]  # type: ignore[attr-defined]
-    assert widths == pytest.approx([0.54, 0.54])
-    assert texts(ax)[0] == f"1.08 W ({1.08 / 29.25:.2%})"
-
-
 def test_pressure_and_shear_with_what_slides(make_run: MakeRun, run: Run, ax: Axes) -> None:
     touched = run.dataset["contact_pulley"].values
     slipping = make_run(slip_velocity=np.where(touched == 1, 0.4, 0.0))
@@ -93,16 +84,6 @@ def test_pressure_where_nothing_touches(make_run: MakeRun, run: Run, ax: Axes) -
     free = np.full_like(run.dataset["contact_pulley"].values, -1)
     plot.contact_pressure(make_run(contact_pulley=free), 0, ax=ax)
     assert np.asarray(ax.lines[0].get_xdata()).size == 0
-
-
-def test_losses_that_give_power_stand_left_of_zero(make_run: MakeRun, run: Run, ax: Axes) -> None:
-    """The driver loses 2 W in friction, and the driven pulley would give 0.5 W."""
-    power = np.ones_like(run.dataset["friction_power"].values) * [2.0, -0.5]
-    plot.losses(make_run(friction_power=power), ax)
-    driver, driven = ax.patches[:2]
-    assert (driver.get_x(), driver.get_width()) == pytest.approx((0.0, 2.0))  # type: ignore[attr-defined]
-    assert (driven.get_x(), driven.get_width()) == pytest.approx((0.0, -0.5))  # type: ignore[attr-defined]
-    assert ax.get_xlim()[0] < -0.5
 
 
 def test_the_scale_of_slip_is_that_of_the_running_drive(make_run: MakeRun, run: Run, ax: Axes) -> None:

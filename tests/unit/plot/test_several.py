@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 
 from beltdyn import plot
+from beltdyn.errors import ModelError
 from beltdyn.plot.headline import headlines
 from beltdyn.plot.several import names_of_results
 from beltdyn.results import Run
@@ -58,7 +59,8 @@ def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path:
     page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
-    assert names == ["speeds", "torques", "span_tensions", "slip", "capstan_margins", "powers", "hub_load_sizes"]
+    expected = ["contact_forces", "contact_pressure", "speeds", "torques", "span_tensions", "energy", "losses"]
+    assert names == [*expected, "slip", "capstan_margins", "powers", "hub_load_sizes"]
 
 
 def test_runs_of_one_drive_are_told_by_their_files(pair: list[Run]) -> None:
@@ -81,3 +83,14 @@ def test_runs_are_named_by_what_was_given_and_not_by_what_was_found(run: Run) ->
     given = [run.drive.replace(belt=run.drive.belt.replace(installed_tension=tension)) for tension in (40.0, 50.0)]
     runs = [Run(run.dataset.assign_attrs(drive_as_given=one.text), run.drive) for one in given]
     assert names_of_results(runs) == ["belt.installed_tension = 40.0", "belt.installed_tension = 50.0"]
+
+
+def test_contact_of_two_runs_has_a_legend_and_no_areas(pair: list[Run], ax: Axes) -> None:
+    plot.contact_pressure(pair, "driven", ax=ax)  # type: ignore[arg-type]
+    assert legend(ax)[-2:] == ["one", "other"]
+    assert not ax.patches
+
+
+def test_what_cannot_be_compared_is_refused(pair: list[Run]) -> None:
+    with pytest.raises(ModelError, match=r"'configuration' shows one result.* Draw each by itself"):
+        plot.configuration(pair)  # type: ignore[arg-type]

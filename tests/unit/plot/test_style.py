@@ -33,6 +33,7 @@ def test_labels_are_a_meaning_and_a_unit(run: Run) -> None:
     torque = run.dataset["pulley_torque"]
     assert unit(torque) == "N·m"
     assert label(torque) == f"{torque.attrs['long_name']} [N·m]"
+    assert label(torque.assign_attrs(long_name="Capstan margin", units="1")) == "Capstan margin"
 
 
 def test_every_line_of_a_figure_can_be_told_from_its_neighbours() -> None:

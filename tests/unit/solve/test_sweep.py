@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError, SlipError
+from beltdyn.machines import FunctionLoad
 from beltdyn.model import Drive
 from beltdyn.results import open_run
 from beltdyn.solve.sweep import run_up, sweep, without_schedules
@@ -31,6 +32,27 @@ def test_what_changes_over_time_keeps_its_final_value(drive: Drive) -> None:
     assert late.schedule is not None
     np.testing.assert_array_equal(late.schedule.at([0.0, 9.0]), 0.7)
     assert plain == loaded.pulleys[1].load[1]
+
+
+def test_a_motor_runs_in_delta_and_a_function_is_named(drive: Drive) -> None:
+    first, last = drive.pulleys
+    motor = {
+        "kind": "induction_motor",
+        "rated_power": "1.5 kW",
+        "rated_speed": "1430 rpm",
+        "locked_rotor_ratio": 2.0,
+        "breakdown_ratio": 2.5,
+        "star_until": "1 s",
+    }
+    fan = FunctionLoad(function=lambda time, angle, speed: -1e-3 * speed * abs(speed))
+    steady, held = without_schedules(drive.replace(pulley=[first, last.replace(torque=None, load=[motor, fan])]))
+    delta, same = steady.pulleys[1].load
+    assert "star_until" in motor.keys() - delta.arguments.keys()
+    assert same == fan
+    assert held[:2] == [
+        "driven.load[1] past its star_until",
+        "driven.load[2] not, a function that is given the time of the run-up",
+    ]
 
 
 def test_a_drive_without_a_prescribed_speed_cannot_be_swept(drive: Drive) -> None:

@@ -184,6 +184,11 @@ class InductionMotor(Load):
         """The slip at which Kloss's formula has its maximum, so that it gives the rated torque at the rated speed."""
         return self._rated_slip * (self.breakdown_ratio + sqrt(self.breakdown_ratio**2 - 1.0))
 
+    @property
+    def lasting(self) -> Mapping[str, Any]:
+        """It runs in delta after its start in star."""
+        return {"star_until": None} if self.star_until is not None else {}
+
     def values(self) -> Mapping[str, Any]:
         """Torques and slips of the curve."""
         rated, pulls_up = abs(self.rated_torque), self.pull_up_ratio is not None

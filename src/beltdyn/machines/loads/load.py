@@ -129,6 +129,11 @@ class Load(Part):
         return None
 
     @property
+    def lasting(self) -> Mapping[str, Any]:
+        """Arguments beside profiles that it has after all has changed over time; nothing by default."""
+        return {}
+
+    @property
     def state_lag(self) -> float | None:
         """Time constant with which the state of its controller follows its rate, s; None without a state."""
         return None

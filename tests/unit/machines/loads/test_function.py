@@ -1,6 +1,7 @@
 """A load by a user's function: its torque and derivatives, files, and what is refused."""
 
 import math
+import pickle
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.machines.loads.load import LoadTorque
 from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive, FunctionLoad, dumps, loads
+from beltdyn.solve import simulate_all
 from beltdyn.system.build_machines import machine_arrays
 
 Torque = Callable[..., LoadTorque]
@@ -59,6 +61,19 @@ def test_no_drive_file_holds_a_function(carrying: Drive) -> None:
     name = carrying.pulleys[1].name
     with pytest.raises(ModelError, match=f'pulley "{name}" has a load of kind "function": a drive file cannot hold'):
         dumps(carrying)
+
+
+def test_no_other_process_gets_a_function(carrying: Drive, tmp_path: Path) -> None:
+    """It is refused before anything starts, and is not lost on the way."""
+    told = []
+    with pytest.raises(
+        ModelError, match=r'load of kind "function": run.nc is computed by another process.* call `simulate`'
+    ):
+        simulate_all({tmp_path / "run.nc": carrying}, told.append)
+    assert told == []
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ModelError, match="goes to other processes as a text"):
+        pickle.dumps(carrying)
 
 
 def test_a_result_keeps_the_name_of_the_function(carrying: Drive) -> None:
