@@ -87,18 +87,19 @@ def contact_forces(
         _draw_limits(ax, instant, wrap, float(run.drive.frictions[number]))
     force = instant[f"{kind}_force"]
     values = force.values[wrap.points]
-    ax.plot(wrap.distance, values, color=color(number), marker="o", markersize=3.0)
+    name = run.drive.pulleys[number].name
+    ax.plot(wrap.distance, values, color=color(number), marker="o", markersize=3.0, label=name)
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     ax.locator_params(axis="x", nbins=5)
     coordinate_unit = unit(run.dataset["belt_coordinate"])
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
-    ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(instant['time']):.4g} s")
+    ax.set_title(f"{name}, t = {float(instant['time']):.4g} s")
     if not run.resolution.resolves("peak pressure"):
         reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
     return ax
 
 
-@figure(always, _by_pulleys, of=(RUN, STATIC), compares=True)
+@figure(always, _by_pulleys, of=(RUN, STATIC))
 def contact_pressure(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, ax: Axes | None = None
 ) -> Axes:

@@ -97,7 +97,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     return ax
 
 
-@figure(over_time, compares=True)
+@figure(over_time)
 def energy(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the energy account over time: work put in, energy stored, energy lost; without what is always zero.
 

@@ -33,7 +33,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
         powers = [balance.losses.get(cause, 0.0) for cause in causes]
         ax.barh(places, powers, height=0.9 * height, color=color(number), label=name)
         for place, power in zip(places, powers, strict=True):
-            _write(ax, balance, power, (max(power, 0.0), place), fontsize=_SMALL)
+            _write(ax, balance, power, (max(power, 0.0), place), _SMALL)
     _frame(ax, causes)
     ax.set_xlabel("Power lost [W] and its share of the power put in, means at the end of each run")
     name_lines(ax)
@@ -94,10 +94,10 @@ def _frame(ax: Axes, causes: Sequence[str]) -> None:
     ax.axvline(0.0, color=INK, linewidth=0.8)
 
 
-def _write(ax: Axes, balance: Balance, power: float, place: tuple[float, float], **style: float) -> None:
+def _write(ax: Axes, balance: Balance, power: float, place: tuple[float, float], size: float | None = None) -> None:
     """Write a power, W, and its share of what is put in, behind a bar."""
     share = f" ({power / balance.power_in:.2%})" if balance.power_in > 0.0 else ""
-    ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center", **style)
+    ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center", fontsize=size)
 
 
 def _stack(ax: Axes, row: int, powers: xr.DataArray) -> tuple[float, float]:

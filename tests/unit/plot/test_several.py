@@ -59,8 +59,8 @@ def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path:
     page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
-    expected = ["contact_forces", "contact_pressure", "speeds", "torques", "span_tensions", "energy", "losses"]
-    assert names == [*expected, "slip", "capstan_margins", "powers", "hub_load_sizes"]
+    expected = ["contact_forces", "speeds", "torques", "span_tensions", "losses", "slip", "capstan_margins", "powers"]
+    assert names == [*expected, "hub_load_sizes"]
 
 
 def test_runs_of_one_drive_are_told_by_their_files(pair: list[Run]) -> None:
@@ -85,10 +85,11 @@ def test_runs_are_named_by_what_was_given_and_not_by_what_was_found(run: Run) ->
     assert names_of_results(runs) == ["belt.installed_tension = 40.0", "belt.installed_tension = 50.0"]
 
 
-def test_contact_of_two_runs_has_a_legend_and_no_areas(pair: list[Run], ax: Axes) -> None:
-    plot.contact_pressure(pair, "driven", ax=ax)  # type: ignore[arg-type]
-    assert legend(ax)[-2:] == ["one", "other"]
-    assert not ax.patches
+def test_contact_forces_of_two_runs_differ_in_line_style(pair: list[Run], ax: Axes) -> None:
+    plot.contact_forces(pair, "driven", ax=ax)  # type: ignore[arg-type]
+    assert legend(ax) == ["driven", "one", "other"]
+    first, other = (line for line in ax.lines if line.get_label() == "driven")
+    assert (first.get_linestyle() == "-") != (other.get_linestyle() == "-")
 
 
 def test_what_cannot_be_compared_is_refused(pair: list[Run]) -> None:
