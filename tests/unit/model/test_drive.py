@@ -65,7 +65,7 @@ def test_the_time_that_a_run_takes(drive: Drive) -> None:
         "0.0001 asks for"
     )
     stepped = told(duration=1000.0, rtol=1e-2, max_step=1e-4)
-    assert stepped.endswith("in 1e+07 steps, as short as simulation.max_step = 0.0001 s asks for")
+    assert stepped.endswith("in 10,000,000 steps, as short as simulation.max_step = 0.0001 s asks for")
     assert describe_time(drive.replace(simulation=drive.simulation.replace(integrator="bdf"))) == ""
 
 
