@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.recording import Recording
-from beltdyn.solve.staying import bring_to_stand
+from beltdyn.solve.staying import FINER, bring_to_stand, stand
 from beltdyn.solve.steady_neighbour import require_neighbour, search_from, with_length_of
 from beltdyn.solve.steady_refinement import refine
 from beltdyn.solve.steady_search import SteadySearch
@@ -21,6 +21,8 @@ from beltdyn.system.constant_drive import twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
+_MOST_STARTS = 4
+"""Meshes at rest from which steady running is sought."""
 _TURNS = 2.2
 """Turns of the belt in the results; means are taken over the last one."""
 
@@ -117,11 +119,18 @@ class _Found(NamedTuple):
 
 
 def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None) -> _Found:
-    """Find steady running from the belt at rest."""
-    rest = bring_to_stand(drive, elements)
-    search, begun = SteadySearch(rest.drive, rest.system, rest.state, instant), time.perf_counter()
-    search.run(rest)
-    errors = refine(search, rest, force_tolerance, elements)
+    """Find steady running from the belt at rest, on a finer mesh where that on a coarse one leads to no other."""
+    rest, begun = bring_to_stand(drive, elements), time.perf_counter()
+    for trial in range(1, _MOST_STARTS + 1):
+        search = SteadySearch(rest.drive, rest.system, rest.state, instant)
+        search.run(rest)
+        try:
+            errors = refine(search, rest, force_tolerance, elements)
+            break
+        except ConvergenceError:
+            if elements is not None or trial == _MOST_STARTS:
+                raise
+            rest = stand(rest.drive, fineness=FINER * rest.fineness)
     return _Found(search, errors, time.perf_counter() - begun)
 
 
