@@ -97,6 +97,9 @@ _ALL = (
     Analysis("sweep", "beltdyn.solve.sweep:sweep", "Run a drive up through a range of speeds."),
     Analysis(STATIC, "beltdyn.solve.equilibrium:equilibrium", "Find the static equilibrium of a drive at rest."),
     Analysis("steady", "beltdyn.solve.steady:steady_state", "Find the steady running of a drive."),
+    Analysis("map", "beltdyn.solve.operating_map:operating_map", "Find operating points over speed and load."),
+    Analysis("traction", "beltdyn.solve.traction:traction", "Find the slip of a pulley over its torque."),
+    Analysis("duty", "beltdyn.solve.duty:duty", "Find the operating points of a duty table, and means over it."),
     # one line for each
 )
 

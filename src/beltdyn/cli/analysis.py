@@ -79,8 +79,6 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         if one.kind is Parameter.KEYWORD_ONLY and name not in SHARED
     }
     common = [one for one in signature(command).parameters.values() if one.kind is not Parameter.VAR_KEYWORD]
-    if not analysis.grows:  # there are plain tables of results over time alone
-        common = [one for one in common if one.name != "csv"]
     parameters = [*common[:2], *own.values(), *common[2:]]
     command.__signature__ = signature(command).replace(parameters=parameters)  # type: ignore[attr-defined]
     command.__annotations__ = {one.name: one.annotation for one in parameters}

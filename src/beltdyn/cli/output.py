@@ -48,7 +48,7 @@ def write_tables(run: "Result", path: Path, force: bool) -> None:
     """Write plain tables into a folder beside the result file, and name them; none of a run without outputs."""
     from beltdyn.results import Run, write_csv
 
-    if isinstance(run, Run) and run.outputs:
+    if not isinstance(run, Run) or run.outputs:
         show(f"Tables: {', '.join(str(table) for table in write_csv(run, tables_folder(path), force))}")
 
 

@@ -25,7 +25,10 @@ _PHASES = {
     "equilibrium": "finding equilibrium",
     "settling": "settling at the first speed",
     "integrating": "simulating",
+    "operating points": "finding operating points",
 }
+_COUNTED = "integrating", "operating points"
+"""Phases of which it is known how far they are."""
 
 
 @contextmanager
@@ -46,13 +49,13 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
             if not told and progress.elapsed > _EARLY and progress.remaining > _LONG:
                 bar.console.print(_long("This run", progress.remaining, progress.bound), highlight=False)
                 told = True
-            integrating = progress.phase == "integrating"
+            counted = progress.phase in _COUNTED
             bar.update(
                 task,
                 description=_PHASES[progress.phase],
                 completed=progress.time,
-                total=progress.duration if integrating else None,
-                state=_state(progress) if integrating else "",
+                total=progress.duration if counted else None,
+                state=_state(progress) if counted else "",
             )
 
         yield report
@@ -67,6 +70,8 @@ def _long(what: str, remaining: float, bound: str) -> str:
 
 
 def _state(progress: "SolverProgress") -> str:
+    if progress.phase == "operating points":
+        return f"{progress.time:.0f} of {progress.duration:.0f}"
     return f"{progress.time:.4g} of {progress.duration:.4g} s, step {progress.step_size:.1e} s"
 
 

@@ -12,6 +12,9 @@ from beltdyn.plot.history import torques as torques
 from beltdyn.plot.layout import layout as layout
 from beltdyn.plot.layout import save_layout as save_layout
 from beltdyn.plot.losses import losses as losses
+from beltdyn.plot.operating_points import efficiency_map as efficiency_map
+from beltdyn.plot.operating_points import operating_points as operating_points
+from beltdyn.plot.operating_points import traction_curve as traction_curve
 from beltdyn.plot.pulleys import capstan_margins as capstan_margins
 from beltdyn.plot.pulleys import hub_load_sizes as hub_load_sizes
 from beltdyn.plot.pulleys import hub_loads as hub_loads

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from beltdyn.results.atomic import atomic_path, make_folder, require_replaceable
 from beltdyn.results.balance import losses_of
+from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.schema import VARIABLES
 from beltdyn.results.summary import Summary, summarize
@@ -74,22 +75,28 @@ _FIRST_HEADINGS = {
     "span_summary.csv": _SPAN_SUMMARY[0],
     "losses.csv": _LOSS_SUMMARY[0],
 }
-"""Every table -> how it starts."""
+"""Every table of a run -> how it starts."""
+
+_OF_NAMES = ("point.csv", "pulley.csv", "span.csv", "tensioner.csv")
+"""Tables of other results; they start with their name."""
 
 Column = tuple[str, NDArray[Any]]
 Table = tuple[Sequence[str], Iterable[Sequence[Any]]]
 
 
-def write_csv(run: Run, folder: Path | str, overwrite: bool = False) -> list[Path]:
-    """Write tables: pulleys, spans, energy and tensioners over time, contact at the last output, and the summary.
+def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[Path]:
+    """Write tables of a result.
+
+    Of a run they are pulleys, spans, energy and tensioners over time, contact at the last output, and the summary; of
+    operating points a row for each; of other results a row for each pulley, span, and whatever else has names.
 
     Every file has one line of headings, such as ``pulley_speed driver [rad/s]``, and numbers with
     ten significant digits. What is derived stands beside what was recorded.
 
     Parameters
     ----------
-    run : Run
-        The run.
+    run : Result
+        The run, or another result.
     folder : Path or str
         Where to write; made if need be.
     overwrite : bool
@@ -99,16 +106,24 @@ def write_csv(run: Run, folder: Path | str, overwrite: bool = False) -> list[Pat
     -------
     list of Path
         ``pulleys.csv``, ``spans.csv``, ``energy.csv``, ``tensioners.csv`` if there are any, ``contact.csv``, and the
-        means over the end of the run: ``pulley_summary.csv``, ``span_summary.csv`` and ``losses.csv``.
+        means over the end of the run: ``pulley_summary.csv``, ``span_summary.csv`` and ``losses.csv``. Of other results
+        ``point.csv`` for operating points, and the name of the dimension for others, such as ``pulley.csv``.
 
     Raises
     ------
     ModelError
         If the run holds no output, a file cannot be written, or would replace one that is no such table.
     """
-    run.require_output()
+    if isinstance(run, Run):
+        run.require_output()
     require_tables(folder, overwrite)
     folder = make_folder(Path(folder))
+    tables = _tables_of_run(run) if isinstance(run, Run) else _tables_of_names(run.dataset)
+    return [_write(folder / name, overwrite, *table) for name, table in tables.items()]
+
+
+def _tables_of_run(run: Run) -> dict[str, Table]:
+    """Tables over time, and of the means."""
     dataset = _with_derived(run)
     over_time = {
         "pulleys": _with_others(_PULLEYS, "pulley"),
@@ -122,8 +137,24 @@ def write_csv(run: Run, folder: Path | str, overwrite: bool = False) -> list[Pat
         if variables[0] in dataset
     }
     tables["contact.csv"] = _table(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT)))
-    tables |= _summaries(summarize(run), run)
-    return [_write(folder / name, overwrite, *table) for name, table in tables.items()]
+    return tables | _summaries(summarize(run), run)
+
+
+def _tables_of_names(dataset: "xr.Dataset") -> dict[str, Table]:
+    """A table of operating points, and one for each other dimension that has names."""
+    axes = str(dataset.attrs.get("axes", "")).split()
+    found = {}
+    if axes:
+        points = dataset.stack(point=axes, create_index=False)
+        numbers = np.arange(1, points.sizes["point"] + 1)
+        names = [*axes, *(name for name in (*points.coords, *points.data_vars) if name not in axes)]
+        along = [str(name) for name in names if "point" in points[name].dims]
+        found["point.csv"] = _table([("point", numbers), *_columns(points.transpose("point", ...), along)])
+    for dim in (str(dim) for dim in dataset.dims if dim in dataset.coords and dim not in axes):
+        columns = [str(name) for name, one in dataset.data_vars.items() if one.dims[:1] == (dim,)]
+        if columns:
+            found[f"{dim}.csv"] = _table([(dim, dataset[dim].values), *_columns(dataset, columns)])
+    return found
 
 
 def require_tables(folder: Path | str, overwrite: bool = False) -> None:
@@ -141,13 +172,13 @@ def require_tables(folder: Path | str, overwrite: bool = False) -> None:
     ModelError
         If there is another file.
     """
-    for name in _FIRST_HEADINGS:
+    for name in (*_FIRST_HEADINGS, *_OF_NAMES):
         require_replaceable(Path(folder) / name, _is_table, overwrite)
 
 
 def _is_table(path: Path) -> bool:
     """Tell whether a file starts with the heading that its namesake of ours has."""
-    heading = f"{_FIRST_HEADINGS[path.name]},".encode()
+    heading = f"{_FIRST_HEADINGS.get(path.name, path.stem)},".encode()
     with suppress(OSError), path.open("rb") as file:
         return file.read(len(heading)) == heading
     return False
@@ -193,7 +224,8 @@ def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:
         labels = [dataset[dim].values for dim in variable.dims[1:]]
         for index in np.ndindex(*variable.shape[1:]):
             words = [name, *(str(label[i]) for label, i in zip(labels, index, strict=True))]
-            yield f"{' '.join(words)} [{variable.attrs['units']}]", variable.values[(slice(None), *index)]
+            unit = f" [{variable.attrs['units']}]" if "units" in variable.attrs else ""
+            yield f"{' '.join(words)}{unit}", variable.values[(slice(None), *index)]
 
 
 def _table(columns: Iterable[Column]) -> Table:

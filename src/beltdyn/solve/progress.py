@@ -10,7 +10,7 @@ from typing import Literal
 _LATELY, _OFTEN = 5.0, 0.2
 """Computing time over which the pace is taken, and between the marks that it is taken from, s."""
 
-Phase = Literal["compiling", "equilibrium", "settling", "integrating"]
+Phase = Literal["compiling", "equilibrium", "settling", "integrating", "operating points"]
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Progress:
     outputs_written : int
         Outputs recorded so far.
     phase : str
-        "compiling" (the kernels, once on a machine), "equilibrium", "settling" (at the first speed of a run-up) or
-        "integrating".
+        "compiling" (the kernels, once on a machine), "equilibrium", "settling" (at the first speed of a run-up),
+        "integrating", or "operating points", of which time and duration are the numbers of those done and of all.
     elapsed : float
         Computing time since the first step, s.
     bound : str

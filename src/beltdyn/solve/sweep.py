@@ -105,13 +105,15 @@ def sweep(
     )
 
 
-def without_schedules(drive: Drive) -> tuple[Drive, list[str]]:
-    """Let all that changes over time keep its final value.
+def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]]:
+    """Let all that changes over time keep its value at an instant.
 
     Parameters
     ----------
     drive
         The drive.
+    at
+        The instant, s; by default one when nothing changes any more.
 
     Returns
     -------
@@ -124,7 +126,7 @@ def without_schedules(drive: Drive) -> tuple[Drive, list[str]]:
 
     def constant(part: _Part, name: str, **others: Any) -> _Part:
         profiles = {key: value for key in type(part).model_fields if isinstance(value := getattr(part, key), Profile)}
-        final = {key: float(profile.at([_LATE])[0]) for key, profile in profiles.items()}
+        final = {key: float(profile.at([at])[0]) for key, profile in profiles.items()}
         held.extend(f"{name}.{key} = {final[key]:.4g}" for key in final if not isinstance(profiles[key], Constant))
         values = {key: {"kind": "constant", "value": value} for key, value in final.items()}
         return part.replace(**values, **others) if values or others else part

@@ -1,0 +1,179 @@
+"""Figures of operating points: over speed or load, as efficiency map, and the traction curve of a pulley."""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from beltdyn.errors import ModelError
+from beltdyn.parts.quantity import RPM
+from beltdyn.plot.panels import panels, rows
+from beltdyn.plot.registry import Choice, always, figure
+from beltdyn.plot.style import INK, axes_or_new, color, dash, label, name_lines, unit
+from beltdyn.results import Result
+
+_SHOWN = ("span_tension", "hub_load", "pulley_slip", "slip_safety", "efficiency", "tensioner_position")
+_SCALES = {"rad/s": ("rpm", RPM), "rad": ("°", np.degrees(1.0))}
+"""Unit -> the one that is drawn, and the factor."""
+_PERCENT = ("pulley_slip", "efficiency")
+_SAFE = 10.0
+"""Slip safety up to which it is drawn: more is enough."""
+_WARNED = 1.5
+"""Slip safety below which warnings begin."""
+
+
+def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
+    """Lay out a panel for each variable."""
+    there = [name for name in _SHOWN if name in result.dataset]
+    return panels(rows([partial(draw, result, name) for name in there]), sharey=False)
+
+
+def _over_both(result: Result) -> bool:
+    """Whether a map is over speed and load."""
+    return {"speed", "load"} <= set(result.dataset.dims)
+
+
+@figure(always, _all_panels, of=("map", "duty"))
+def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes | None = None) -> Axes:
+    """Draw a variable of operating points over speed, load or the rows of a duty table.
+
+    Of a map over speed and load it is drawn over the speed, at the load nearest to that of the drive file.
+
+    Parameters
+    ----------
+    result : Result
+        Of `operating_map` or `duty`.
+    variable : str
+        Name of a variable of numbers, such as "hub_load".
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such variable.
+    """
+    dataset = result.dataset
+    axis = str(dataset.attrs["axes"]).split()[0]
+    numbers = [str(name) for name, one in dataset.data_vars.items() if axis in one.dims and one.dtype.kind == "f"]
+    if variable not in numbers:
+        raise ModelError(f"variable = {variable!r} is none of operating points. Choose one of {', '.join(numbers)}.")
+    values = dataset[variable]
+    if _over_both(result):
+        values = values.sel(load=1.0, method="nearest")
+    values, ax = _in_shown_units(values), axes_or_new(ax)
+    along = _in_shown_units(dataset[axis])
+    for number, (name, line) in enumerate(_lines(values, axis)):
+        mark = "o" if axis == "row" else None
+        ax.plot(along, line, color=color(number), linestyle=dash(number), marker=mark, label=name)
+    if variable == "slip_safety":
+        ax.axhline(_WARNED, color=INK, linewidth=0.7)
+        ax.set_ylim(0.0, min(_SAFE, 1.1 * float(values.max())) if values.notnull().any() else _SAFE)
+    title = str(values.attrs["long_name"]).partition(":")[0]
+    ax.set(xlabel=label(along), ylabel=f"{title} [{unit(values)}]")
+    if values.ndim > 1:
+        name_lines(ax)
+    return ax
+
+
+@figure(_over_both, of=("map",))
+def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw the efficiency over speed and load, with lines of the least slip safety.
+
+    Parameters
+    ----------
+    result : Result
+        Of `operating_map` over both.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If the map is over speed or load alone.
+    """
+    if not _over_both(result):
+        raise ModelError("an efficiency map needs speed and load. Give both to `beltdyn map`.")
+    dataset, ax = result.dataset, axes_or_new(ax)
+    speed, load = _in_shown_units(dataset["speed"]), dataset["load"]
+    efficiency = 100.0 * dataset["efficiency"].transpose("load", "speed")
+    filled = ax.contourf(speed, load, efficiency, levels=12, cmap="viridis")
+    page = ax.get_figure()
+    assert page is not None
+    page.colorbar(filled, ax=ax, label="Efficiency [%]")
+    safety = dataset["least_slip_safety"].transpose("load", "speed")
+    if safety.notnull().any():
+        lines = ax.contour(speed, load, safety, levels=[1.0, 1.5, 2.0, 3.0, 5.0], colors="w", linewidths=0.9)
+        ax.clabel(lines, fmt="safety %g", fontsize=8)
+    ax.set(xlabel=label(speed), ylabel=label(load))
+    ax.grid(visible=False)
+    return ax
+
+
+@figure(always, of=("traction",))
+def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
+    """Draw slip over torque up to gross slip, with elastic creep and what the slope of the friction law adds to it.
+
+    The vertical line is the largest torque by Euler's formula, with the tensions there.
+
+    Parameters
+    ----------
+    result : Result
+        Of `traction`.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+    """
+    dataset, ax = result.dataset, axes_or_new(ax)
+    torque = dataset["torque"].values
+    ax.plot(torque, 100.0 * dataset["slip"], color=color(0), marker=".", label="slip")
+    ax.plot(torque, 100.0 * dataset["elastic"], color=color(1), linestyle=dash(1), label="elastic creep")
+    both = 100.0 * (dataset["elastic"] + dataset["added"])
+    ax.fill_between(
+        torque,
+        100.0 * dataset["elastic"],
+        both,
+        color=color(4),
+        alpha=0.25,
+        linewidth=0.0,
+        label="added by the friction law",
+    )
+    known = np.flatnonzero(np.isfinite(torque))
+    if known.size:
+        limit = float(dataset["capstan_torque"][known[np.argmax(torque[known])]])
+        ax.axvline(limit, color=INK, linestyle=dash(2), linewidth=1.0, label=f"Euler: {limit:.4g} N·m")
+    ax.set(xlabel=f"Torque on {dataset.attrs['pulley']} [N·m]", ylabel="Slip [%]")
+    name_lines(ax)
+    return ax
+
+
+def _lines(values: xr.DataArray, axis: str) -> list[tuple[str, xr.DataArray]]:
+    """Names and values of the lines of a variable along an axis."""
+    others = [str(dim) for dim in values.dims if dim != axis]
+    if not others:
+        return [("", values)]
+    return [(str(name), values.sel({others[0]: name})) for name in values[others[0]].values]
+
+
+def _in_shown_units(values: xr.DataArray) -> xr.DataArray:
+    """A variable in the unit in which it is drawn."""
+    units = str(values.attrs["units"])
+    shown, factor = ("%", 100.0) if values.name in _PERCENT else _SCALES.get(units, (units, 1.0))
+    return (factor * values).assign_attrs(values.attrs | {"units": shown})

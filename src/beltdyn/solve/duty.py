@@ -1,0 +1,203 @@
+"""An analysis: the operating points of a duty table, and means weighted by their durations."""
+
+import csv
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.messages import reason
+from beltdyn.parts.quantity import to_si
+from beltdyn.parts.text_file import LONGEST_TABLE, read_text
+from beltdyn.results import Result, Variable
+from beltdyn.solve.changed_drive import at_speed, held_at, number_of, with_load, with_torque
+from beltdyn.solve.operating_points import VARIABLES, Axes, OperatingPoints
+from beltdyn.solve.progress import Report
+
+_HEADING = re.compile(r"\s*(?P<what>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
+_UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
+_MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss", "tensioner_position")
+_EXPONENT = 3.0
+"""Of the load in the life of ball bearings (ISO 281)."""
+
+
+class Column(NamedTuple):
+    """A column of a duty table."""
+
+    what: str
+    """"duration", "load", "speed" or "torque"."""
+    pulley: str
+    """Of a speed or torque; empty of others."""
+    values: list[float]
+    """In SI units."""
+
+
+def duty(
+    drive: Drive,
+    *,
+    table: Path | str,
+    at: float | None = None,
+    force_tolerance: float = 0.01,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    r"""Find the operating points of a duty table, with means weighted by their durations.
+
+    The table is a CSV file with a line of headings: "duration [s]", "NAME speed [rpm]" and "NAME torque [N m]" of
+    pulleys, and "load", the factor on all torques and loads of the drive file but those of motors. Each line below is
+    an operating point. What a table does not name stays as the drive file says.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    table
+        The CSV file.
+    at
+        At which instant the rest of the drive is taken, s; by default at the end of the simulation.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+    output
+        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
+
+    Returns
+    -------
+    Result
+        Variables along ``row``, and their means over all rows that have an operating point: ``mean_power_in``,
+        ``mean_efficiency`` and others; ``equivalent_hub_load`` is the cubic mean over the turns of each pulley, which
+        gives ball bearings the same life.
+
+    Raises
+    ------
+    ModelError
+        If the file is no such table, or the drive cannot run steadily.
+    ConvergenceError
+        If no row has steady running.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> _ = Path("duty.csv").write_text("duration [s], driver speed [rpm]\n60, 90\n30, 120\n")
+    >>> bd.duty(drive, table="duty.csv").dataset.efficiency.dims
+    ('row',)
+    """
+    columns = read_duty(Path(table))
+    held = held_at(drive, at)
+    rows = [_changed(held, columns, number) for number in range(len(columns[0].values))]
+    durations = np.array(next(one.values for one in columns if one.what == "duration"))
+    axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, len(rows) + 1))}
+    with OperatingPoints("duty", held, axes, output, progress, overwrite) as points:
+        points.more = {"duration": (Variable(("row",), "s", "Duration"), durations)}
+        for number, there in enumerate(rows):
+            points.find((number,), there, force_tolerance)
+    return points.result(_means(points.arrays, durations), drive_as_given=drive.text)
+
+
+def read_duty(path: Path) -> list[Column]:
+    """Read a duty table.
+
+    Parameters
+    ----------
+    path
+        The CSV file.
+
+    Raises
+    ------
+    ModelError
+        If it cannot be read, or a heading, number or duration is wrong.
+    """
+    try:
+        lines = list(csv.reader(read_text(path, LONGEST_TABLE).splitlines()))
+    except (OSError, ValueError, csv.Error) as error:
+        raise ModelError(f"table = {str(path)!r} cannot be read: {reason(error)}. Give a CSV file in UTF-8.") from error
+    rows = [(number, line) for number, line in enumerate(lines, 1) if any(map(str.strip, line)) and line[0][:1] != "#"]
+    if len(rows) < 2:
+        raise ModelError(
+            f"table = {str(path)!r} has no rows. Give a line of headings, and one for each operating point."
+        )
+    headings = rows[0][1]
+    for number, line in rows[1:]:
+        if len(line) != len(headings):
+            raise ModelError(f"{path}, line {number}: {len(line)} cells, and there are {len(headings)} headings.")
+    columns = [
+        _column(path, heading, [(number, line[place]) for number, line in rows[1:]])
+        for place, heading in enumerate(headings)
+    ]
+    durations = [one.values for one in columns if one.what == "duration"]
+    if len(durations) != 1 or min(durations[0]) < 0.0 or not sum(durations[0]) > 0.0:
+        raise ModelError(f'{path} needs one column "duration [s]" of numbers of zero or more, not all zero.')
+    return columns
+
+
+def _column(path: Path, heading: str, cells: list[tuple[int, str]]) -> Column:
+    """A column in SI units."""
+    match = _HEADING.fullmatch(heading)
+    pulley, _, what = match["what"].rpartition(" ") if match else ("", "", "")
+    if what not in _UNITS or bool(pulley) != (what in ("speed", "torque")):
+        raise ModelError(
+            f'{path}: the heading "{heading.strip()}" is none of "duration [s]", "load", "NAME speed [rpm]" and '
+            '"NAME torque [N m]". Correct it.'
+        )
+    unit = (match["unit"] if match else None) or ""
+    return Column(what, pulley.strip(), [_number(path, line, cell, unit, _UNITS[what]) for line, cell in cells])
+
+
+def _number(path: Path, line: int, cell: str, given: str, unit: str) -> float:
+    try:
+        number = to_si(f"{float(cell)!r} {given}", unit) if given and unit else float(cell)
+        if not np.isfinite(number):
+            raise ValueError("must be a finite number")
+    except ValueError as error:
+        raise ModelError(f'{path}, line {line}: "{cell.strip()}" {reason(error)}. Correct this line.') from error
+    return number
+
+
+def _changed(held: Drive, columns: list[Column], row: int) -> Drive:
+    """The drive in a row of the table."""
+    loads = [one.values[row] for one in columns if one.what == "load"]
+    if loads and loads[0] < 0.0:
+        raise ModelError(f"row {row + 1}: load = {loads[0]:g} is below zero, with which loads would drive.")
+    changed = with_load(held, loads[0] if loads else 1.0)
+    for one in columns:
+        if one.pulley:
+            change = at_speed if one.what == "speed" else with_torque
+            changed = change(changed, number_of(held, one.pulley), one.values[row])
+    return changed
+
+
+def _means(arrays: Mapping[str, NDArray[np.float64]], durations: NDArray[np.float64]) -> Axes:
+    """Means over the rows that were found, weighted by their durations."""
+    found = np.isfinite(arrays["power_in"])
+    weights = durations[found]
+    if not weights.sum() > 0.0:
+        return {}
+    return dict(_mean_of(arrays, found, weights))
+
+
+def _mean_of(
+    arrays: Mapping[str, NDArray[np.float64]], found: NDArray[np.bool_], weights: NDArray[np.float64]
+) -> Iterator[tuple[str, tuple[Variable, NDArray[np.float64]]]]:
+    """Name and values of each mean."""
+    put_in, taken = (np.average(arrays[name][found], axis=0, weights=weights) for name in ("power_in", "power_out"))
+    yield "mean_power_in", (Variable((), "W", "Mean power in"), put_in)
+    yield "mean_power_out", (Variable((), "W", "Mean power out"), taken)
+    yield "mean_efficiency", (Variable((), "1", "Energy out over energy in"), taken / put_in if put_in else np.nan)
+    for name in _MEANS:
+        if name in arrays:
+            one = VARIABLES[name]
+            mean = np.average(arrays[name][found], axis=0, weights=weights)
+            yield f"mean_{name}", (Variable(one.dims, one.units, f"Mean of {one.long_name.lower()}"), mean)
+    turns = weights[:, None] * np.abs(arrays["pulley_speed"][found])
+    power = np.sum(turns * arrays["hub_load"][found] ** _EXPONENT, axis=0)
+    cubic = np.divide(power, turns.sum(axis=0), out=np.zeros_like(power), where=turns.sum(axis=0) > 0.0)
+    yield "equivalent_hub_load", (Variable(("pulley",), "N", "Equivalent hub load"), cubic ** (1.0 / _EXPONENT))

@@ -1,0 +1,112 @@
+"""An analysis: operating points over speed, over load, or over both."""
+
+from pathlib import Path
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.number_range import numbers_in
+from beltdyn.results import Result, Variable
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, number_of, sense_of, with_load
+from beltdyn.solve.operating_points import OperatingPoints, serpentine
+from beltdyn.solve.progress import Report
+
+
+def operating_map(
+    drive: Drive,
+    *,
+    pulley: str | None = None,
+    speed: str | None = None,
+    load: str | None = None,
+    points: int = 40,
+    load_points: int = 10,
+    at: float | None = None,
+    force_tolerance: float = 0.01,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Find operating points over speed, over load, or over both: tensions, slip, hub loads, efficiency.
+
+    Each point is steady running, as `steady_state` finds it, and begins at the point before. Loads are those of the
+    drive file at one instant; those over speed follow the speed. A point that has no steady running is marked, and the
+    others stay.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    pulley
+        The pulley whose speed is prescribed, in place of its motor; by default the one that drives.
+    speed
+        Its speeds: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in the sense in which it
+        turns. Without them the drive turns as its file says.
+    load
+        Factors on all torques and loads but those of motors: a range such as "0.2..1.2", or a list.
+    points
+        Number of speeds of a range.
+    load_points
+        Number of factors of a range.
+    at
+        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+    output
+        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
+
+    Returns
+    -------
+    Result
+        Variables along ``speed`` (rad/s, of the pulley in the attribute ``pulley``), ``load``, or both.
+
+    Raises
+    ------
+    ModelError
+        If there is neither speed nor load, a text is no range, or the drive cannot run steadily.
+    ConvergenceError
+        If no point has steady running.
+
+    Examples
+    --------
+    >>> found = bd.operating_map(drive, speed="60..120 rpm", points=3)
+    >>> found.dataset.efficiency.dims
+    ('speed',)
+    """
+    if speed is None and load is None:
+        raise ModelError('a map is over speed, load or both. Give speed = "700..6000 rpm", or load = "0.2..1.2".')
+    held = held_at(drive, at)
+    number = driver_of(held) if pulley is None else number_of(held, pulley)
+    name, sense = held.pulleys[number].name, sense_of(held, number)
+    axes = dict[str, tuple[Variable, FloatArray]]()
+    if speed is not None:
+        axes["speed"] = Variable(("speed",), "rad/s", f"Speed of {name}"), numbers_in("speed", speed, "rad/s", points)
+    if load is not None:
+        axes["load"] = Variable(("load",), "1", "Load"), _factors(load, load_points)
+    with OperatingPoints("map", held, axes, output, progress, overwrite) as table:
+        for index in serpentine(table.shape):
+            there = {axis: float(values[k]) for k, (axis, (_, values)) in zip(index, axes.items(), strict=True)}
+            changed = with_load(held, there.get("load", 1.0))
+            if "speed" in there:
+                changed = at_speed(changed, number, sense * there["speed"])
+            table.find(index, changed, force_tolerance)
+    return table.result(drive_as_given=drive.text, pulley=name)
+
+
+def _factors(load: str, count: int) -> FloatArray:
+    """Factors on loads.
+
+    Raises
+    ------
+    ModelError
+        If one is below zero.
+    """
+    factors = numbers_in("load", load, "", count)
+    if factors[0] < 0.0:
+        raise ModelError(
+            f"load = {load!r} holds a factor below zero, with which loads would drive. Begin at zero or above."
+        )
+    return factors

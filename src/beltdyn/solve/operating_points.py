@@ -1,0 +1,315 @@
+"""Steady running at many operating points: found one from the other, and written as they come."""
+
+import re
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
+from beltdyn.results import Result, Run, Summary, Variable, build_result, summarize
+from beltdyn.results.atomic import require_replaceable
+from beltdyn.results.balance import LOSSES
+from beltdyn.results.dataset import is_result
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES
+from beltdyn.signals import uninterrupted
+from beltdyn.solve.progress import Progress, Report
+from beltdyn.solve.steady import steady_state
+
+Axes = Mapping[str, tuple[Variable, ArrayLike]]
+"""Dimension -> what labels it, and its labels."""
+
+_OFTEN = 1.0
+"""Time between two writings of the file, s."""
+_PULLEY, _SPAN, _TENSIONER = ("pulley",), ("span",), ("tensioner",)
+_CAUSES = [cause for name, cause in LOSSES.items() if name != "numerical_loss"]
+
+VARIABLES = {
+    "belt_speed": Variable((), "m/s", "Belt speed"),
+    "power_in": Variable((), "W", "Power in"),
+    "power_out": Variable((), "W", "Power out"),
+    "efficiency": Variable((), "1", "Efficiency"),
+    "largest_tension": Variable((), "N", "Largest tension"),
+    "least_slip_safety": Variable((), "1", "Least slip safety"),
+    "least_safe_pulley": Variable((), "1", "Pulley with it", "str"),
+    "pulley_speed": Variable(_PULLEY, "rad/s", "Speed of the pulley"),
+    "shaft_torque": Variable(_PULLEY, "N m", "Torque on the shaft"),
+    "power": Variable(_PULLEY, "W", "Power into the drive"),
+    "pulley_slip": Variable(_PULLEY, "1", "Slip"),
+    "elastic_creep": Variable(_PULLEY, "1", "Elastic creep"),
+    "regularisation": Variable(_PULLEY, "1", "Slip that the slope of the friction law adds"),
+    "sliding": Variable(_PULLEY, "1", "Slip of arcs that slide as a whole"),
+    "slip_safety": Variable(_PULLEY, "1", "Slip safety: torque before the whole arc slides, over the present one"),
+    "sliding_arc": Variable(_PULLEY, "rad", "Arc that slides"),
+    "wrap_angle": Variable(_PULLEY, "rad", "Wrap angle"),
+    "hub_load": Variable(_PULLEY, "N", "Hub load"),
+    "hub_force": Variable((*_PULLEY, "axis"), "N", "Force of the belt on the pulley"),
+    "span_tension": Variable(_SPAN, "N", "Span tension"),
+    "tensioner_position": Variable(_TENSIONER, "m or rad", "Position of the tensioner"),
+    "tensioner_position_after_tensioning": Variable(
+        _TENSIONER, "m or rad", "Position, held by dry friction as it grew"
+    ),
+    "tensioner_position_after_yielding": Variable(_TENSIONER, "m or rad", "Position, held by dry friction as it fell"),
+    "loss": Variable(("cause",), "W", "Power lost"),
+    "failure": Variable((), "1", "Why there is no operating point", "str"),
+}
+"""What is known of an operating point; dimensions of the table come first."""
+
+_OF_PULLEYS = {
+    "pulley_speed": "speed",
+    "shaft_torque": "shaft_torque",
+    "power": "power",
+    "pulley_slip": "slip",
+    "elastic_creep": "elastic_creep",
+    "regularisation": "regularisation",
+    "sliding": "sliding",
+    "slip_safety": "margin",
+    "sliding_arc": "sliding_arc",
+    "wrap_angle": "wrap_angle",
+    "hub_load": "hub_load",
+}
+"""Variable -> attribute of a `PulleySummary`."""
+
+
+class OperatingPoints:
+    """Operating points in a table, in a file if one is named; an interruption keeps what was found.
+
+    A point that has no steady running is marked by its reason, and the others go on.
+
+    Parameters
+    ----------
+    kind
+        Name of the analysis.
+    drive
+        The drive.
+    axes
+        The table's dimensions.
+    output
+        Result file; without one the results stay in memory.
+    progress
+        Called after each point with a `Progress`.
+    overwrite
+        Replace any regular file by the results.
+
+    Raises
+    ------
+    ModelError
+        If the file would replace one that is no result.
+    """
+
+    def __init__(
+        self,
+        kind: str,
+        drive: Drive,
+        axes: Axes,
+        output: Path | str | None = None,
+        progress: Report | None = None,
+        overwrite: bool = False,
+    ) -> None:
+        self._kind, self._drive, self._axes = kind, drive, axes
+        self._path, self._overwrite = Path(output) if output is not None else None, overwrite
+        if self._path is not None:
+            require_replaceable(self._path, is_result, overwrite)
+        self._progress = progress
+        self._sizes = {
+            "pulley": [one.name for one in drive.pulleys],
+            "span": ["-".join(names) for names in drive.spans],
+            "tensioner": [one.pulley for one in drive.moving_tensioners],
+            "cause": _CAUSES,
+            "axis": list(AXIS_NAMES),
+        }
+        self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
+        self.arrays = {name: self._blank(variable) for name, variable in VARIABLES.items() if self._holds(variable)}
+        self._warned: dict[str, list[tuple[str, str]]] = {}
+        self._done, self._written, self._status = 0, time.perf_counter(), "running"
+        self._near: Run | None = None
+        self.more: Axes = {}
+        """Further coordinates."""
+
+    def __enter__(self) -> Self:
+        """Begin."""
+        self._tell()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        """Close the table with its status."""
+        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
+        self._status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        self._save()
+        return interrupted
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a point with steady running."""
+        return self._near is not None
+
+    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> Run | None:
+        """Find an operating point, from the one that was found before.
+
+        Parameters
+        ----------
+        index
+            Place in the table.
+        drive
+            The drive there, with constant speeds, torques and schedules.
+        force_tolerance
+            As for `steady_state`.
+
+        Returns
+        -------
+        Run or None
+            Steady running; None where there is none.
+        """
+        try:
+            run = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
+        except ConvergenceError as error:
+            self.arrays["failure"][index] = str(error)
+            self._warn(index, f"no operating point: {error}")
+            run = None
+        else:
+            self._take(index, run, summarize(run))
+            self._near = run
+        self._done += 1
+        self._tell()
+        if time.perf_counter() - self._written > _OFTEN:
+            self._save()
+        return run
+
+    def result(self, more: Axes | None = None, **attributes: str) -> Result:
+        """The table as it is now.
+
+        Parameters
+        ----------
+        more
+            Variables that an analysis adds.
+        **attributes
+            Global attributes that it adds.
+
+        Raises
+        ------
+        ConvergenceError
+            If no point was found, but some were looked for.
+        """
+        if self._done and not self.found:
+            raise ConvergenceError(next(filter(None, self.arrays["failure"].ravel().tolist())))
+        kept = {name: (self._labelled(VARIABLES[name]), values) for name, values in self.arrays.items()}
+        coordinates = {**self._axes, **self.more, **self._named()}
+        variables = {**kept, **self._extremes(), **(more or {})}
+        result = build_result(self._kind, self._drive, variables, coordinates, list(self._warnings()))
+        result.dataset.attrs |= {"status": self._status, "axes": " ".join(self._axes), "points": self._done}
+        result.dataset.attrs |= attributes
+        return result
+
+    def _named(self) -> dict[str, tuple[Variable, ArrayLike]]:
+        """Names along the dimensions of variables."""
+        known = {name: COORDINATES[name].long_name if name in COORDINATES else "Cause" for name in self._sizes}
+        return {
+            name: (Variable((name,), "1", known[name], "str"), labels) for name, labels in self._sizes.items() if labels
+        }
+
+    def _extremes(self) -> dict[str, tuple[Variable, ArrayLike]]:
+        """What is worst for each pulley over all points."""
+        over = tuple(range(len(self.shape)))
+        found = {
+            "largest_slip": (Variable(_PULLEY, "1", "Largest slip"), np.fmax.reduce, "pulley_slip"),
+            "smallest_safety": (Variable(_PULLEY, "1", "Least slip safety"), np.fmin.reduce, "slip_safety"),
+            "largest_hub_load": (Variable(_PULLEY, "N", "Largest hub load"), np.fmax.reduce, "hub_load"),
+        }
+        return {name: (variable, worst(self.arrays[of], over)) for name, (variable, worst, of) in found.items()}
+
+    def _holds(self, variable: Variable) -> bool:
+        """Whether the drive has what a variable is of."""
+        return all(self._sizes[name] for name in variable.dims)
+
+    def _labelled(self, variable: Variable) -> Variable:
+        """A variable with the table's dimensions first, and the unit of the tensioners of the drive."""
+        turning = {one.turns for one in self._drive.moving_tensioners}
+        units = variable.units
+        if units == "m or rad" and len(turning) == 1:
+            units = "rad" if turning.pop() else "m"
+        return Variable((*self._axes, *variable.dims), units, variable.long_name, variable.dtype)
+
+    def _blank(self, variable: Variable) -> NDArray[Any]:
+        shape = (*self.shape, *(len(self._sizes[name]) for name in variable.dims))
+        return np.full(shape, "", dtype=object) if variable.dtype == "str" else np.full(shape, np.nan)
+
+    def _take(self, index: tuple[int, ...], run: Run, summary: Summary) -> None:
+        """Note an operating point."""
+        arrays, balance, dataset = self.arrays, summary.balance, run.dataset
+        for name, attribute in _OF_PULLEYS.items():
+            arrays[name][index] = [getattr(one, attribute) for one in summary.pulleys]
+        arrays["hub_force"][index] = dataset["hub_force"].values[-1]
+        arrays["span_tension"][index] = tensions = [one.tension for one in summary.spans]
+        arrays["belt_speed"][index] = np.mean([abs(one.belt_speed) for one in summary.spans])
+        arrays["largest_tension"][index] = max(tensions)
+        arrays["power_in"][index], arrays["power_out"][index] = balance.power_in, balance.power_out
+        arrays["efficiency"][index] = balance.efficiency
+        arrays["loss"][index] = [balance.losses[cause] for cause in _CAUSES]
+        safeties = arrays["slip_safety"][index]
+        if np.any(np.isfinite(safeties)):
+            least = int(np.nanargmin(safeties))
+            arrays["least_slip_safety"][index], arrays["least_safe_pulley"][index] = (
+                safeties[least],
+                self._sizes["pulley"][least],
+            )
+        if self._sizes["tensioner"]:
+            stands = arrays["tensioner_position"][index] = [one.position for one in summary.tensioners]
+            for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
+                arrays[name][index] = dataset.attrs.get(name, stands)
+        for warning in run.warnings:
+            self._warn(index, warning)
+
+    def _warn(self, index: tuple[int, ...], text: str) -> None:
+        """Note a warning of a point, beside those of other points that differ in numbers alone."""
+        self._warned.setdefault(re.sub(r"[\d.,e+\-−–%]+", "#", text), []).append((self._place(index), text))
+
+    def _warnings(self) -> Iterator[str]:
+        """The warnings of points, each but once."""
+        for said in self._warned.values():
+            place, text = said[0]
+            others = len(said) - 1
+            more = f" So at {others} more point{'s'[: others != 1]}, up to {said[-1][0]}." if others else ""
+            yield f"at {place}: {text}{more}"
+
+    def _place(self, index: tuple[int, ...]) -> str:
+        """Where a point is, in words."""
+        return ", ".join(
+            f"{name} {_written(np.atleast_1d(labels)[number], variable.units)}"
+            for number, (name, (variable, labels)) in zip(index, self._axes.items(), strict=True)
+        )
+
+    def _tell(self) -> None:
+        if self._progress is not None:
+            self._progress(Progress(self._done, float(np.prod(self.shape)), 0.0, self._done, "operating points"))
+
+    def _save(self) -> None:
+        """Write the file, if one is named and there is something to keep."""
+        if self._path is not None and self.found:
+            with uninterrupted():
+                self.result().save(self._path, self._overwrite)
+        self._written = time.perf_counter()
+
+
+def _written(value: Any, units: str) -> str:
+    """A label of an axis as a user would write it."""
+    if units == "rad/s":
+        return f"{RPM * value:.4g} rpm"
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def serpentine(shape: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Places of a table so that each is next to the one before: every other row backwards."""
+    if not shape:
+        yield ()
+        return
+    inner = list(serpentine(shape[1:]))
+    for number in range(shape[0]):
+        yield from ((number, *rest) for rest in inner[:: 1 if number % 2 == 0 else -1])

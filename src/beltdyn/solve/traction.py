@@ -1,0 +1,183 @@
+"""An analysis: slip of one pulley over the torque that it takes, up to gross slip."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.number_range import numbers_in
+from beltdyn.results import Result, Variable, summarize
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, number_of
+from beltdyn.solve.operating_points import Axes, OperatingPoints
+from beltdyn.solve.progress import Report
+from beltdyn.solve.steady import steady_state
+
+_FIRST, _LAST = 5e-4, 0.6
+"""Slips between which gross slip is looked for."""
+_FURTHER = 2.0
+_NEAR = 0.02
+"""Part of the slip up to which gross slip is found."""
+_ROUGHLY = 0.05
+"""Error of contact forces with which that is looked for."""
+_FEWEST = 3
+_ALL = 0.99
+"""Part of an arc that slides as a whole."""
+
+_VARIABLES = {
+    "torque": Variable(("slip",), "N m", "Torque"),
+    "elastic": Variable(("slip",), "1", "Elastic creep"),
+    "added": Variable(("slip",), "1", "Added by the friction law"),
+    "slid": Variable(("slip",), "1", "Sliding of whole arcs"),
+    "sliding_share": Variable(("slip",), "1", "Part of the arc that slides"),
+    "capstan_torque": Variable(("slip",), "N m", "Limit by Euler's formula"),
+    "limit_torque": Variable((), "N m", "Largest torque"),
+}
+
+
+def traction(
+    drive: Drive,
+    *,
+    pulley: str | None = None,
+    slip: str | None = None,
+    points: int = 30,
+    at: float | None = None,
+    force_tolerance: float = 0.01,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Find the traction curve of a pulley: its slip over the torque that it takes, up to gross slip.
+
+    The slip of the rim against the driver's is prescribed, and the torque follows. Beside it stand elastic creep, which
+    Coulomb's friction would leave, what the slope of the friction law adds, and the torque by Euler's formula with the
+    tensions of each point. Other pulleys keep their loads. A hub chain of the pulley is left out.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    pulley
+        The pulley; by default the one that is loaded, where it is one alone.
+    slip
+        Slips: a range such as "0..20 %", or a list. By default from zero to where the whole arc slides.
+    points
+        Number of slips of a range.
+    at
+        At which instant speeds, loads and schedules are taken, s; by default at the end of the simulation.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+    output
+        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
+
+    Returns
+    -------
+    Result
+        Variables along ``slip``; the attribute ``pulley`` names the pulley, ``driver`` the one that drives.
+
+    Raises
+    ------
+    ModelError
+        If there is no such pulley, it is the driver, or the drive cannot run steadily.
+    ConvergenceError
+        If no point has steady running.
+
+    Examples
+    --------
+    >>> found = bd.traction(drive, slip="0..0.2 %", points=3)
+    >>> found.dataset.torque.dims
+    ('slip',)
+    """
+    held = _driven_by_speed(held_at(drive, at), force_tolerance)
+    driver = driver_of(held)
+    number = _loaded(held, driver) if pulley is None else number_of(held, pulley)
+    if number == driver:
+        raise ModelError(
+            f"pulley = {held.pulleys[number].name!r} drives, and slip is against it. Choose a driven pulley."
+        )
+    held = held.replace(pulley=[*held.pulleys[driver:], *held.pulleys[:driver]])  # slip is against the first
+    number = (number - driver) % len(held.pulleys)
+    rim = float(held.pulleys[0].speed.at([0.0])[0]) * held.rolling_radii[0] * held.pulleys[0].turning
+    one = held.pulleys[number]
+    fastest = rim / (held.rolling_radii[number] * one.turning)
+    if one.hub:
+        held = held.replace(pulley=[other.replace(hub=()) if other is one else other for other in held.pulleys])
+
+    def slipping(part: float) -> Drive:
+        return at_speed(held, number, (1.0 - part) * fastest)
+
+    slips = _up_to_gross_slip(slipping, number, points) if slip is None else numbers_in("slip", slip, "", points)
+    axes = {"slip": (Variable(("slip",), "1", f"Slip of {one.name}"), slips)}
+    with OperatingPoints("traction", slipping(0.0), axes, output, progress, overwrite) as table:
+        for index, part in enumerate(slips):
+            table.find((index,), slipping(float(part)), force_tolerance)
+    return table.result(_curve(table.arrays, number, np.sign(fastest)), pulley=one.name)
+
+
+def _driven_by_speed(drive: Drive, force_tolerance: float) -> Drive:
+    """The drive with a driver that has a speed in place of its motor: that of steady running."""
+    driver = driver_of(drive)
+    if drive.pulleys[driver].prescribed:
+        return drive
+    run = steady_state(drive, force_tolerance=force_tolerance)
+    return at_speed(drive, driver, float(run.dataset["shaft_speed"][-1, driver]))
+
+
+def _loaded(drive: Drive, driver: int) -> int:
+    """Number of the only pulley beside the driver that has a torque or loads.
+
+    Raises
+    ------
+    ModelError
+        If there is not just one.
+    """
+    taking = [number for number, one in enumerate(drive.pulleys) if number != driver and (one.load or one.torque)]
+    others = [number for number in range(len(drive.pulleys)) if number != driver]
+    found = taking if taking or others[1:] else others
+    if len(found) != 1:
+        names = ", ".join(drive.pulleys[number].name for number in found or others)
+        raise ModelError(f"a traction curve is of one pulley, and there are {names}. Name one as pulley.")
+    return found[0]
+
+
+def _up_to_gross_slip(slipping: Callable[[float], Drive], number: int, points: int) -> FloatArray:
+    """Slips from zero to where the whole arc of the pulley slides, or that of the driver."""
+    if points < _FEWEST:
+        raise ModelError(f"points = {points} must be {_FEWEST} or more: give more, or slips of your own.")
+    creeping, sliding, run = 0.0, _LAST, None
+    while sliding - creeping > _NEAR * sliding:
+        part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
+        try:
+            found = steady_state(slipping(part), force_tolerance=_ROUGHLY, start=run)
+        except ConvergenceError:
+            sliding = part
+            continue
+        pulleys = summarize(found).pulleys
+        if any(one.sliding_arc > _ALL * one.wrap_angle for one in (pulleys[0], pulleys[number])):
+            sliding = part
+        else:
+            creeping, run = part, found
+    return np.linspace(0.0, sliding if run is None else creeping, points)
+
+
+def _curve(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axes:
+    """What is known of the pulley itself, from the table of all."""
+    torque = -sense * arrays["shaft_torque"][:, number]
+    found = {
+        "torque": torque,
+        "elastic": arrays["elastic_creep"][:, number],
+        "added": arrays["regularisation"][:, number],
+        "slid": arrays["sliding"][:, number],
+        "sliding_share": arrays["sliding_arc"][:, number] / arrays["wrap_angle"][:, number],
+        "capstan_torque": np.abs(torque) * arrays["slip_safety"][:, number],
+        "limit_torque": np.nanmax(torque, initial=-np.inf),
+    }
+    return {name: (_VARIABLES[name], values) for name, values in found.items()}

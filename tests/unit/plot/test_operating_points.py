@@ -1,0 +1,66 @@
+"""Figures of operating points."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltdyn import plot
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.results import Result, Variable
+from beltdyn.solve.operating_points import OperatingPoints
+
+
+def made(drive: Drive, kind: str, **sizes: int) -> Result:
+    """A table with numbers that grow along it."""
+    units = {"speed": "rad/s"}
+    axes = {
+        name: (Variable((name,), units.get(name, "1"), name.capitalize()), np.linspace(0.1, 1.0, size))
+        for name, size in sizes.items()
+    }
+    points = OperatingPoints(kind, drive, axes)
+    for values in points.arrays.values():
+        if values.dtype.kind == "f":
+            values[...] = np.arange(values.size).reshape(values.shape)
+    more = {}
+    if kind == "traction":
+        line = np.linspace(0.0, 1.0, sizes["slip"])
+        more = {
+            name: (Variable(("slip",), "1", name), line) for name in ("torque", "elastic", "added", "capstan_torque")
+        }
+    return points.result(more, pulley="driven")
+
+
+def test_over_speed(drive: Drive) -> None:
+    ax = plot.operating_points(made(drive, "map", speed=4), "pulley_slip")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Speed [rpm]", "Slip [%]")
+    assert len(ax.lines) == 2
+    np.testing.assert_allclose(ax.lines[1].get_ydata(), 100.0 * np.array([1.0, 3.0, 5.0, 7.0]))
+    np.testing.assert_allclose(ax.lines[1].get_xdata()[-1], 30.0 / np.pi)
+
+
+def test_all_of_a_kind_are_saved(drive: Drive, tmp_path: Path) -> None:
+    assert [path.stem for path in plot.save_all(made(drive, "map", speed=4), tmp_path)] == ["operating_points"]
+    both = plot.save_all(made(drive, "map", speed=4, load=3), tmp_path)
+    assert sorted(path.stem for path in both) == ["efficiency_map", "operating_points"]
+    assert [path.stem for path in plot.save_all(made(drive, "duty", row=3), tmp_path)] == ["operating_points"]
+    assert [path.stem for path in plot.save_all(made(drive, "traction", slip=5), tmp_path)] == ["traction_curve"]
+
+
+def test_traction(drive: Drive) -> None:
+    ax = plot.traction_curve(made(drive, "traction", slip=5))
+    assert ax.get_xlabel() == "Torque on driven [N·m]"
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
+        "slip",
+        "elastic creep",
+        "added by the friction law",
+        "Euler: 1 N·m",
+    ]
+
+
+def test_what_cannot_be_drawn(drive: Drive) -> None:
+    with pytest.raises(ModelError, match="variable = 'wear' is none of operating points"):
+        plot.operating_points(made(drive, "map", speed=4), "wear")
+    with pytest.raises(ModelError, match="an efficiency map needs speed and load"):
+        plot.efficiency_map(made(drive, "map", speed=4))

@@ -1,0 +1,34 @@
+"""Traction curves: where they begin and end, and what they are of."""
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.solve.traction import traction
+
+
+@pytest.fixture(scope="module")
+def loaded() -> Drive:
+    drive = better(loaded_two_pulley())
+    return drive.replace(contact=drive.contact.replace(friction=0.3))
+
+
+def test_from_nothing_to_gross_slip(loaded: Drive) -> None:
+    found = traction(loaded, points=8).dataset
+    assert found.attrs["pulley"] == "driven"
+    assert np.all(np.diff(found.torque) > 0.0)
+    assert abs(float(found.torque[0])) < 0.1
+    assert found.sliding_share[-1] > 0.75
+    assert found.sliding_share[0] < 0.05
+    assert float(found.limit_torque) == float(found.torque[-1])
+    np.testing.assert_allclose(found.elastic + found.added + found.slid, found.slip, atol=1e-9)
+    np.testing.assert_allclose(found.pulley_slip.sel(pulley="driven"), found.slip, atol=1e-9)
+
+
+def test_which_pulley(loaded: Drive) -> None:
+    with pytest.raises(ModelError, match="pulley = 'driver' drives, and slip is against it"):
+        traction(loaded, pulley="driver")
+    with pytest.raises(ModelError, match="points = 2 must be 3 or more"):
+        traction(loaded, points=2)
