@@ -3,6 +3,7 @@
 import csv
 import re
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -98,9 +99,11 @@ def duty(
     axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, len(rows) + 1))}
     with OperatingPoints("duty", held, axes, output, progress, overwrite) as points:
         points.more = {"duration": (Variable(("row",), "s", "Duration"), durations)}
+        points.derive = partial(_means, durations=durations)
+        points.attributes = {"drive_as_given": drive.text}
         for number, there in enumerate(rows):
             points.find((number,), there, force_tolerance)
-    return points.result(_means(points.arrays, durations), drive_as_given=drive.text)
+    return points.result()
 
 
 def read_duty(path: Path) -> list[Column]:

@@ -87,13 +87,14 @@ def operating_map(
     if load is not None:
         axes["load"] = Variable(("load",), "1", "Load"), _factors(load, load_points)
     with OperatingPoints("map", held, axes, output, progress, overwrite) as table:
+        table.attributes = {"drive_as_given": drive.text, "pulley": name}
         for index in serpentine(table.shape):
             there = {axis: float(values[k]) for k, (axis, (_, values)) in zip(index, axes.items(), strict=True)}
             changed = with_load(held, there.get("load", 1.0))
             if "speed" in there:
                 changed = at_speed(changed, number, sense * there["speed"])
             table.find(index, changed, force_tolerance)
-    return table.result(drive_as_given=drive.text, pulley=name)
+    return table.result()
 
 
 def _factors(load: str, count: int) -> FloatArray:

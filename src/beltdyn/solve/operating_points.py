@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -131,6 +131,10 @@ class OperatingPoints:
         self._near: Run | None = None
         self.more: Axes = {}
         """Further coordinates."""
+        self.derive: Callable[[Mapping[str, NDArray[Any]]], Axes] = lambda arrays: {}
+        """Gives variables that an analysis adds, from the arrays of the table."""
+        self.attributes: dict[str, str] = {}
+        """Global attributes that it adds."""
 
     def __enter__(self) -> Self:
         """Begin."""
@@ -183,15 +187,8 @@ class OperatingPoints:
             self._save()
         return run
 
-    def result(self, more: Axes | None = None, **attributes: str) -> Result:
+    def result(self) -> Result:
         """The table as it is now.
-
-        Parameters
-        ----------
-        more
-            Variables that an analysis adds.
-        **attributes
-            Global attributes that it adds.
 
         Raises
         ------
@@ -202,10 +199,10 @@ class OperatingPoints:
             raise ConvergenceError(next(filter(None, self.arrays["failure"].ravel().tolist())))
         kept = {name: (self._labelled(VARIABLES[name]), values) for name, values in self.arrays.items()}
         coordinates = {**self._axes, **self.more, **self._named()}
-        variables = {**kept, **self._extremes(), **(more or {})}
+        variables = {**kept, **self._extremes(), **self.derive(self.arrays)}
         result = build_result(self._kind, self._drive, variables, coordinates, list(self._warnings()))
         result.dataset.attrs |= {"status": self._status, "axes": " ".join(self._axes), "points": self._done}
-        result.dataset.attrs |= attributes
+        result.dataset.attrs |= self.attributes
         return result
 
     def _named(self) -> dict[str, tuple[Variable, ArrayLike]]:

@@ -1,6 +1,7 @@
 """An analysis: slip of one pulley over the torque that it takes, up to gross slip."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -117,9 +118,11 @@ def traction(
     slips = _up_to_gross_slip(slipping, number, points) if slip is None else numbers_in("slip", slip, "", points)
     axes = {"slip": (Variable(("slip",), "1", f"Slip of {one.name}"), slips)}
     with OperatingPoints("traction", slipping(0.0), axes, output, progress, overwrite) as table:
+        table.derive = partial(_curve, number=number, sense=float(np.sign(fastest)))
+        table.attributes = {"drive_as_given": drive.text, "pulley": one.name}
         for index, part in enumerate(slips):
             table.find((index,), slipping(float(part)), force_tolerance)
-    return table.result(_curve(table.arrays, number, np.sign(fastest)), pulley=one.name)
+    return table.result()
 
 
 def _driven_by_speed(drive: Drive, force_tolerance: float) -> Drive:

@@ -29,7 +29,9 @@ def made(drive: Drive, kind: str, **sizes: int) -> Result:
         more = {
             name: (Variable(("slip",), "1", name), line) for name in ("torque", "elastic", "added", "capstan_torque")
         }
-    return points.result(more, pulley="driven")
+    points.derive = lambda arrays: more
+    points.attributes = {"pulley": "driven"}
+    return points.result()
 
 
 def test_over_speed(drive: Drive) -> None:

@@ -1,11 +1,15 @@
 """Traction curves: where they begin and end, and what they are of."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+import xarray as xr
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.results import open_result
 from beltdyn.solve.traction import traction
 
 
@@ -15,8 +19,10 @@ def loaded() -> Drive:
     return drive.replace(contact=drive.contact.replace(friction=0.3))
 
 
-def test_from_nothing_to_gross_slip(loaded: Drive) -> None:
-    found = traction(loaded, points=8).dataset
+def test_from_nothing_to_gross_slip(loaded: Drive, tmp_path: Path) -> None:
+    file = tmp_path / "traction.nc"
+    found = traction(loaded, points=8, output=file).dataset
+    xr.testing.assert_allclose(open_result(file).dataset[["torque", "elastic"]], found[["torque", "elastic"]])
     assert found.attrs["pulley"] == "driven"
     assert np.all(np.diff(found.torque) > 0.0)
     assert abs(float(found.torque[0])) < 0.1
