@@ -72,6 +72,6 @@ def _unit(variable: "xr.DataArray") -> str:
 
 def _written(variable: "xr.DataArray") -> list[str]:
     """The numbers of a variable, with as many decimals each, or its words."""
-    if variable.dtype.kind not in "fiu":
+    if variable.dtype.kind != "f":
         return [str(one) for one in variable.values.ravel()]
     return aligned((_shown(variable)[1] * variable.values.ravel()).tolist(), _DIGITS)

@@ -22,7 +22,7 @@ from beltdyn.solve.progress import Report
 
 _HEADING = re.compile(r"\s*(?P<what>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
 _UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
-_MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss", "tensioner_position")
+_MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss")
 _EXPONENT = 3.0
 """Of the load in the life of ball bearings (ISO 281)."""
 
