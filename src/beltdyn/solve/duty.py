@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
@@ -189,7 +189,7 @@ def _means(arrays: Mapping[str, NDArray[np.float64]], durations: NDArray[np.floa
 
 def _mean_of(
     arrays: Mapping[str, NDArray[np.float64]], found: NDArray[np.bool_], weights: NDArray[np.float64]
-) -> Iterator[tuple[str, tuple[Variable, NDArray[np.float64]]]]:
+) -> Iterator[tuple[str, tuple[Variable, ArrayLike]]]:
     """Name and values of each mean."""
     put_in, taken = (np.average(arrays[name][found], axis=0, weights=weights) for name in ("power_in", "power_out"))
     yield "mean_power_in", (Variable((), "W", "Mean power in"), put_in)

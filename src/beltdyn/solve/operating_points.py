@@ -155,7 +155,7 @@ class OperatingPoints:
         """Whether there is a point with steady running."""
         return self._near is not None
 
-    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> Run | None:
+    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> None:
         """Find an operating point, from the one that was found before.
 
         Parameters
@@ -166,18 +166,12 @@ class OperatingPoints:
             The drive there, with constant speeds, torques and schedules.
         force_tolerance
             As for `steady_state`.
-
-        Returns
-        -------
-        Run or None
-            Steady running; None where there is none.
         """
         try:
             run = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
         except ConvergenceError as error:
             self.arrays["failure"][index] = str(error)
             self._warn(index, f"no operating point: {error}")
-            run = None
         else:
             self._take(index, run, summarize(run))
             self._near = run
@@ -185,7 +179,6 @@ class OperatingPoints:
         self._tell()
         if time.perf_counter() - self._written > _OFTEN:
             self._save()
-        return run
 
     def result(self) -> Result:
         """The table as it is now.

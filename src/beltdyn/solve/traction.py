@@ -13,7 +13,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable, summarize
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, number_of
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, number_of, sense_of
 from beltdyn.solve.operating_points import Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
@@ -106,7 +106,7 @@ def traction(
         )
     held = held.replace(pulley=[*held.pulleys[driver:], *held.pulleys[:driver]])  # slip is against the first
     number = (number - driver) % len(held.pulleys)
-    rim = float(held.pulleys[0].speed.at([0.0])[0]) * held.rolling_radii[0] * held.pulleys[0].turning
+    rim = held.pulleys[0].driven_speed() * sense_of(held, 0) * held.rolling_radii[0] * held.pulleys[0].turning
     one = held.pulleys[number]
     fastest = rim / (held.rolling_radii[number] * one.turning)
     if one.hub:
