@@ -26,7 +26,9 @@ def loaded(drive: Drive) -> Drive:
 def total(drive: Drive, kind: str, name: str) -> float:
     """Sum of a number of loads of a kind, times their schedules."""
     loads = [load for load in drive.pulleys[1].load if load.kind == kind]
-    return sum(getattr(load, name) * (1.0 if load.schedule is None else load.schedule.at([0.0])[0]) for load in loads)
+    return float(
+        sum(getattr(load, name) * (1.0 if load.schedule is None else load.schedule.at([0.0])[0]) for load in loads)
+    )
 
 
 @pytest.mark.parametrize("factor", [0.0, 0.4, 1.0, 2.0, 2.7])

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-import beltdyn as bd
 from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.solve.traction import traction
 
 INDEPENDENT = {0.01: 10.24, 0.02: 20.50, 0.04: 40.86, 0.07: 70.23, 0.10: 95.61, 0.15: 116.10}
 """Case 2 of the paper with mu = 0.3 by an independent code without shear, 48 elements: slip, torque (N m)."""
@@ -18,9 +18,9 @@ def test_traction_against_an_independent_code(measured: Callable[..., None]) -> 
     drive = better(loaded_two_pulley(1e4))
     drive = drive.replace(contact=drive.contact.replace(friction=0.3))
     slips = ", ".join(f"{100.0 * slip:g}" for slip in INDEPENDENT)
-    found = bd.traction(drive, slip=f"{slips} %", force_tolerance=1e-3).dataset
+    found = traction(drive, slip=f"{slips} %", force_tolerance=1e-3).dataset
     error = float(np.max(np.abs(found.torque.values / np.array(list(INDEPENDENT.values())) - 1.0)))
-    limit = abs(float(bd.traction(drive, points=3).dataset.limit_torque) / GROSS - 1.0)
+    limit = abs(float(traction(drive, points=3).dataset.limit_torque) / GROSS - 1.0)
     measured(torque=error, limit=limit)
     assert error < 1e-3
     assert limit < 1e-3
