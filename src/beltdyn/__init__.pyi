@@ -91,12 +91,15 @@ from .solve import (
     StepError,
     Stepwise,
     bring_to_rest,
+    duty,
     equilibrium,
     find_equilibrium,
+    operating_map,
     simulate,
     simulate_all,
     steady_state,
     sweep,
+    traction,
 )
 
 __version__: str
@@ -173,6 +176,7 @@ __all__ = [
     "build_result",
     "derived",
     "dumps",
+    "duty",
     "elements_needed",
     "equilibrium",
     "errors",
@@ -186,6 +190,7 @@ __all__ = [
     "model",
     "open_result",
     "open_run",
+    "operating_map",
     "plot",
     "power_balance",
     "published",
@@ -198,5 +203,6 @@ __all__ = [
     "sweep",
     "tensioner_balances",
     "theory",
+    "traction",
     "write_csv",
 ]

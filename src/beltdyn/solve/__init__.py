@@ -1,9 +1,11 @@
 """Analyses: a simulation over time, of one drive or many, a run-up, steady running, and rest; and their solvers."""
 
 from beltdyn.solve.batch import simulate_all
+from beltdyn.solve.duty import duty
 from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
+from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.simulate import simulate
 from beltdyn.solve.standard import StandardIntegrator
@@ -11,6 +13,7 @@ from beltdyn.solve.static import Equilibrium, find_equilibrium
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 from beltdyn.solve.sweep import sweep
+from beltdyn.solve.traction import traction
 from beltdyn.solve.worker import Ending
 
 __all__ = [
@@ -26,10 +29,13 @@ __all__ = [
     "StepError",
     "Stepwise",
     "bring_to_rest",
+    "duty",
     "equilibrium",
     "find_equilibrium",
+    "operating_map",
     "simulate",
     "simulate_all",
     "steady_state",
     "sweep",
+    "traction",
 ]

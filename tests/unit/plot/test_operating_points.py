@@ -38,8 +38,8 @@ def test_over_speed(drive: Drive) -> None:
     ax = plot.operating_points(made(drive, "map", speed=4), "pulley_slip")
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("Speed [rpm]", "Slip [%]")
     assert len(ax.lines) == 2
-    np.testing.assert_allclose(ax.lines[1].get_ydata(), 100.0 * np.array([1.0, 3.0, 5.0, 7.0]))
-    np.testing.assert_allclose(ax.lines[1].get_xdata()[-1], 30.0 / np.pi)
+    np.testing.assert_allclose(np.asarray(ax.lines[1].get_ydata(), dtype=float), 100.0 * np.array([1.0, 3.0, 5.0, 7.0]))
+    np.testing.assert_allclose(np.asarray(ax.lines[1].get_xdata(), dtype=float)[-1], 30.0 / np.pi)
 
 
 def test_all_of_a_kind_are_saved(drive: Drive, tmp_path: Path) -> None:
@@ -53,7 +53,9 @@ def test_all_of_a_kind_are_saved(drive: Drive, tmp_path: Path) -> None:
 def test_traction(drive: Drive) -> None:
     ax = plot.traction_curve(made(drive, "traction", slip=5))
     assert ax.get_xlabel() == "Torque on driven [N·m]"
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == [
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == [
         "slip",
         "elastic creep",
         "added by the friction law",
