@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from beltdyn.results import Result
 
-_SHOWN_UNITS = {"rad": ("°", math.degrees(1.0)), "rad/s": ("rpm", 30.0 / math.pi), "1": ("", 1.0)}
-"""Unit of a variable -> how it is written, and the factor on its numbers."""
 _MILLIMETRES = 0.1
 """Size of lengths, m, below which they are written in mm."""
 _DIGITS = 5
@@ -60,10 +58,13 @@ def _heading(variable: "xr.DataArray") -> str:
 
 def _shown(variable: "xr.DataArray") -> tuple[str, float]:
     """The unit in which a variable is written, and the factor on its numbers."""
+    from beltdyn.parts.quantity import RPM
+
     unit = str(variable.attrs.get("units", ""))
     if unit == "m" and not (abs(variable) >= _MILLIMETRES).any():
         return "mm", 1e3
-    return _SHOWN_UNITS.get(unit, (unit, 1.0))
+    shown = {"rad": ("°", math.degrees(1.0)), "rad/s": ("rpm", RPM), "1": ("", 1.0)}
+    return shown.get(unit, (unit, 1.0))
 
 
 def _unit(variable: "xr.DataArray") -> str:

@@ -10,6 +10,7 @@ from pydantic import Field, PrivateAttr, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
+from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
@@ -100,6 +101,24 @@ class Drive(Part):
     def title(self) -> str:
         """Its name, or what it is."""
         return self.name or "Belt drive"
+
+    def number_of(self, pulley: object) -> int:
+        """Number of a pulley by its name.
+
+        Parameters
+        ----------
+        pulley : str
+            Its name.
+
+        Raises
+        ------
+        ModelError
+            If there is no such pulley.
+        """
+        names = [one.name for one in self.pulleys]
+        if pulley not in names:
+            raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")
+        return names.index(str(pulley))
 
     @property
     def path_ends(self) -> tuple[PathEnd, ...]:

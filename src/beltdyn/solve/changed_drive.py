@@ -34,20 +34,6 @@ def sense_of(drive: Drive, number: int) -> float:
     return -1.0 if speed is not None and float(speed.at([0.0])[0]) < 0.0 else 1.0
 
 
-def number_of(drive: Drive, pulley: str) -> int:
-    """Number of a pulley.
-
-    Raises
-    ------
-    ModelError
-        If the drive has no such pulley.
-    """
-    names = [one.name for one in drive.pulleys]
-    if pulley not in names:
-        raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")
-    return names.index(pulley)
-
-
 def driver_of(drive: Drive) -> int:
     """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor.
 

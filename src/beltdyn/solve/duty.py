@@ -16,7 +16,7 @@ from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import to_si
 from beltdyn.parts.text_file import LONGEST_TABLE, read_text
 from beltdyn.results import Result, Variable
-from beltdyn.solve.changed_drive import at_speed, held_at, number_of, with_load, with_torque
+from beltdyn.solve.changed_drive import at_speed, held_at, with_load, with_torque
 from beltdyn.solve.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 
@@ -174,7 +174,7 @@ def _changed(held: Drive, columns: list[Column], row: int) -> Drive:
     for one in columns:
         if one.pulley:
             change = at_speed if one.what == "speed" else with_torque
-            changed = change(changed, number_of(held, one.pulley), one.values[row])
+            changed = change(changed, held.number_of(one.pulley), one.values[row])
     return changed
 
 

@@ -7,7 +7,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, number_of, sense_of, with_load
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of, with_load
 from beltdyn.solve.operating_points import OperatingPoints, serpentine
 from beltdyn.solve.progress import Report
 
@@ -79,7 +79,7 @@ def operating_map(
     if speed is None and load is None:
         raise ModelError('a map is over speed, load or both. Give speed = "700..6000 rpm", or load = "0.2..1.2".')
     held = held_at(drive, at)
-    number = driver_of(held) if pulley is None else number_of(held, pulley)
+    number = driver_of(held) if pulley is None else held.number_of(pulley)
     name, sense = held.pulleys[number].name, sense_of(held, number)
     axes = dict[str, tuple[Variable, FloatArray]]()
     if speed is not None:

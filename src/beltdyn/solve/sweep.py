@@ -175,10 +175,7 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     ModelError
         If there is no such pulley, its speed is not prescribed, or the numbers make no run-up.
     """
-    names = [one.name for one in drive.pulleys]
-    if pulley not in names:
-        raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")
-    number = names.index(pulley)
+    number = drive.number_of(pulley)
     if not drive.pulleys[number].prescribed:
         driven = [one.name for one in drive.pulleys if one.prescribed]
         choice = f"Choose one of {', '.join(driven)}." if driven else "Give it a speed in the drive file."

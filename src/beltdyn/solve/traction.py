@@ -13,7 +13,7 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable, summarize
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, number_of, sense_of
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.solve.operating_points import Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
@@ -99,7 +99,7 @@ def traction(
     """
     held = _driven_by_speed(held_at(drive, at), force_tolerance)
     driver = driver_of(held)
-    number = _loaded(held, driver) if pulley is None else number_of(held, pulley)
+    number = _loaded(held, driver) if pulley is None else held.number_of(pulley)
     if number == driver:
         raise ModelError(
             f"pulley = {held.pulleys[number].name!r} drives, and slip is against it. Choose a driven pulley."

@@ -72,9 +72,6 @@ def pulley_number(run: Result, pulley: str | int) -> int:
     ModelError
         If there is no such pulley.
     """
-    names = [known.name for known in run.drive.pulleys]
-    if pulley in names:
-        return names.index(str(pulley))
-    if isinstance(pulley, int) and 0 <= pulley < len(names):
+    if isinstance(pulley, int) and 0 <= pulley < len(run.drive.pulleys):
         return pulley
-    raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")
+    return run.drive.number_of(pulley)
