@@ -17,8 +17,8 @@ from random_drives import SEEDS, Judged, judge
 import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import ERROR_LIMITS, layer_lengths
+from beltdyn.paper.distribution import distribution, find_peak, fit_line
 from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
-from beltdyn.report.distribution import distribution, find_peak, fit_line
 from beltdyn.solve import find_equilibrium
 from beltdyn.solve.simulate import choose_integrator
 from beltdyn.solve.trajectory import Chunk, Statistics, drive_task

@@ -58,7 +58,7 @@ ELSEWHERE = {
     "results/means.py": "unit/results/test_summary.py",
     # Statements and runs of the paper, which take minutes.
     "published/released_belt.py": "verification/test_released_belt.py",
-    "report/paper/*.py": "validation/test_paper.py",
+    "paper/statements/*.py": "validation/test_paper.py",
 }
 """Where modules are tested that have no test of their name."""
 

@@ -7,8 +7,8 @@ equations: ripple at 8.5 Hz, root mean square error of the driven speed against 
 
 import pytest
 
-from beltdyn.report import Outcome, build_paper
-from beltdyn.report.statement import Finding, Statement, Verdict
+from beltdyn.paper import Outcome, build_paper
+from beltdyn.paper.statement import Finding, Statement, Verdict
 
 HOLDS, FAILS, OPEN = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
 

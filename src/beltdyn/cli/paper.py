@@ -18,7 +18,7 @@ def paper(*, out: Path = Path("beltdyn-paper")) -> int:
     out
         The folder for the page, paper.html, and the drive file of each of its runs with what the page keeps of it.
     """
-    from beltdyn.report import build_paper
+    from beltdyn.paper import build_paper
 
     with runs_bar(at_end="timing some runs, and writing the page") as report:
         outcome = build_paper(out, report)

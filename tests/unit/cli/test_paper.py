@@ -18,7 +18,7 @@ def test_the_page_is_named_and_failures_too(
     run_main: RunMain, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, failures: dict[str, str], code: int
 ) -> None:
     outcome = SimpleNamespace(page=tmp_path / "paper.html", failures=failures)
-    monkeypatch.setattr("beltdyn.report.build_paper", lambda *_: outcome)
+    monkeypatch.setattr("beltdyn.paper.build_paper", lambda *_: outcome)
     found, output, message = run_main(["paper", "--out", str(tmp_path)])
     assert found == code
     assert f"Page: {tmp_path / 'paper.html'}" in output
@@ -29,5 +29,5 @@ def test_an_interruption(run_main: RunMain, monkeypatch: pytest.MonkeyPatch) -> 
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("beltdyn.report.build_paper", interrupt)
+    monkeypatch.setattr("beltdyn.paper.build_paper", interrupt)
     assert run_main(["paper"])[0] == 130
