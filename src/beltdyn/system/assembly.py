@@ -72,7 +72,7 @@ def assemble(
         hold_fixed(system, matrix)
 
 
-@kernel
+@kernel(inline=True)
 def _travelling_element(
     frame: Travelling, system: System, motion: Motion, factors: TangentFactors, element: int, equations: Equations
 ) -> None:

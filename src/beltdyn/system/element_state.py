@@ -185,6 +185,7 @@ def fill_control(system: System, element: int, curve: int, coordinates: FloatArr
     control, vectors = system.control[element, curve], system.vectors
     for a in range(points.shape[0]):
         for axis in range(2):
-            points[a, axis] = 0.0
+            total = 0.0
             for b in range(len(vectors)):
-                points[a, axis] += control[a, b] * coordinates[vectors[b] + axis]
+                total += control[a, b] * coordinates[vectors[b] + axis]
+            points[a, axis] = total

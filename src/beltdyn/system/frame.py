@@ -135,19 +135,19 @@ def _hodograph(degree: int) -> FloatArray:
     return np.asarray(raised @ change)
 
 
-@kernel
+@kernel(inline=True)
 def _still(frame: Travelling, velocity: FloatArray) -> float:
     """Nodes move with the belt."""
     return 0.0
 
 
-@kernel
+@kernel(inline=True)
 def _given_speed(frame: Staying, velocity: FloatArray) -> float:
     """The speed of steady running."""
     return float(frame.speed[0])
 
 
-@kernel
+@kernel(inline=True)
 def _own_speed(frame: Flowing, velocity: FloatArray) -> float:
     """The rate of the coordinate."""
     return float(velocity[frame.place])
@@ -159,14 +159,14 @@ flow_speed: Callable[[Any, FloatArray], float] = by_type(
 """Length of unstretched belt that passes the mesh in a unit of time, m/s, from velocities of shape (n N + D,)."""
 
 
-@kernel
+@kernel(inline=True)
 def _no_flow(
     frame: Travelling, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
 ) -> None:
     """Leave the velocity: nodes move with the belt."""
 
 
-@kernel
+@kernel(inline=True)
 def _flow(
     frame: Any, element: int, vectors: tuple[int, ...], speed: float, position: FloatArray, velocity: FloatArray
 ) -> None:
