@@ -34,6 +34,7 @@ ELSEWHERE = {
     "system/observations.py": "unit/system/test_observe.py",
     "system/pulley_state.py": "unit/system/test_balance.py",
     "system/state_forces.py": "unit/system/test_balance.py",
+    "system/wrap_angle.py": "unit/system/test_spans.py",
     "solve/alpha_impulse.py": "verification/dynamics/test_impulse.py",
     "solve/alpha_method.py": "unit/solve/test_alpha_step.py",
     "solve/engine.py": "unit/solve/test_alpha_advance.py",

@@ -11,7 +11,7 @@ from make_examples import EXAMPLES, simulated
 import beltdyn as bd
 from beltdyn import simulate
 from beltdyn.results import summarize
-from beltdyn.results.mechanics import capstan_margin
+from beltdyn.results.derived import capstan_margins
 
 CLOSURE = 5e-3
 """Of the energy put in, at any time."""
@@ -76,17 +76,17 @@ def test_the_overloaded_conveyor_comes_to_a_stop() -> None:
 
 @pytest.mark.slow
 def test_the_idler_carries_what_slips_without_it() -> None:
-    """The load of 160 N m is above what fixed centres transmit, and with the idler half as much again is below."""
+    """The load of 160 N m is above what fixed centres transmit, and with the idler half as much again is below.
+
+    While it slides the belt follows Euler and Eytelwein's formula with the angle between its spans, within 0.5 %: what
+    bending takes from the arc presses on its ends.
+    """
     run = simulated("flat_belt_idler")
-    without = without_idler(run.drive)
-    damped = without.contact.replace(damping=1000.0)  # with the 100 N s/m^2 of the example the sliding arc flutters
-    slipping = simulate(without.replace(contact=damped))
+    slipping = simulate(without_idler(run.drive))
     bare = summarize(slipping)
     assert any("the belt slides on the whole arc" in text for text in bare.warnings)
     assert bare.pulleys[1].slip > 0.1
-    sliding = slipping.dataset.sel(time=slice(1.1, 1.6))
-    tension, speed, wrap = (sliding[name].values for name in ("span_tension", "belt_speed", "wrap_angle"))
-    assert capstan_margin(tension, speed, wrap, slipping.drive)[:, 0] == pytest.approx(1.0, abs=0.02)
+    assert capstan_margins(slipping, 1.1, 1.6)[:, 0].values == pytest.approx(1.0, abs=0.005)
     more = summarize(simulate(with_load(run.drive, 240.0)))
     assert not any("the belt slides on the whole arc" in text for text in more.warnings)
     assert more.pulleys[2].slip < 0.03

@@ -131,9 +131,12 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
         One for each pulley.
     """
     window = mean_window(recorded, drive) if window is None else window
-    belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed = (
+    belt_torque, shaft_torque, wrap_angle, hub_force, tension, belt_speed, centers = (
         window.mean(recorded, name)
-        for name in ("pulley_torque", "shaft_torque", "wrap_angle", "hub_force", "span_tension", "belt_speed")
+        for name in (
+            *("pulley_torque", "shaft_torque", "wrap_angle", "hub_force"),
+            *("span_tension", "belt_speed", "pulley_center"),
+        )
     )
     single = len(window.time) == 1
     speed = window.mean(recorded, "pulley_speed") if single else window.rate(recorded, "pulley_angle")
@@ -147,7 +150,7 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
         *parts,
         gross,
         share * wrap_angle,
-        capstan_margin(tension, belt_speed, wrap_angle, drive),
+        capstan_margin(tension, belt_speed, centers, drive),
         wrap_angle,
         np.hypot(hub_force[:, 0], hub_force[:, 1]),
     )

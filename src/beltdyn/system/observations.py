@@ -6,8 +6,10 @@ from typing import Annotated, NamedTuple, get_type_hints
 import numpy as np
 
 from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.records import blank
 from beltdyn.system.arrays import PENALTY_ENERGY, SPRING_ENERGY, BodyForces, System
 from beltdyn.system.element_state import element_workspace
+from beltdyn.system.wrap_angle import WALK
 
 
 class Per(NamedTuple):
@@ -98,6 +100,8 @@ class Samples(NamedTuple):
     """Pulley that each point counts to, -1 where it is free."""
     nearest: IntArray
     """A point that touches each pulley, or is nearest to where the belt touches it, -1 without contact."""
+    walk: np.record
+    """Row of `wrap_angle.WALK`."""
     work: np.record
     """From `element_workspace`."""
 
@@ -153,5 +157,6 @@ def new_samples(system: System) -> Samples:
         weight=np.zeros(span_count(system)),
         touched=np.zeros(points, dtype=np.int64),
         nearest=np.zeros(system.pulleys.size, dtype=np.int64),
+        walk=blank(WALK),
         work=element_workspace(system),
     )

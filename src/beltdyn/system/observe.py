@@ -1,6 +1,6 @@
 """What a state means: energies, body forces, tensions, contact forces, wrap angles (Eqs. 8, 13, 17-23)."""
 
-from math import atan2, sqrt
+from math import sqrt
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from beltdyn.system.hysteresis import hysteresis_tension
 from beltdyn.system.observations import Observations, Samples, new_observations, new_samples
 from beltdyn.system.pulley_state import pulley_state, tensioner_coordinate
 from beltdyn.system.state_forces import body_forces_at
+from beltdyn.system.wrap_angle import begin_walk, next_curve, turned_at, turned_at_the_end
 
 
 def observe(system: System, time: FloatArray, position: FloatArray, velocity: FloatArray) -> Observations:
@@ -78,6 +79,7 @@ def fill_observations(
     for k in range(position.shape[0]):
         show += shown[k]
         samples.nearest[:] = -1
+        begin_walk(samples.walk)
         for element in range(system.length.size):
             gather_motion(system, element, position[k], velocity[k], work.coordinates)
             pull = 0.0
@@ -90,7 +92,10 @@ def fill_observations(
                 if shown[k]:
                     _observe_tension(system, piece, number, pull, work, result, show)
                 _observe_points(system, piece, number, pull, samples, result, k)
+                next_curve(samples.walk, piece.length)
                 _observe_contact(system, number, position[k], velocity[k], samples, result, k)
+        if samples.weight.size == system.pulleys.size and samples.walk.first.pulley >= 0:
+            result.wrap_angle[k, samples.walk.first.pulley] += turned_at_the_end(samples.walk)
         _observe_spans(system, samples, result, k)
         _observe_bodies(system, position[k], result, k)
         if shown[k]:
@@ -170,7 +175,7 @@ def _observe_contact(
     result: Observations,
     k: int,
 ) -> None:
-    """Contact of a curve at its sampling points, and the angle over which it touches."""
+    """Contact of a curve at its sampling points, and the angle to the places that touch."""
     control, zone = samples.work.control, samples.work.contact.zone
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, position, velocity)
@@ -178,7 +183,8 @@ def _observe_contact(
             continue
         for interval in range(touching_intervals(control, pulley, zone)):
             start, end = zone.intervals[interval]
-            result.wrap_angle[k, p] += _angle(samples, pulley, start, end)
+            for xi in (start, end):
+                result.wrap_angle[k, p] += turned_at(samples.walk, xi, p, pulley, samples.work)
             samples.nearest[p] = number * system.contact.points.size + _nearest_point(system, 0.5 * (start + end))
         _touch_points(system, number, p, pulley, samples, result, k)
 
@@ -216,18 +222,6 @@ def _nearest_point(system: System, xi: float) -> int:
         if abs(system.contact.points[point] - xi) < abs(system.contact.points[nearest] - xi):
             nearest = point
     return nearest
-
-
-@kernel(inline=True)
-def _angle(samples: Samples, pulley: PulleyState, start: float, end: float) -> float:
-    """Angle at the pulley's centre between two points of the centreline, rad."""
-    control, weights = samples.work.control, samples.work.contact.weights
-    fill_bernstein(start, weights)
-    ax, ay = combine(control, weights)
-    fill_bernstein(end, weights)
-    bx, by = combine(control, weights)
-    ax, ay, bx, by = ax - pulley.center_x, ay - pulley.center_y, bx - pulley.center_x, by - pulley.center_y
-    return abs(atan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 @kernel(inline=True)

@@ -112,7 +112,7 @@ def test_a_belt_that_leaves_a_pulley_and_comes_back(drive: Drive) -> None:
     np.testing.assert_array_equal(touched[[1, 2, 3, 4]], [1, -1, -1, 1])
     assert_span(system, 1, [5, 6])
     assert_span(system, 0, [8, 9, 10, 11, 0])
-    assert see(system).wrap_angle[0, 1] == pytest.approx(2.0 * chord(0.45, 0.46), rel=1e-9)
+    assert see(system).wrap_angle[0, 1] == pytest.approx(0.5 * np.pi + chord(0.45, 0.46), rel=1e-9)
 
 
 def test_a_pulley_without_contact_has_no_span(drive: Drive) -> None:
@@ -137,3 +137,17 @@ def test_tension_of_links_by_their_stretch(drive: Drive) -> None:
     upright = (CORNERS[2] - CORNERS[1]) / np.linalg.norm(CORNERS[2] - CORNERS[1])
     force = here.belt_tension[0, 0] - here.belt_tension[0, 1] * upright[0]
     assert (moved[0] - moved[1]) / (2.0 * step) == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("corner", [(0.9, 0.1), (0.1, 0.1)], ids=["between links", "where the belt is closed"])
+def test_the_wrap_reaches_over_a_place_where_the_belt_lifts_off(drive: Drive, corner: tuple[float, float]) -> None:
+    """Two links at right angles touch, and their corner does not; the other way round the belt is free."""
+    system = rectangle(drive, (corner, 0.11))
+    assert see(system).wrap_angle[0, 0] == pytest.approx(0.5 * np.pi + chord(0.1, 0.11), rel=1e-9)
+
+
+def test_the_wrap_ends_where_another_pulley_is_touched(drive: Drive) -> None:
+    """A small one presses on the belt where it lifts off the large one."""
+    one, other = ((0.9, 0.1), 0.11), ((1.0, -0.005), 0.01)
+    between = rectangle(drive, one, other)
+    assert see(between).wrap_angle[0, 0] == pytest.approx(2.0 * chord(0.1, 0.11), rel=1e-9)

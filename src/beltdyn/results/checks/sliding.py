@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beltdyn.parts.finding import Finding, listing
+from beltdyn.results.arc import arc_ends
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import capstan_margin, rim_speeds
 
@@ -50,7 +51,8 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     if evidence.drive.ends or not near or not _first_rim(evidence) > 0.0:
         return
     worst, number = min(near, key=lambda one: one[0].margin)
-    half = 0.5 * evidence.drive.frictions[number] * worst.wrap_angle
+    _, turned = arc_ends(evidence.drive, evidence.window.mean(evidence.recorded, "pulley_center"))
+    half = 0.5 * evidence.drive.frictions[number] * turned[number]
     least = float(np.arctanh(min(np.tanh(half) / worst.margin, np.tanh(half))) / half)
     margins = [f"{one.margin:.2f} times this load on {one.name}" for one, _ in near]
     yield Finding(
@@ -68,11 +70,11 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
     if evidence.drive.ends:
         return
-    tension, speed, wrap, torque = (
-        np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed", "wrap_angle", "pulley_torque")
+    tension, speed, centers, torque = (
+        np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed", "pulley_center", "pulley_torque")
     )
     first, drive = evidence.window.first, evidence.drive
-    times, margins = evidence.time[:first], capstan_margin(tension, speed, wrap, drive)[:first]
+    times, margins = evidence.time[:first], capstan_margin(tension, speed, centers, drive)[:first]
     reached = (margins < 1.0) & (drive.frictions > 0.0)
     found, longest = [], 0.0
     for number in np.flatnonzero(np.count_nonzero(reached, axis=0) > 1).tolist():

@@ -54,9 +54,8 @@ def capstan_margins(run: Run, start: float | None = None, end: float | None = No
         Time and pulley; NaN where a span is missing because the belt has left a pulley.
     """
     dataset = window(run, start, end)
-    wrap = dataset["wrap_angle"]
-    margin = margin_of(dataset["span_tension"].values, dataset["belt_speed"].values, wrap.values, run.drive)
-    return labelled(margin, wrap, "1", "Capstan margin")
+    tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
+    return labelled(margin_of(tension, speed, centers, run.drive), dataset["wrap_angle"], "1", "Capstan margin")
 
 
 def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
