@@ -71,7 +71,29 @@ def open_dataset(path: Path) -> "xr.Dataset":
     ModelError
         If the file cannot be read, is not the result of a run, or has a format that is not known yet.
     """
-    dataset = read_dataset(path)
+    return complete_dataset(path, read_dataset(path))
+
+
+def complete_dataset(path: Path, dataset: "xr.Dataset") -> "xr.Dataset":
+    """The complete outputs of an open result file of a run.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    dataset : xarray.Dataset
+        From `read_dataset`; closed if it is refused.
+
+    Returns
+    -------
+    xarray.Dataset
+        As it is, without what an interrupted run has left, and with the variables that are parts of others.
+
+    Raises
+    ------
+    ModelError
+        If it is not the result of a run.
+    """
     try:
         _check_names(path, dataset)
         return _complete(dataset)

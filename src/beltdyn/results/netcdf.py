@@ -92,6 +92,8 @@ class GrowingFile:
                 for name, dataset in file.items():
                     if dataset.maxshape[0] is None:
                         dataset.resize(self._outputs[RECORDED[name].dims[0]], axis=0)
+                for name in TIMES:
+                    _fix_dimension(file, name)
             with h5netcdf.File(staged, "r+", libver=_FORMAT) as file:
                 file.attrs.update(attributes)
             staged.commit(reserve=0)
@@ -169,6 +171,21 @@ def _create_variable(file: h5py.File, name: str, variable: Variable, row: tuple[
     for axis, dim in enumerate(variable.dims):
         created.dims[axis].attach_scale(file[dim])
     created.attrs.update({**fill, **variable.attributes, **coordinates})
+
+
+def _fix_dimension(file: h5py.File, name: str) -> None:
+    """Let a dimension grow no longer: of one that may grow readers look for the length anew in all its variables."""
+    growing = file[name]
+    fixed = file.create_dataset("fixed", data=growing[()], fillvalue=growing.fillvalue, track_order=True)
+    fixed.make_scale(name)
+    for key, value in growing.attrs.items():
+        if key not in {"CLASS", "NAME", "REFERENCE_LIST"}:
+            fixed.attrs[key] = value
+    for variable in (file[reference] for reference, _ in growing.attrs.get("REFERENCE_LIST", ())):
+        variable.dims[0].detach_scale(growing)
+        variable.dims[0].attach_scale(fixed)
+    del file[name]
+    file.move("fixed", name)
 
 
 def _extend(file: h5py.File, name: str, start: int, values: NDArray[Any]) -> None:

@@ -13,7 +13,7 @@ from beltdyn.analyses import RUN, STATIC
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.checks import Finding, find
-from beltdyn.results.dataset import kind_of, open_dataset, read_dataset, unreadable
+from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset, unreadable
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
 from beltdyn.results.result import Result, drive_of
@@ -217,7 +217,11 @@ def open_run(path: Path | str) -> Run:
     ('time', 'pulley')
     """
     path = Path(path)
-    dataset = open_dataset(path)
+    return _run(path, open_dataset(path))
+
+
+def _run(path: Path, dataset: "xr.Dataset") -> Run:
+    """The run of a dataset, which is closed if it is refused."""
     try:
         drive = drive_of(dataset, path)
         if list(dataset["pulley"].values) != [pulley.name for pulley in drive.pulleys]:
@@ -261,5 +265,4 @@ def open_result(path: Path | str) -> Result:
     except ModelError:
         dataset.close()
         raise
-    dataset.close()
-    return open_run(path)
+    return _run(path, complete_dataset(path, dataset))

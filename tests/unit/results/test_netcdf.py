@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import h5py
 import numpy as np
 import pytest
@@ -44,6 +45,23 @@ def test_outputs_follow_each_other(layout: Layout, tmp_path: Path, outputs: Call
         assert file.attrs["status"] == "completed"
         for name in ("time", "span_tension", "nodal_coordinates", "contact_pulley"):
             np.testing.assert_array_equal(file[name], expected[name])
+
+
+def test_time_grows_until_the_file_is_finished(
+    layout: Layout, tmp_path: Path, outputs: Callable[..., dict[str, Any]]
+) -> None:
+    """Of a dimension that may grow readers look for the length in all its variables, each time they ask for it."""
+    path = tmp_path / "run.nc"
+    growing = GrowingFile(path, layout, {})
+    growing.append(path, outputs(0.0, 0.1))
+    with h5netcdf.File(path, "r") as file:
+        assert all(file.dimensions[name].isunlimited() for name in TIMES)
+        variables = {name: (variable.dimensions, dict(variable.attrs)) for name, variable in file.variables.items()}
+    growing.finish(path, {})
+    with h5netcdf.File(path, "r") as file:
+        assert not any(file.dimensions[name].isunlimited() for name in TIMES)
+        found = {name: (variable.dimensions, dict(variable.attrs)) for name, variable in file.variables.items()}
+    np.testing.assert_equal(found, variables)
 
 
 def test_rows_without_their_instant_are_cut(
