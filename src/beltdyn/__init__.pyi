@@ -99,6 +99,7 @@ from .solve import (
     simulate_all,
     steady_state,
     sweep,
+    tensioner_sheet,
     traction,
 )
 
@@ -202,6 +203,7 @@ __all__ = [
     "summarize",
     "sweep",
     "tensioner_balances",
+    "tensioner_sheet",
     "theory",
     "traction",
     "write_csv",

@@ -100,6 +100,7 @@ _ALL = (
     Analysis("map", "beltdyn.solve.operating_map:operating_map", "Find operating points over speed and load."),
     Analysis("traction", "beltdyn.solve.traction:traction", "Find the slip of a pulley over its torque."),
     Analysis("duty", "beltdyn.solve.duty:duty", "Find the operating points of a duty table, and means over it."),
+    Analysis("tensioner", "beltdyn.solve.tensioner_sheet:tensioner_sheet", "Find what a tensioner does to all belts."),
     # one line for each
 )
 

@@ -162,6 +162,36 @@ def all_balances(
     return tuple(_described(situation) for situation in situations)
 
 
+def held_belt(
+    path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier], positions: FloatArray, number: int
+) -> StaticEstimate:
+    """Find the belt that holds a tensioner at a place, by virtual work: T = F / (dL/dq).
+
+    Parameters
+    ----------
+    path, belt, contact, carriers
+        As for `balance_tensioners`; the length of the belt does not matter.
+    positions : ndarray, shape (K,)
+        Where the tensioners stand, m or rad.
+    number : int
+        The tensioner that is in balance there.
+
+    Raises
+    ------
+    ValueError
+        If no tension holds it, or no belt runs around the pulleys there.
+    """
+    there, one, position = moved(path, carriers, positions), carriers[number], float(positions[number])
+    leverage = float(there.gradient(one.pulley) @ one.place(position)[1])
+    force = one.force(position)
+    if not (force > 0.0 and leverage > 0.0):
+        raise ValueError(
+            f'no tension holds the tensioner of "{one.tensioner.pulley}" at {one.tensioner.written(position)}: it '
+            f"presses with {force:.4g}, and a unit of travel lengthens the path by {leverage:.4g}"
+        )
+    return static_estimate(there, belt.replace(installed_tension=force / leverage), contact)
+
+
 def _described(situation: _Situation) -> tuple[TensionerBalance, ...]:
     """All balances of a tensioner."""
     found = sorted(_balances(situation, 0.0))

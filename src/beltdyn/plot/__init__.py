@@ -26,6 +26,7 @@ from beltdyn.plot.spans import tension_spectrum as tension_spectrum
 from beltdyn.plot.spans import tensioners as tensioners
 from beltdyn.plot.sweep import orders as orders
 from beltdyn.plot.sweep import waterfall as waterfall
+from beltdyn.plot.tensioner_sheet import tensioner_sheet as tensioner_sheet
 from beltdyn.plot.wear import wear_by_arc as wear_by_arc
 from beltdyn.plot.wear import wear_by_belt as wear_by_belt
 

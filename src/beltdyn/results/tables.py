@@ -77,7 +77,7 @@ _FIRST_HEADINGS = {
 }
 """Every table of a run -> how it starts."""
 
-_OF_NAMES = ("point.csv", "pulley.csv", "span.csv", "tensioner.csv")
+_OF_NAMES = ("point.csv", "pulley.csv", "span.csv", "tensioner.csv", "state.csv")
 """Tables of other results; they start with their name."""
 
 Column = tuple[str, NDArray[Any]]

@@ -13,6 +13,7 @@ from beltdyn.solve.static import Equilibrium, find_equilibrium
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 from beltdyn.solve.sweep import sweep
+from beltdyn.solve.tensioner_sheet import tensioner_sheet
 from beltdyn.solve.traction import traction
 from beltdyn.solve.worker import Ending
 
@@ -37,5 +38,6 @@ __all__ = [
     "simulate_all",
     "steady_state",
     "sweep",
+    "tensioner_sheet",
     "traction",
 ]
