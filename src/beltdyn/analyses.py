@@ -101,6 +101,9 @@ _ALL = (
     Analysis("traction", "beltdyn.solve.traction:traction", "Find the slip of a pulley over its torque."),
     Analysis("duty", "beltdyn.solve.duty:duty", "Find the operating points of a duty table, and means over it."),
     Analysis("tensioner", "beltdyn.solve.tensioner_sheet:tensioner_sheet", "Find what a tensioner does to all belts."),
+    Analysis(
+        "sensitivity", "beltdyn.solve.sensitivity:sensitivity", "Find what results owe to each number of a drive."
+    ),
     # one line for each
 )
 

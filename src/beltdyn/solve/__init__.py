@@ -7,6 +7,7 @@ from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
 from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.progress import BatchProgress, Progress
+from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.simulate import simulate
 from beltdyn.solve.standard import StandardIntegrator
 from beltdyn.solve.static import Equilibrium, find_equilibrium
@@ -34,6 +35,7 @@ __all__ = [
     "equilibrium",
     "find_equilibrium",
     "operating_map",
+    "sensitivity",
     "simulate",
     "simulate_all",
     "steady_state",

@@ -117,13 +117,7 @@ class OperatingPoints:
         if self._path is not None:
             require_replaceable(self._path, is_result, overwrite)
         self._progress = progress
-        self._sizes = {
-            "pulley": [one.name for one in drive.pulleys],
-            "span": ["-".join(names) for names in drive.spans],
-            "tensioner": [one.pulley for one in drive.moving_tensioners],
-            "cause": _CAUSES,
-            "axis": list(AXIS_NAMES),
-        }
+        self._sizes = labels_of(drive)
         self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
         self.arrays = {name: self._blank(variable) for name, variable in VARIABLES.items() if self._holds(variable)}
         self._warned: dict[str, list[tuple[str, str]]] = {}
@@ -233,27 +227,8 @@ class OperatingPoints:
 
     def _take(self, index: tuple[int, ...], run: Run, summary: Summary) -> None:
         """Note an operating point."""
-        arrays, balance, dataset = self.arrays, summary.balance, run.dataset
-        for name, attribute in _OF_PULLEYS.items():
-            arrays[name][index] = [getattr(one, attribute) for one in summary.pulleys]
-        arrays["hub_force"][index] = dataset["hub_force"].values[-1]
-        arrays["span_tension"][index] = tensions = [one.tension for one in summary.spans]
-        arrays["belt_speed"][index] = np.mean([abs(one.belt_speed) for one in summary.spans])
-        arrays["largest_tension"][index] = max(tensions)
-        arrays["power_in"][index], arrays["power_out"][index] = balance.power_in, balance.power_out
-        arrays["efficiency"][index] = balance.efficiency
-        arrays["loss"][index] = [balance.losses[cause] for cause in _CAUSES]
-        safeties = arrays["slip_safety"][index]
-        if np.any(np.isfinite(safeties)):
-            least = int(np.nanargmin(safeties))
-            arrays["least_slip_safety"][index], arrays["least_safe_pulley"][index] = (
-                safeties[least],
-                self._sizes["pulley"][least],
-            )
-        if self._sizes["tensioner"]:
-            stands = arrays["tensioner_position"][index] = [one.position for one in summary.tensioners]
-            for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
-                arrays[name][index] = dataset.attrs.get(name, stands)
+        for name, values in values_by_name(run, summary).items():
+            self.arrays[name][index] = values
         for warning in run.warnings:
             self._warn(index, warning)
 
@@ -286,6 +261,52 @@ class OperatingPoints:
             with uninterrupted():
                 self.result().save(self._path, self._overwrite)
         self._written = time.perf_counter()
+
+
+def labels_of(drive: Drive) -> dict[str, list[str]]:
+    """Labels along the dimensions of `VARIABLES`."""
+    return {
+        "pulley": [one.name for one in drive.pulleys],
+        "span": ["-".join(names) for names in drive.spans],
+        "tensioner": [one.pulley for one in drive.moving_tensioners],
+        "cause": _CAUSES,
+        "axis": list(AXIS_NAMES),
+    }
+
+
+def values_by_name(run: Run, summary: Summary) -> dict[str, Any]:
+    """The values of an operating point by the names of `VARIABLES`.
+
+    Parameters
+    ----------
+    run
+        Steady running.
+    summary
+        Its summary.
+    """
+    balance, dataset, tensions = summary.balance, run.dataset, [one.tension for one in summary.spans]
+    values: dict[str, Any] = {
+        name: [getattr(one, attribute) for one in summary.pulleys] for name, attribute in _OF_PULLEYS.items()
+    }
+    values |= {
+        "hub_force": dataset["hub_force"].values[-1],
+        "span_tension": tensions,
+        "belt_speed": np.mean([abs(one.belt_speed) for one in summary.spans]),
+        "largest_tension": max(tensions),
+        "power_in": balance.power_in,
+        "power_out": balance.power_out,
+        "efficiency": balance.efficiency,
+        "loss": [balance.losses[cause] for cause in _CAUSES],
+    }
+    safeties = np.array(values["slip_safety"])
+    if np.any(np.isfinite(safeties)):
+        least = int(np.nanargmin(safeties))
+        values |= {"least_slip_safety": safeties[least], "least_safe_pulley": summary.pulleys[least].name}
+    if summary.tensioners:
+        values["tensioner_position"] = stands = [one.position for one in summary.tensioners]
+        for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
+            values[name] = dataset.attrs.get(name, stands)
+    return values
 
 
 def _written(value: Any, units: str) -> str:

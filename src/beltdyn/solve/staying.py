@@ -31,6 +31,8 @@ MOST_ELEMENTS = 1500
 _SETTLED = 1e-3
 """Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
 _MOST = 60
+_CURVATURE = slice(4, 6)
+"""Second derivatives among the coordinates of a node."""
 _SAMPLES = 16
 """Points of an element at which the ends of arcs are looked for."""
 
@@ -74,6 +76,11 @@ class Laid(NamedTuple):
             first = (arrives - self.start) % self.path.length
             found.append(Arc(first / self.stretch, (first + size * float(wrap)) / self.stretch, size))
         return sorted(found)
+
+    def marks(self) -> FloatArray:
+        """Both ends of the belt, and of the arcs between them, m."""
+        ends = [place for arc in self.arcs() for place in (arc.start, arc.end)]
+        return np.array([0.0, *ends, self.path.length / self.stretch])
 
     def state(self, system: System, tensioners: FloatArray) -> State:
         """The state of a system whose belt lies so."""
@@ -168,11 +175,9 @@ def stand_like(drive: Drive, like: Standing) -> Standing:
     ConvergenceError
         If it is not found from there.
     """
-    longer = drive.belt_length / like.drive.belt_length
-    system = staying_system(drive, longer * like.system.length)
-    nodes, bodies = np.split(like.place, [system.first_body])
-    state = at_rest(system, stretched(nodes.reshape(system.nodes, -1), longer))
-    state.position[system.first_body :] = bodies
+    nodes, bodies = np.split(like.place, [like.system.first_body])
+    system, state = carried(drive, like.drive, like.system.length, nodes)
+    state.position[system.first_body :] += bodies
     if not _balance(drive, system, state, anchor_at(system, state, True), 1.0):
         raise _no_rest(system)
     tension = looked_at(drive, system, state).tension
@@ -186,17 +191,35 @@ def _no_rest(system: System) -> ConvergenceError:
     )
 
 
-def stretched(nodes: FloatArray, longer: float) -> FloatArray:
-    """The same curve for a longer belt: nodal coordinates of quintic elements, shape (N, 6).
+def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) -> tuple[System, State]:
+    """The mesh of a drive that differs a little from another one, and a state near to that of the other one.
+
+    Arcs keep their nodes: the mesh changes as the path does, and places and slopes as those of a belt laid on it.
 
     Parameters
     ----------
-    nodes : ndarray, shape (N, 6)
-        r, dr/dx and d2r/dx2 of the nodes.
-    longer
-        Its unstretched length, over that of the belt of these coordinates.
+    drive, other
+        The drives.
+    lengths : ndarray, shape (N,)
+        Those of the elements of the other one, m.
+    nodes : ndarray, shape (6 N,)
+        Its nodal coordinates.
+
+    Returns
+    -------
+    system, state
+        A state without speeds, its bodies moved from zero by as much as tensioners move at rest.
     """
-    return nodes * np.repeat(longer ** np.array([0.0, -1.0, -2.0]), 2)
+    before, after = install(other), install(drive)
+    span = int(np.argmax(before.path.span_lengths))
+    here, there = Laid.on(before.path, other.belt_length, span), Laid.on(after.path, drive.belt_length, span)
+    moved = np.interp(np.append(0.0, np.cumsum(lengths)), here.marks(), there.marks())
+    old, new = staying_system(other, lengths), staying_system(drive, np.diff(moved))
+    state = there.state(new, after.tensioner_positions)
+    state.position[:] -= here.state(old, before.tensioner_positions).position
+    state.nodes(new)[:, _CURVATURE] = 0.0  # it jumps at the ends of arcs, where nodes may be
+    state.position[: nodes.size] += nodes
+    return new, state
 
 
 def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor: float) -> bool:

@@ -6,12 +6,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run
-from beltdyn.solve.staying import stretched
+from beltdyn.solve.staying import carried
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.build import staying_system
 from beltdyn.system.constant_drive import rigid_links
-from beltdyn.system.state import at_rest
 
 
 def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
@@ -75,12 +73,11 @@ def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
     time
         At which speeds, torques and schedules are taken, s.
     """
-    found, longer = start.dataset.isel(time=-1, field_time=-1), drive.belt_length / start.drive.belt_length
-    lengths = longer * np.diff(found.node_coordinate.values, append=start.drive.belt_length)
-    system = staying_system(drive, lengths)
-    state = at_rest(system, stretched(found.nodal_coordinates.values, longer))
+    found = start.dataset.isel(time=-1, field_time=-1)
+    lengths = np.diff(found.node_coordinate.values, append=start.drive.belt_length)
+    system, state = carried(drive, start.drive, lengths, found.nodal_coordinates.values.ravel())
     if system.tensioners.size:
-        state.position[-system.tensioners.size :] = found.tensioner_position.values
+        state.position[-system.tensioners.size :] += found.tensioner_position.values
     bodies = state.velocity[system.first_body :]
     bodies[: found.pulley_speed.size] = found.pulley_speed.values
     _take_along(system, bodies, found.shaft_speed.values)

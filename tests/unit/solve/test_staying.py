@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.solve.staying import Laid, bring_to_stand, found_arcs, stand, stand_like, stretched, transfer
+from beltdyn.solve.staying import Laid, bring_to_stand, carried, found_arcs, stand, stand_like, transfer
 from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points
-from beltdyn.system.state import at_rest
 
 
 def with_length(drive: Drive, length: float) -> Drive:
@@ -36,15 +35,23 @@ def test_rest_with_a_little_more_tension_is_found_next_to_the_one_before(drive: 
     assert found.tension == pytest.approx(stand(tighter, 60).tension, rel=1e-8)
 
 
-def test_a_curve_for_a_longer_belt(drive: Drive) -> None:
-    """The same places, at coordinates in proportion."""
-    rest, other = stand(drive), with_length(drive, drive.belt_length - 0.01)
-    longer = other.belt_length / drive.belt_length
-    system = staying_system(other, longer * rest.system.length)
-    position = at_rest(system, stretched(rest.state.nodes(rest.system), longer)).position
-    along = np.linspace(0.0, drive.belt_length * 0.999, 500)
-    found = centreline_points(system, position, longer * along)[0]
-    np.testing.assert_allclose(found, centreline_points(rest.system, rest.state.position, along)[0], atol=1e-12)
+def test_the_mesh_is_carried_with_the_layout(drive: Drive) -> None:
+    """A drive that is moved as a whole carries mesh and curve along; arcs keep their nodes where a radius grows."""
+    rest, way = stand(drive), np.array([0.3, -0.2])
+    nodes = rest.place[: rest.system.first_body]
+    moved = drive.replace(pulley=[one.replace(center=tuple(one.center + way)) for one in drive.pulleys])
+    system, state = carried(moved, drive, rest.system.length, nodes)
+    np.testing.assert_allclose(system.length, rest.system.length, rtol=1e-12)
+    expected = nodes.reshape(-1, 6) + np.append(way, np.zeros(4))
+    np.testing.assert_allclose(state.position[: nodes.size].reshape(-1, 6), expected, atol=1e-9)
+    larger = drive.with_({f"pulley[{drive.pulleys[1].name}].radius": 1.01 * float(drive.radii[1])})
+    grown = carried(larger, drive, rest.system.length, nodes)[0]
+    laid = Laid.on(larger.path, larger.belt_length, 0)
+    ends = np.append(0.0, np.cumsum(grown.length))
+    before = np.append(0.0, np.cumsum(rest.system.length))
+    for old, new in zip(Laid.on(drive.path, drive.belt_length, 0).arcs(), laid.arcs(), strict=True):
+        inside = (before > old.start) & (before < old.end)
+        np.testing.assert_array_equal((ends > new.start) & (ends < new.end), inside)
 
 
 def test_graded_and_fine_meshes_have_the_same_equilibrium(drive: Drive) -> None:

@@ -1,0 +1,281 @@
+"""An analysis: how steady running changes with the numbers of the drive file.
+
+Each number is changed a little up and down, and Newton's method follows from the steady state at hand, on the same
+mesh: its first step is the linear change of the implicit function theorem, du = -(dF/du)^-1 (dF/dp) dp, and those
+after it take the rest.  Where a tension at rest is asked for, the length of the belt, or the take-up, follows.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.model.completion import take_up
+from beltdyn.parts.error_location import entry_name
+from beltdyn.parts.messages import suggest
+from beltdyn.parts.part import Part
+from beltdyn.results import Result, Run, Variable, build_result, summarize
+from beltdyn.results.schema import AXIS_NAMES
+from beltdyn.solve.operating_points import VARIABLES, labels_of, values_by_name
+from beltdyn.solve.progress import Progress, Report
+from beltdyn.solve.staying import Standing, bring_to_stand, stand_like
+from beltdyn.solve.steady import steady_state
+from beltdyn.solve.sweep import without_schedules
+
+_CHANGE = 1e-5
+"""Of a number, and of the length of the belt, relative."""
+_PART = 0.01
+"""Of a number, for which effects are told."""
+_MOVE = 1e-3
+"""Of a coordinate, whose zero is a matter of convention, for which effects are told, m."""
+_COORDINATES = ("center", "pivot", "point")
+_KEPT = ("simulation", "limits", "contact.stiffness", "contact.damping")
+"""Where numbers stand that have no effect on steady running, or are those of the method."""
+_SWITCHES = ("schedule",)
+"""Keys of what lies between 0 and 1."""
+_ANY_MESH = 0.999
+"""Tolerance of contact forces with which any mesh is fine enough, and kept."""
+
+
+class Number(NamedTuple):
+    """A number of a drive file."""
+
+    path: str
+    """As `Drive.with_` takes it."""
+    value: float
+    step: float
+    """Change for which effects are told."""
+
+
+def sensitivity(
+    drive: Drive,
+    *,
+    of: str = "efficiency, least_slip_safety, largest_tension",
+    numbers: str | None = None,
+    at: float | None = None,
+    force_tolerance: float = 0.01,
+    progress: Report | None = None,
+) -> Result:
+    """Find how results of steady running change with the numbers of the drive file.
+
+    Effects are those of 1 % more of a number; of 1 mm more of a coordinate, and of 1 degree more of an angle. An
+    installed tension that the file asks for is kept: the length of the belt follows.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    of
+        Results, with commas between, such as "efficiency, pulley_slip[driven], hub_load": variables of a map, and in
+        brackets the pulley, span, tensioner or cause of one. "all" takes all of them.
+    numbers
+        Paths of numbers, with commas between, such as "belt.width, pulley[driven].radius". By default all numbers that
+        the drive has at that instant, but for zeros.
+    at
+        At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+    progress
+        Called now and then with a `Progress`.
+
+    Returns
+    -------
+    Result
+        Along ``result`` and ``number`` ``derivative``, in SI units, and ``effect``, the change of the result with 1 %
+        or 1 mm more; along ``number``, of which those of largest effect come first, ``relative_NAME`` of each result,
+        its change in per cent; along ``result`` its ``value``.
+
+    Raises
+    ------
+    ModelError
+        If a name is not known, or the drive cannot run steadily.
+    ConvergenceError
+        If there is no steady running.
+
+    Examples
+    --------
+    >>> found = bd.sensitivity(drive, of="efficiency", numbers="belt.installed_tension, pulley[driven].radius")
+    >>> found.dataset.effect.dims
+    ('result', 'number')
+    """
+    given = without_schedules(drive, drive.simulation.duration if at is None else at)[0]
+    chosen = _chosen(given, numbers)
+    rest = bring_to_stand(given)
+    run = steady_state(rest.drive, force_tolerance=force_tolerance)
+    values = _values(run)
+    wanted = {name: values[name] for name in _named(values, of)}
+    neighbours = _Neighbours(given, rest, run)
+    derivatives, warnings = np.full((len(wanted), len(chosen)), np.nan), list(run.warnings)
+    for place, number in enumerate(chosen):
+        if progress is not None:
+            progress(Progress(place, float(len(chosen)), 0.0, place, "operating points"))
+        try:
+            derivatives[:, place] = neighbours.derivatives(number, list(wanted))
+        except (ConvergenceError, ModelError) as error:
+            warnings.append(f"no derivative with respect to {number.path}: {error}")
+    return _result(drive, wanted, chosen, derivatives, warnings)
+
+
+def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
+    """The numbers of a drive that can be changed a little, with their paths; zeros only where they are coordinates.
+
+    Parameters
+    ----------
+    part
+        A drive, or a part of one.
+    path
+        Of the part.
+    """
+    for key, value in part.arguments.items():
+        yield from _numbers_in(value, f"{path}.{key}" if path else key)
+
+
+def _numbers_in(value: object, path: str) -> Iterator[Number]:
+    """The numbers in a value of a drive."""
+    key = path.rpartition(".")[2]
+    if path in _KEPT or key in _SWITCHES or isinstance(value, bool | int | str):
+        return
+    if isinstance(value, Part):
+        yield from numbers_of(value, path)
+    elif isinstance(value, float):
+        if key.partition("[")[0] in _COORDINATES:
+            yield Number(path, value, _MOVE)
+        elif value != 0.0:
+            yield Number(path, value, _PART * value)
+    elif isinstance(value, Sequence) and (len(value) == len(AXIS_NAMES) or any(isinstance(one, Part) for one in value)):
+        for number, one in enumerate(value, 1):
+            yield from _numbers_in(one, f"{path}[{entry_name(one) or number}]")
+
+
+def _chosen(drive: Drive, numbers: str | None) -> list[Number]:
+    """The numbers that are asked for."""
+    known = {one.path: one for one in numbers_of(drive)}
+    if numbers is None:
+        return list(known.values())
+    wanted = _listed(numbers)
+    for path in wanted:
+        if path not in known:
+            raise ModelError(
+                f"{path} is no number of this drive that can be changed a little. {suggest(path, list(known))}"
+            )
+    return [known[path] for path in wanted]
+
+
+def _listed(text: str) -> list[str]:
+    """Names with commas between."""
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _values(run: Run) -> dict[str, float]:
+    """Results of steady running by name, such as "efficiency" and "pulley_slip[driven]"."""
+    summary, found = summarize(run), dict[str, float]()
+    labels = labels_of(run.drive)
+    for name, values in values_by_name(run, summary).items():
+        dims, numbers = VARIABLES[name].dims, np.asarray(values)
+        if numbers.dtype.kind == "f" and len(dims) < 2:
+            inner = labels[dims[0]] if dims else []
+            parts = [f"{name}[{label}]" for label in inner] if dims else [name]
+            found |= {part: float(value) for part, value in zip(parts, np.atleast_1d(numbers), strict=True)}
+    return found
+
+
+def _named(values: dict[str, float], of: str) -> list[str]:
+    """The results that are asked for."""
+    if of == "all":
+        return list(values)
+    found = list[str]()
+    for wanted in _listed(of):
+        known = [name for name in values if wanted in (name, name.partition("[")[0])]
+        if not known:
+            raise ModelError(f"of = {wanted!r} is no result of steady running. {suggest(wanted, list(values))}")
+        found += known
+    return list(dict.fromkeys(found))
+
+
+class _Neighbours:
+    """Steady running of drives with one number changed a little, on the mesh of the given one.
+
+    Parameters
+    ----------
+    given
+        The drive, with constant speeds and torques.
+    rest
+        It at rest, with the length, or the take-up, that its installed tension asks for.
+    run
+        Its steady running.
+    """
+
+    def __init__(self, given: Drive, rest: Standing, run: Run) -> None:
+        self._given, self._rest, self._run = given, rest, run
+        self._tightening = np.inf
+        if given.belt.installed_tension is not None:
+            change = _CHANGE * rest.drive.belt_length
+            shorter, longer = (self._tension(_shortened(rest.drive, sense * change)) for sense in (1.0, -1.0))
+            self._tightening = (shorter - longer) / (2.0 * change)
+
+    def derivatives(self, number: Number, names: Sequence[str]) -> FloatArray:
+        """Derivatives of results with respect to a number, by central differences of the steady states."""
+        change = _CHANGE * number.step / _PART
+        up, down = (_values(self._at(number.path, number.value + sense * change)) for sense in (1.0, -1.0))
+        return np.array([(up[name] - down[name]) / (2.0 * change) for name in names])
+
+    def _at(self, path: str, value: float) -> Run:
+        """Steady running with another value of a number."""
+        wanted, drive = self._rest.tension, self._rest.drive
+        if path == "belt.installed_tension":
+            wanted *= value / float(self._given.belt.installed_tension or value)
+        else:
+            drive = drive.with_({path: value})
+        if np.isfinite(self._tightening):
+            drive = _shortened(drive, (wanted - self._tension(drive)) / self._tightening)
+        run = steady_state(drive, force_tolerance=_ANY_MESH, start=self._run)
+        if run.dataset.sizes["node"] != self._run.dataset.sizes["node"]:
+            raise ConvergenceError("Newton's method does not follow so small a change.")
+        return run
+
+    def _tension(self, drive: Drive) -> float:
+        """At rest, on the same mesh."""
+        return stand_like(drive, self._rest).tension
+
+
+def _shortened(drive: Drive, distance: float) -> Drive:
+    """A drive with a shorter belt or, where that is given, with more take-up, m."""
+    if any(one.kind == "fixed" for one in drive.tensioners):
+        return drive.replace(tensioner=take_up(drive.completed, distance))
+    return drive.with_({"belt.length": drive.belt_length - distance})
+
+
+def _result(
+    drive: Drive,
+    values: dict[str, float],
+    numbers: Sequence[Number],
+    derivatives: FloatArray,
+    warnings: Sequence[str],
+) -> Result:
+    """The table, with the numbers of largest effect first."""
+    found, units = np.array(list(values.values())), [VARIABLES[name.partition("[")[0]].units for name in values]
+    effects = derivatives * np.array([number.step for number in numbers])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.where(found[:, None] == 0.0, np.nan, 100.0 * effects / found[:, None])
+    order = np.argsort(-np.max(np.nan_to_num(np.abs(relative)), axis=0), kind="stable")
+    both = ("result", "number")
+    variables: dict[str, tuple[Variable, ArrayLike]] = {
+        "value": (Variable(("result",), "1", "Value, in the unit of the result"), found),
+        "derivative": (
+            Variable(both, "1", "Derivative of the result by the number, in SI units"),
+            derivatives[:, order],
+        ),
+        "effect": (Variable(both, "1", "Change of the result with 1 % or 1 mm more"), effects[:, order]),
+    }
+    for name, changes in zip(values, relative[:, order], strict=True):
+        variables[f"relative_{name}"] = Variable(("number",), "%", name), changes
+    coordinates: dict[str, tuple[Variable, ArrayLike]] = {
+        "result": (Variable(("result",), "1", "Result", "str"), list(values)),
+        "number": (Variable(("number",), "1", "1 % or 1 mm more of", "str"), [numbers[k].path for k in order]),
+        "unit": (Variable(("result",), "1", "Unit", "str"), ["" if unit == "1" else unit for unit in units]),
+    }
+    return build_result("sensitivity", drive, variables, coordinates, warnings)

@@ -1,0 +1,109 @@
+"""Sensitivities against closed forms, against running states further away, and by what changes nothing."""
+
+import numpy as np
+import pytest
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.results import Result, summarize
+from beltdyn.solve.sensitivity import numbers_of, sensitivity
+from beltdyn.solve.steady import steady_state
+
+TENSION = 600.0
+SPANS = "driver-driven", "driven-driver"
+
+
+@pytest.fixture(scope="module")
+def loaded() -> Drive:
+    """With an installed tension, so that the belt's length is found."""
+    drive = better(loaded_two_pulley())
+    belt = drive.belt.replace(length=None, installed_tension=TENSION)
+    return drive.replace(belt=belt)
+
+
+@pytest.fixture(scope="module")
+def found(loaded: Drive) -> Result:
+    return sensitivity(loaded, of="all")
+
+
+def derivative(found: Result, result: str, number: str) -> float:
+    return float(found.dataset.derivative.sel(result=result, number=number))
+
+
+def test_tensions_differ_by_torque_over_radius(found: Result, loaded: Drive) -> None:
+    """The torque of the load acts against the turning; within what bending moments take at a thick belt's arc ends."""
+    slack, tight = (derivative(found, f"span_tension[{span}]", "pulley[driven].torque.value") for span in SPANS)
+    assert (slack - tight) * loaded.radii[1] == pytest.approx(1.0, rel=0.01)
+    assert derivative(found, "shaft_torque[driven]", "pulley[driven].torque.value") == pytest.approx(1.0, rel=1e-6)
+
+
+def test_creep_goes_with_the_inverse_of_the_stiffness(found: Result) -> None:
+    """Elastic creep is the difference of the tensions over EA, within the strain of 6 %."""
+    effect, value = (found.dataset[name].sel(result="elastic_creep[driven]") for name in ("effect", "value"))
+    assert float(effect.sel(number="belt.youngs_modulus") / value) == pytest.approx(-0.01, rel=TENSION / 1e4)
+
+
+def test_the_length_follows_so_that_the_installed_tension_is_kept(found: Result) -> None:
+    """A belt of the same length would change its tension by as much as its stiffness."""
+    for span in SPANS:
+        effect = found.dataset.effect.sel(result=f"span_tension[{span}]", number="belt.youngs_modulus")
+        assert abs(float(effect)) < 1e-3 * TENSION
+
+
+@pytest.mark.parametrize("axis", [1, 2])
+def test_a_drive_that_is_moved_as_a_whole_stays_as_it_is(found: Result, axis: int) -> None:
+    """The centers' derivatives cancel each other."""
+    parts = [found.dataset.derivative.sel(number=f"pulley[{name}].center[{axis}]") for name in ("driver", "driven")]
+    for name in (*(f"span_tension[{span}]" for span in SPANS), "hub_load[driver]", "pulley_slip[driven]"):
+        one, other = (float(part.sel(result=name)) for part in parts)
+        assert one == pytest.approx(-other, rel=1e-4, abs=1e-3)
+
+
+@pytest.mark.parametrize("path", ["belt.youngs_modulus", "contact.friction", "pulley[driven].torque.value"])
+def test_against_differences_over_larger_steps(path: str) -> None:
+    """By Richardson's extrapolation from 0.2 and 0.1 per cent, to 1e-5 of the derivative, or of result over number."""
+    drive = better(loaded_two_pulley())
+    names = [f"span_tension[{SPANS[0]}]", "hub_load[driver]", "pulley_slip[driven]", "slip_safety[driven]"]
+    table, run = sensitivity(drive, of=", ".join(names), numbers=path).dataset, steady_state(drive)
+    value = next(one.value for one in numbers_of(drive) if one.path == path)
+
+    def at(part: float) -> FloatArray:
+        summary = summarize(steady_state(drive.with_({path: value * (1.0 + part)}), start=run))
+        driver, driven = summary.pulleys
+        return np.array([summary.spans[0].tension, driver.hub_load, driven.slip, driven.margin])
+
+    wide, narrow = ((at(part) - at(-part)) / (2.0 * part * value) for part in (2e-3, 1e-3))
+    expected = (4.0 * narrow - wide) / 3.0
+    allowed = 1e-5 * np.maximum(np.abs(expected), np.abs(table.value.values / value))
+    assert np.all(np.abs(table.derivative.values[:, 0] - expected) <= allowed)
+
+
+def test_the_largest_effect_comes_first(found: Result) -> None:
+    """Of all results, in per cent of them."""
+    changes = [found.dataset[f"relative_{name}"].values for name in found.dataset.result.values]
+    largest = np.max(np.nan_to_num(np.abs(changes)), axis=0)
+    assert np.all(np.diff(largest) <= 0.0)
+    slip = found.dataset.sel(result="pulley_slip[driven]")
+    np.testing.assert_allclose(found.dataset["relative_pulley_slip[driven]"], 100.0 * slip.effect / slip.value)
+
+
+def test_numbers_of_a_drive(loaded: Drive) -> None:
+    paths = {one.path: one for one in numbers_of(loaded)}
+    assert {"belt.installed_tension", "contact.friction", "pulley[driven].center[2]"} <= paths.keys()
+    assert not any(path.startswith(("simulation", "contact.stiffness")) for path in paths)
+    assert paths["belt.installed_tension"].step == pytest.approx(0.01 * TENSION)
+    assert paths["pulley[driven].center[1]"].step == 1e-3
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"of": "efficency"}, "efficiency"),
+        ({"numbers": "belt.widht"}, "belt.width"),
+    ],
+)
+def test_wrong_names_are_told(loaded: Drive, options: dict[str, str], said: str) -> None:
+    with pytest.raises(ModelError, match=said):
+        sensitivity(loaded, **options)  # type: ignore[arg-type]
