@@ -19,7 +19,7 @@ import examples_accessory_drive as accessory
 from PIL import Image
 
 import beltdyn as bd
-from beltdyn.cli.summary import show_summary
+from beltdyn.cli.result import show_result
 
 PICTURES = Path(__file__).parent / "_static" / "examples"
 
@@ -91,7 +91,7 @@ def make(name: str, folder: Path) -> None:
     example, run = EXAMPLES[name], simulated(name)
     bd.plot.save_layout(run.drive, folder / "layout.png")
     bd.plot.save_all(run, folder, example.figures)
-    show_summary(run)
+    show_result(run)
     rows = [
         (number.what, f"{number.hand:.5g}", f"{number.found:.5g}", f"{number.found / number.hand - 1.0:+.2%}")
         for number in example.numbers(run)

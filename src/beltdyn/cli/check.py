@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from beltdyn.cli.console import aligned, show, show_facts, show_table, show_warnings
+from beltdyn.cli.console import show, show_facts, show_table, show_warnings
 from beltdyn.cli.progress import progress_bar
+from beltdyn.parts.columns import aligned
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive, Installation

@@ -1,7 +1,6 @@
 """Where the command line writes, and in which style."""
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from rich.console import Console
 from rich.measure import Measurement
@@ -9,8 +8,6 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-_NOTHING = 1e-9
-"""Size of numbers, in any unit shown, that are rounding."""
 _WIDEST = 200
 """Columns of the widest table that is not broken."""
 
@@ -18,14 +15,6 @@ _WIDEST = 200
 def show(text: str = "") -> None:
     """Write a line on standard output, as it is."""
     Console().print(text, markup=False, highlight=False, soft_wrap=True)
-
-
-def aligned(values: Sequence[float], digits: int = 4) -> list[str]:
-    """Write the numbers of a column with as many decimals each, so that the largest has so many digits; – for none."""
-    largest = max((abs(value) for value in values if math.isfinite(value)), default=0.0)
-    whole = math.floor(math.log10(largest)) + 1 if largest > _NOTHING else digits
-    decimals = max(digits - whole, 0)
-    return [f"{value:z.{decimals}f}" if math.isfinite(value) else "–" for value in values]
 
 
 def show_table(title: str, headings: Iterable[str], rows: Iterable[Iterable[str]]) -> None:

@@ -37,6 +37,7 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.installation import Installation, describe, install, tensioner_balances
+from beltdyn.model.limits import Limits
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
@@ -68,6 +69,7 @@ __all__ = [
     "InductionMotor",
     "Installation",
     "Isolator",
+    "Limits",
     "LoadTable",
     "Motor",
     "MovingTensioner",

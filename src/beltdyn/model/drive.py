@@ -19,6 +19,7 @@ from beltdyn.model.completion import Completed, Given, complete, loaded, take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
+from beltdyn.model.limits import Limits
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.routing import radii, span_names
@@ -35,7 +36,8 @@ class Drive(Part):
     """A belt drive: what is given, checked, and what follows from it.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner` and
-    `end` (lists) and `simulation`, each a part or a mapping of its arguments, `gravity`, and `name` and `description`.
+    `end` (lists), `simulation` and `limits`, each a part or a mapping of its arguments, `gravity`, and `name` and
+    `description`.
 
     The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
     the drive: `belt_length`, also of a belt of given tension; `path` and `centers`, where fixed tensioners hold their
@@ -55,6 +57,9 @@ class Drive(Part):
         (), alias="end", description="the groups [[end]], first and second, of a belt that is not closed"
     )
     simulation: Simulation = Field(description="the group [simulation]")
+    limits: Limits = Field(
+        default_factory=Limits, description="the group [limits], what results are judged by; nothing is by default"
+    )
     gravity: tuple[Acceleration, Acceleration] = Field(
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
     )
@@ -294,8 +299,9 @@ class Drive(Part):
 
     @property
     def data(self) -> dict[str, Any]:
-        """The groups and keys of a drive file, in SI units and with every default spelled out."""
-        return self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        """The groups and keys of a drive file, in SI units and with every default spelled out; without empty groups."""
+        data = self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        return {key: value for key, value in data.items() if value != {}}
 
 
 def _from_text(text: str) -> Drive:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks import Finding
 from beltdyn.results.layout import Layout
+from beltdyn.results.limits import KeyNumber, key_numbers
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
 from beltdyn.results.provenance import provenance
 from beltdyn.results.recorder import FileRecorder, MemoryRecorder, Recorder, Status
@@ -28,6 +29,7 @@ __all__ = [
     "Balance",
     "FileRecorder",
     "Finding",
+    "KeyNumber",
     "Layout",
     "MemoryRecorder",
     "PulleySummary",
@@ -45,6 +47,7 @@ __all__ = [
     "derived",
     "describe_size",
     "expected_bytes",
+    "key_numbers",
     "mesh_error_attribute",
     "open_result",
     "open_run",

@@ -1,13 +1,15 @@
-"""The summary of a run on the screen: 100 columns, and as few lines as a drive of seven pulleys needs to fit."""
+"""The sheet of a run: pulleys, spans, power, tensioners and what the solver did, in the words of an engineer."""
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
-from beltdyn.cli.console import aligned, show, show_facts, show_table, show_warnings
-
-if TYPE_CHECKING:
-    from beltdyn.results import Resolution, Run, Summary
+from beltdyn.parts.columns import aligned
+from beltdyn.parts.quantity import RPM
+from beltdyn.results.recorded import attribute
+from beltdyn.results.resolution import Resolution
+from beltdyn.results.run import Run
+from beltdyn.results.sheet_parts import Facts, Sheet, Table
+from beltdyn.results.summary import Summary, summarize
 
 _LARGEST_MARGIN = 100.0
 _LEAST_SHARE = 0.01
@@ -18,32 +20,34 @@ _KILOWATTS = 1e4
 """Power, W, from which on powers are written in kW."""
 
 
-def show_summary(run: "Run") -> None:
-    """Write what a user wants to know of a run first."""
-    from beltdyn.results import summarize
+def run_sheet(run: Run) -> Sheet:
+    """Sum up a run in tables and facts: what an engineer wants to know of it first.
 
+    Parameters
+    ----------
+    run : Run
+        The run.
+
+    Returns
+    -------
+    Sheet
+        Of a run without outputs it says so.
+    """
     if run.outputs == 0:
-        show("Nothing was computed before the run ended.")
-        return
+        return Sheet("Nothing was computed before the run ended.", ())
     summary = summarize(run)
-    if run.drive.name:
-        show(f"\n{run.drive.name}")
     over = _window(summary)
-    show_table(f"\nPulleys{over}", *_pulleys(summary))
-    show_table(
-        f"\nSpans{over}",
+    spans = Table(
+        f"Spans{over}",
         ("", "tension N", "least N", "largest N", "belt speed m/s"),
-        _spans(summary),
+        tuple(_spans(summary)),
     )
-    show()
-    show_facts([*_power(summary), *_tensioners(summary), *_run_up(run), *_solver(summary)])
-    show_warnings(summary.warnings)
+    facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_solver(summary)))
+    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, facts))
 
 
-def _run_up(run: "Run") -> list[tuple[str, str]]:
+def _run_up(run: Run) -> list[tuple[str, str]]:
     """What goes before a run-up, and what does not change in it."""
-    from beltdyn.results.recorded import attribute
-
     with run.recorded() as recorded:
         said, left = recorded.attrs, attribute(recorded, "settling_left", math.nan)
         time, held = attribute(recorded, "settling_time", 0.0), str(said.get("held", ""))
@@ -51,14 +55,12 @@ def _run_up(run: "Run") -> list[tuple[str, str]]:
     return [*([("settling", before)] if time else []), *([("held constant", held)] if held else [])]
 
 
-def _pulleys(summary: "Summary") -> tuple[tuple[str, ...], Iterable[tuple[str, ...]]]:
-    """Headings and rows of the table of pulleys; powers in kW where they are large."""
-    from beltdyn.parts.quantity import RPM
-
+def _pulleys(title: str, summary: Summary) -> Table:
+    """The table of pulleys; powers in kW where they are large."""
     pulleys = summary.pulleys
     unit, watts = ("kW", 1e3) if max(abs(one.power) for one in pulleys) >= _KILOWATTS else ("W", 1.0)
     headings = ("", "rpm", "rad/s", "torque\nN m", f"power\n{unit}", "slip", "elastic", "wrap", "sliding", "margin")
-    return (*headings, "hub load\nN"), zip(
+    columns = (
         (one.name for one in pulleys),
         aligned([RPM * one.speed for one in pulleys], 5),
         aligned([one.speed for one in pulleys], 5),
@@ -70,11 +72,11 @@ def _pulleys(summary: "Summary") -> tuple[tuple[str, ...], Iterable[tuple[str, .
         (f"{math.degrees(one.sliding_arc):.1f}°" for one in pulleys),
         (_margin(one.margin) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
-        strict=True,
     )
+    return Table(title, (*headings, "hub load\nN"), tuple(zip(*columns, strict=True)))
 
 
-def _window(summary: "Summary") -> str:
+def _window(summary: Summary) -> str:
     """From when to when means are taken, and of how many turns of the belt."""
     if not summary.end > summary.start:
         return ""
@@ -94,7 +96,7 @@ def _margin(margin: float) -> str:
     return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
 
 
-def _spans(summary: "Summary") -> Iterable[tuple[str, ...]]:
+def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:
     """Tensions with as many decimals in all columns.
 
     A span has no tension and no speed while the belt has left one of its pulleys, of which a warning tells.
@@ -114,7 +116,7 @@ def _watts(power: float, digits: int = 4) -> str:
     return f"{value:.{digits}g} {unit}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f} {unit}"
 
 
-def _power(summary: "Summary") -> list[tuple[str, str]]:
+def _power(summary: Summary) -> list[tuple[str, str]]:
     """Efficiency and losses by cause, where power goes in."""
     balance = summary.balance
     if not balance.power_in > 0.0:
@@ -129,14 +131,14 @@ def _power(summary: "Summary") -> list[tuple[str, str]]:
     ]
 
 
-def _givers(summary: "Summary") -> str:
+def _givers(summary: Summary) -> str:
     """Which shafts put power in, where they are several."""
     givers = [pulley for pulley in summary.pulleys if pulley.power > _LEAST_SHARE * summary.balance.power_in]
     parts = ", ".join(f"{pulley.name} {_watts(pulley.power)}" for pulley in givers)
     return f" ({parts})" if len(givers) > 1 else ""
 
 
-def _tensioners(summary: "Summary") -> list[tuple[str, str]]:
+def _tensioners(summary: Summary) -> list[tuple[str, str]]:
     """Where tensioners stand, and how far they move while they do."""
     facts = []
     for one in summary.tensioners:
@@ -147,7 +149,7 @@ def _tensioners(summary: "Summary") -> list[tuple[str, str]]:
     return facts
 
 
-def _solver(summary: "Summary") -> list[tuple[str, str]]:
+def _solver(summary: Summary) -> list[tuple[str, str]]:
     """What the solver did: of steady running, which takes no steps, the mesh and the time; at rest the time."""
     steps = f"{summary.steps}, and {summary.rejected_steps} tried in vain"
     facts = [
@@ -161,13 +163,13 @@ def _solver(summary: "Summary") -> list[tuple[str, str]]:
     return [*(facts if summary.steps else facts[:moves]), *([("computing time", took)] if known else [])]
 
 
-def _pace(summary: "Summary") -> str:
+def _pace(summary: Summary) -> str:
     """Computing time for a simulated second; none of what is not simulated over time."""
     pace = summary.computing_time_per_second
     return "" if math.isnan(pace) or not summary.steps else f", {pace:.3g} s for each simulated second"
 
 
-def _mesh(resolution: "Resolution") -> str:
+def _mesh(resolution: Resolution) -> str:
     """The estimated errors of the mesh, of which some may not be known."""
     known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
     errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} > 100%" for name, error in known.items())

@@ -1,0 +1,158 @@
+"""The numbers that decide about a drive, each where it is worst, beside the limits that its file states."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from beltdyn.analyses import RUN, STATIC
+from beltdyn.arrays import FloatArray
+from beltdyn.results.means import pulley_means
+from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.result import Result
+from beltdyn.results.run import Run
+from beltdyn.results.shown import in_words
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, slots=True)
+class KeyNumber:
+    """A number that decides about a drive, where it is worst.
+
+    Attributes
+    ----------
+    key : str
+        Key of its limit in the group ``[limits]`` of the drive file.
+    value : float
+        The number; NaN where there is none, as the margin of a drive without load.
+    unit : str
+        Its SI unit, "1" for a pure number.
+    where : str
+        Pulley or span, and when or at which operating point.
+    limit : float or None
+        What the drive file states, or None.
+    """
+
+    key: str
+    value: float
+    unit: str
+    where: str
+    limit: float | None
+
+    @property
+    def name(self) -> str:
+        """The key in words."""
+        return self.key.replace("_", " ").replace("margin", "capstan margin")
+
+    @property
+    def at_most(self) -> bool:
+        """Whether the limit is one from above."""
+        return self.key.startswith("largest")
+
+    @property
+    def passes(self) -> bool | None:
+        """Whether the number keeps to the limit; None without a limit or a number."""
+        if self.limit is None or np.isnan(self.value):
+            return None
+        return self.value <= self.limit if self.at_most else self.value >= self.limit
+
+
+def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
+    """Give the numbers that decide about a drive, and judge them by its limits.
+
+    Of a run, hub loads and tensions are the worst at any output, slip and capstan margin the worst of the means over
+    its end; of operating points all are the worst of all points.
+
+    Parameters
+    ----------
+    result : Result
+        A run with at least one output, a drive at rest, a map or a duty table.
+
+    Returns
+    -------
+    tuple of KeyNumber
+        Those that the result knows. None of other results: a traction curve goes on until the belt slips.
+
+    Examples
+    --------
+    >>> [number.name for number in bd.results.key_numbers(run)][:2]
+    ['largest slip', 'largest hub load']
+    """
+    limits, found = result.drive.limits, _FINDERS.get(result.kind)
+    return tuple(KeyNumber(*one, getattr(limits, one[0])) for one in found(result)) if found else ()
+
+
+Found = tuple[str, float, str, str]
+"""Key, value, unit, and where."""
+
+
+def _of_run(run: Result) -> Iterator[Found]:
+    assert isinstance(run, Run)
+    run.require_output()
+    with run.recorded() as recorded:
+        means = pulley_means(recorded, run.drive)
+        hub_load = np.linalg.norm(np.asarray(recorded["hub_force"]), axis=2)
+        tension = np.asarray(recorded["span_tension"])
+        pulleys, spans, time = names(recorded, "pulley"), names(recorded, "span"), _times(recorded)
+    over = "" if len(time) == 1 else "mean at the end"
+    yield _worst("largest_slip", np.abs([[one.slip for one in means]]), "1", [over], pulleys)
+    yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
+    yield _worst("largest_tension", tension, "N", time, spans)
+    yield _worst("least_tension", tension, "N", time, spans)
+    yield _worst("least_margin", np.array([[one.margin for one in means]]), "1", [over], pulleys)
+
+
+def _times(recorded: Recorded) -> list[str]:
+    """The outputs in words; nothing where there is but one."""
+    time = np.asarray(recorded["time"])
+    return [""] if len(time) == 1 else [f"at {one:.4g} s" for one in time]
+
+
+_OF_TABLES = {
+    "largest_slip": ("pulley_slip", "pulley"),
+    "largest_hub_load": ("hub_load", "pulley"),
+    "largest_tension": ("span_tension", "span"),
+    "least_tension": ("span_tension", "span"),
+    "least_margin": ("slip_safety", "pulley"),
+}
+"""Key -> variable of operating points, and the dimension of its names."""
+
+
+def _of_table(result: Result) -> Iterator[Found]:
+    dataset = result.dataset
+    places = _places(dataset)
+    for key, (name, of) in _OF_TABLES.items():
+        if name in dataset:
+            variable = dataset[name].transpose(..., of)
+            values = variable.values.reshape(len(places), -1)
+            values = np.abs(values) if key == "largest_slip" else values
+            yield _worst(key, values, str(variable.attrs["units"]), places, list(map(str, dataset[of].values)))
+
+
+def _places(dataset: "xr.Dataset") -> list[str]:
+    """The operating points in words, in the order of the table; one without words at rest."""
+    axes = [dataset[name] for name in str(dataset.attrs.get("axes", "")).split()]
+    shape = [axis.size for axis in axes]
+    return [
+        ", ".join(f"{axis.name} {in_words(axis[number])}" for axis, number in zip(axes, index, strict=True))
+        for index in np.ndindex(*shape)
+    ]
+
+
+def _worst(key: str, values: FloatArray, unit: str, places: Sequence[str], of: Sequence[str]) -> Found:
+    """The worst of values of shape (places, names), and where it is."""
+    if not np.isfinite(values).any():
+        return key, np.nan, unit, ""
+    flat = int(np.nanargmax(values) if key.startswith("largest") else np.nanargmin(values))
+    place, name = np.unravel_index(flat, values.shape)
+    return key, float(values.flat[flat]), unit, ", ".join(filter(None, (of[int(name)], places[int(place)])))
+
+
+_FINDERS: dict[str, Callable[[Result], Iterator[Found]]] = {
+    RUN: _of_run,
+    **dict.fromkeys((STATIC, "map", "duty"), _of_table),
+}
+"""Kind of result -> what finds its key numbers."""

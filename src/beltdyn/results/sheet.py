@@ -1,0 +1,67 @@
+"""What is written of a result for a reader: tables and facts, as the screen, notebooks and reports show them."""
+
+import re
+from typing import TYPE_CHECKING
+
+from beltdyn.parts.columns import aligned
+from beltdyn.results.result import Result
+from beltdyn.results.run import Run
+from beltdyn.results.run_sheet import run_sheet
+from beltdyn.results.sheet_parts import Facts, Sheet, Table
+from beltdyn.results.shown import in_words, shown_unit
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_DIGITS = 5
+_FIRST_PART = re.compile("[,:]")
+_AMONG_WARNINGS = frozenset({"failure"})
+"""Variables of long texts, of which warnings tell."""
+
+
+def sheet(result: Result) -> Sheet:
+    """Give the sheet of a result: the summary of a run; of others single numbers, and a table for what has names.
+
+    Parameters
+    ----------
+    result : Result
+        The result of any analysis.
+
+    Returns
+    -------
+    Sheet
+        Without its warnings.
+    """
+    if isinstance(result, Run):
+        return run_sheet(result)
+    dataset = result.dataset
+    variables = dataset.data_vars.values()
+    numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]
+    axes = tuple(str(dataset.attrs.get("axes", "")).split())
+    tables = []
+    for dims in dict.fromkeys([axes, *((str(dimension),) for dimension in dataset.dims)]):
+        columns = [one for one in variables if dims and one.dims == dims and one.name not in _AMONG_WARNINGS]
+        if columns and all(dimension in dataset.coords for dimension in dims):
+            labels = [one for one in dataset.coords.values() if one.dims and set(one.dims) <= set(dims)]
+            shown = [*(one.broadcast_like(columns[0]) for one in labels), *columns]
+            rows = zip(*map(_column, shown), strict=True)
+            tables.append(Table("", tuple(map(_heading, shown)), tuple(rows)))
+    return Sheet(str(dataset.attrs["title"]), (*([Facts(tuple(numbers))] if numbers else []), *tables))
+
+
+def _single(variable: "xr.DataArray") -> str:
+    """A number with its unit, with five digits."""
+    return f"{_column(variable)[0]} {shown_unit(variable)[0]}" if variable.dtype.kind == "f" else in_words(variable)
+
+
+def _heading(variable: "xr.DataArray") -> str:
+    """The first part of its name up to a comma or a colon, and its unit."""
+    name = str(variable.attrs.get("long_name", variable.name))
+    return f"{_FIRST_PART.split(name)[0]}\n{shown_unit(variable)[0]}".rstrip()
+
+
+def _column(variable: "xr.DataArray") -> list[str]:
+    """The numbers of a variable, with as many decimals each, or its words."""
+    if variable.dtype.kind != "f":
+        return [str(one) for one in variable.values.ravel()]
+    return aligned((shown_unit(variable)[1] * variable.values.ravel()).tolist(), _DIGITS)

@@ -1,0 +1,48 @@
+"""Parts of a sheet, which is what is written of a result for a reader."""
+
+from typing import NamedTuple
+
+
+class Table(NamedTuple):
+    """A table whose first column holds names.
+
+    Attributes
+    ----------
+    title : str
+        What stands above it, or nothing.
+    headings : tuple of str
+        Name and unit of each column, in two lines where a column is narrow.
+    rows : tuple of tuple of str
+        Its rows.
+    """
+
+    title: str
+    headings: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+class Facts(NamedTuple):
+    """Names and what they are.
+
+    Attributes
+    ----------
+    facts : tuple of (str, str)
+        Such as ``("efficiency", "96.04%")``.
+    """
+
+    facts: tuple[tuple[str, str], ...]
+
+
+class Sheet(NamedTuple):
+    """What is written of a result.
+
+    Attributes
+    ----------
+    title : str
+        The name of the drive, or what the result is; may be empty.
+    parts : tuple of Table or Facts
+        In the order in which they are read.
+    """
+
+    title: str
+    parts: tuple[Table | Facts, ...]

@@ -1,0 +1,42 @@
+"""In which units numbers of results are shown to a reader."""
+
+import math
+from typing import TYPE_CHECKING
+
+from beltdyn.parts.quantity import RPM
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MILLIMETRES = 0.1
+"""Size of lengths, m, below which they are written in mm."""
+_SHOWN = {"rad": ("°", math.degrees(1.0)), "rad/s": ("rpm", RPM), "1": ("", 1.0)}
+
+
+def shown_unit(variable: "xr.DataArray") -> tuple[str, float]:
+    """Give the unit in which a variable is shown, and the factor on its numbers.
+
+    Parameters
+    ----------
+    variable : DataArray
+        A variable of a result.
+
+    Returns
+    -------
+    unit : str
+        rpm for rad/s, degrees for rad, mm for short lengths, nothing for a pure number; others as they are.
+    factor : float
+        What its numbers are multiplied by.
+    """
+    unit = str(variable.attrs.get("units", ""))
+    if unit == "m" and not (abs(variable) >= _MILLIMETRES).any():
+        return "mm", 1e3
+    return _SHOWN.get(unit, (unit, 1.0))
+
+
+def in_words(variable: "xr.DataArray") -> str:
+    """Write a single value with its unit, such as "1500 rpm"; a text as it is."""
+    if variable.dtype.kind != "f":
+        return str(variable.item())
+    unit, factor = shown_unit(variable)
+    return f"{factor * float(variable):.4g} {unit}".rstrip()

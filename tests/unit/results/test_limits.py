@@ -1,0 +1,62 @@
+"""Key numbers of results, against values put into datasets by hand."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from beltdyn.model import Drive
+from beltdyn.results import KeyNumber, Result, Run, key_numbers
+
+LIMITS = {"largest_slip": 0.01, "largest_hub_load": 130.0, "least_margin": 3.0}
+
+
+def by_key(result: Result) -> dict[str, KeyNumber]:
+    return {one.key: one for one in key_numbers(result)}
+
+
+def test_a_run_is_judged_where_it_is_worst(make_run: Callable[..., Run]) -> None:
+    hub_force = np.zeros((101, 2, 2))
+    hub_force[40, 1] = (120.0, -50.0)
+    run = make_run(hub_force=hub_force)
+    drive = run.drive.replace(limits=LIMITS)
+    found = by_key(Run(run.dataset, drive))
+    assert found["largest_hub_load"].value == pytest.approx(130.0)
+    assert found["largest_hub_load"].where == f"driven, at {float(run.dataset['time'][40]):.4g} s"
+    assert found["largest_hub_load"].passes
+    assert found["largest_slip"].value == pytest.approx(0.005, rel=1e-3)
+    assert found["largest_slip"].where == "driven, mean at the end"
+    assert found["least_margin"].passes is False
+    assert found["least_tension"].value == run.dataset["span_tension"].values.min()
+    assert found["least_tension"].passes is None
+
+
+def test_without_load_there_is_no_margin(make_run: Callable[..., Run]) -> None:
+    """Equal tensions at both ends of an arc."""
+    run = make_run(span_tension=np.full((101, 2), 45.0))
+    margin = by_key(Run(run.dataset, run.drive.replace(limits=LIMITS)))["least_margin"]
+    assert math.isnan(margin.value)
+    assert margin.passes is None
+    assert margin.name == "least capstan margin"
+
+
+def test_operating_points_are_judged_over_all(drive: Drive) -> None:
+    units = {"units": "N"}
+    dataset = xr.Dataset(
+        {
+            "hub_load": (("speed", "pulley"), [[10.0, 20.0], [40.0, np.nan]], units),
+            "pulley_slip": (("speed", "pulley"), [[0.0, -0.02], [0.0, 0.01]], {"units": "1"}),
+        },
+        {"speed": ("speed", [10.0, 100.0 * math.pi], {"units": "rad/s"}), "pulley": ["driver", "driven"]},
+        {"kind": "map", "axes": "speed"},
+    )
+    found = by_key(Result(dataset, drive.replace(limits=LIMITS)))
+    assert found.keys() == {"largest_hub_load", "largest_slip"}
+    assert (found["largest_hub_load"].value, found["largest_hub_load"].where) == (40.0, "driver, speed 3000 rpm")
+    assert (found["largest_slip"].value, found["largest_slip"].passes) == (0.02, False)
+
+
+def test_a_traction_curve_goes_on_until_the_belt_slips(drive: Drive) -> None:
+    assert key_numbers(Result(xr.Dataset(attrs={"kind": "traction"}), drive)) == ()
