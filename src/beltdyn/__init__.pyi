@@ -58,6 +58,7 @@ from .model import (
     read_catalogue,
     tensioner_balances,
 )
+from .report import write_report
 from .results import (
     VARIABLES,
     Balance,
@@ -211,4 +212,5 @@ __all__ = [
     "theory",
     "traction",
     "write_csv",
+    "write_report",
 ]

@@ -11,7 +11,7 @@ from cyclopts.validators import Number
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.batch import analyse_several
-from beltdyn.cli.output import analyse_to, doubt, ended, require_output, write_tables
+from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output, write_extras
 
 SHARED = ("output", "progress", "overwrite", "start")
 """Parameters of functions that every command fills in itself, or leaves alone."""
@@ -28,6 +28,8 @@ jobs
     How many drives to compute at a time; by default as many as there are cores.
 csv
     Write plain tables too, into a folder beside the result file, named after it with -tables.
+report
+    Write a report too: a page beside the result file, to mail, to look at and to print.
 strict
     End with an error (exit code 4) where a warning makes results doubtful; they are kept.
 force
@@ -57,20 +59,20 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         output: Annotated[Path | None, Option(alias="-o")] = None,
         jobs: Annotated[int | None, Option(alias="-j", validator=Number(gte=1))] = None,
         csv: Annotated[bool, Option(negative="")] = False,
+        report: Annotated[bool, Option(negative="")] = False,
         strict: Annotated[bool, Option(negative="")] = False,
         force: Annotated[bool, Option(negative="")] = False,
         **options: Any,
     ) -> int:
-        files = (file, *more)
+        files, extras = (file, *more), Extras(csv, report)
         if more:
-            return analyse_several(analysis, files, output, jobs, csv=csv, strict=strict, force=force, **options)
+            return analyse_several(analysis, files, output, jobs, extras, strict=strict, force=force, **options)
         from beltdyn.model import load
 
         drive, path = load(file), output or analysis.result_file(file)
-        require_output(path, files, csv, force)
+        require_output(path, files, extras, force)
         result = analyse_to(analysis, drive, path, force, **options)
-        if csv:
-            write_tables(result, path, force)
+        write_extras(result, path, extras, force)
         return ended(result) or (doubt(result.warnings) if strict else 0)
 
     own = {

@@ -17,6 +17,7 @@ from beltdyn.cli.demo import demo
 from beltdyn.cli.new import new
 from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
+from beltdyn.cli.report import report
 from beltdyn.cli.schema import schema
 from beltdyn.errors import BeltdynError
 from beltdyn.signals import ending_in_order, exit_code
@@ -34,7 +35,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, check),
     *ANALYSES.values(),
-    *(plot, demo, paper, catalogue, schema),
+    *(plot, report, demo, paper, catalogue, schema),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_error, show_table, show_warnings
-from beltdyn.cli.output import doubt, require_output, show_leftovers, write_tables
+from beltdyn.cli.output import Extras, doubt, require_output, show_leftovers, write_extras
 from beltdyn.cli.progress import runs_bar
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
@@ -22,8 +22,8 @@ def analyse_several(
     files: Sequence[Path],
     folder: Path | None,
     jobs: int | None,
+    extras: Extras,
     *,
-    csv: bool,
     strict: bool,
     force: bool,
     **options: Any,
@@ -40,8 +40,8 @@ def analyse_several(
         Where to write the result files; by default beside the drive files.
     jobs
         How many at a time; by default as many as there are cores.
-    csv
-        Whether to write plain tables too.
+    extras
+        What is written beside each result file.
     strict
         Whether warnings are errors.
     force
@@ -63,7 +63,7 @@ def analyse_several(
     drives = _load_all(files)
     results = _result_files(analysis, files, folder)
     for path in results.values():
-        require_output(path, files, csv, force)
+        require_output(path, files, extras, force)
     if folder is not None:
         from beltdyn.results.atomic import make_folder
 
@@ -77,8 +77,8 @@ def analyse_several(
     _show_endings(ends, results)
     for path in results.values():
         show_leftovers(path)
-    if csv:
-        _write_all_tables(ends, results, force)
+    if any(extras):
+        _write_all_extras(ends, results, extras, force)
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
         show("Interrupted: what was computed is kept.")
         return exit_code()
@@ -139,12 +139,12 @@ def _numbers(end: "Ending") -> tuple[str, str, str, str]:
     return speed, f"{summary.steps}", f"{summary.wall_time:.3g} s", warnings
 
 
-def _write_all_tables(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path], force: bool) -> None:
-    """Write plain tables of all drives of which something was computed."""
-    from beltdyn.results import open_run
+def _write_all_extras(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path], extras: Extras, force: bool) -> None:
+    """Write tables and reports of all drives of which something was computed."""
+    from beltdyn.results import open_result
 
     for file, end in ends.items():
         if end.kept:
-            run = open_run(results[file])
-            write_tables(run, results[file], force)
-            run.dataset.close()
+            result = open_result(results[file])
+            write_extras(result, results[file], extras, force)
+            result.dataset.close()

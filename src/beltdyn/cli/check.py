@@ -193,10 +193,7 @@ def _tensioners(drive: "Drive", installation: "Installation") -> list[tuple[str,
 
 def _choices(drive: "Drive") -> list[tuple[str, str]]:
     """Numbers that the file leaves open, as they are chosen, with their reasons."""
-    return [
-        (choice.key, f"{choice.value:.4g} {choice.unit.replace('*', ' ')}".strip() + f": {choice.reason}")
-        for choice in drive.completed.choices
-    ]
+    return [(choice.key, choice.words) for choice in drive.completed.choices]
 
 
 def other_balances(drive: "Drive", installation: "Installation") -> list[str]:

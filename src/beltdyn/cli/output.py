@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_error
@@ -17,11 +17,27 @@ if TYPE_CHECKING:
 
 DOUBTFUL = 4
 
+
+class Extras(NamedTuple):
+    """What is written beside a result file.
+
+    Attributes
+    ----------
+    csv : bool
+        Plain tables, in a folder.
+    report : bool
+        A page.
+    """
+
+    csv: bool
+    report: bool
+
+
 _NOTHING_KEPT = "No results are kept."
 
 
-def require_output(path: Path, files: Iterable[Path], csv: bool, force: bool) -> None:
-    """Make sure that results and their tables would replace nothing but such, and never a drive file.
+def require_output(path: Path, files: Iterable[Path], extras: Extras, force: bool) -> None:
+    """Make sure that results, tables and reports would replace nothing but such, and never a drive file.
 
     Raises
     ------
@@ -35,8 +51,12 @@ def require_output(path: Path, files: Iterable[Path], csv: bool, force: bool) ->
     if path.resolve() in {file.resolve() for file in files}:
         raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
     require_replaceable(path, is_result, force)
-    if csv:
+    if extras.csv:
         require_tables(tables_folder(path), force)
+    if extras.report:
+        from beltdyn.report import report_file, require_report
+
+        require_report(report_file([path]), force)
 
 
 def tables_folder(path: Path) -> Path:
@@ -44,12 +64,18 @@ def tables_folder(path: Path) -> Path:
     return path.with_name(f"{path.stem}-tables")
 
 
-def write_tables(run: "Result", path: Path, force: bool) -> None:
-    """Write plain tables into a folder beside the result file, and name them; none of a run without outputs."""
+def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
+    """Write what is asked for beside a result file, and name it; nothing of a run without outputs."""
     from beltdyn.results import Run, write_csv
 
-    if not isinstance(run, Run) or run.outputs:
-        show(f"Tables: {', '.join(str(table) for table in write_csv(run, tables_folder(path), force))}")
+    if isinstance(result, Run) and not result.outputs:
+        return
+    if extras.csv:
+        show(f"Tables: {', '.join(str(table) for table in write_csv(result, tables_folder(path), force))}")
+    if extras.report:
+        from beltdyn.report import report_file, write_report
+
+        show(f"Report: {write_report(result, report_file([path]), force)}")
 
 
 def analyse_to(analysis: Analysis, drive: "Drive", path: Path, force: bool = False, **options: Any) -> "Result":

@@ -43,6 +43,11 @@ class Choice(NamedTuple):
     reason: str
     """Why it is chosen so, in a few words."""
 
+    @property
+    def words(self) -> str:
+        """The value with its unit, and the reason."""
+        return f"{self.value:.4g} {self.unit.replace('*', ' ')}".strip() + f": {self.reason}"
+
 
 class OnPath(NamedTuple):
     """A belt on its path, which `beltdyn.model.resolution` asks for its mesh."""

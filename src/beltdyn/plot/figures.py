@@ -54,11 +54,11 @@ def save_all(
     for result in results:
         if isinstance(result, Run):
             result.require_output()
-    known = [name for name, figure in FIGURES.items() if all(result.kind in figure.of for result in results)]
+    known = _known(results)
     if not known:
         kinds = " and ".join(dict.fromkeys(result.kind for result in results))
         raise ModelError(f"there is no figure of {kinds}. Look at its dataset: `bd.open_result(path).dataset`.")
-    chosen = tuple(figures) if figures is not None else tuple(name for name in known if _by_default(name, results))
+    chosen = chosen_by_default(results) if figures is None else tuple(figures)
     for name in chosen:
         if name not in FIGURES:
             raise ModelError(f"figure {name!r} is not known. Choose out of {', '.join(known)}.")
@@ -72,7 +72,22 @@ def save_all(
     return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]
 
 
-def _by_default(name: str, results: Sequence[Result]) -> bool:
-    """Whether a figure is drawn where none is chosen."""
-    figure = FIGURES[name]
-    return all(map(figure.by_default, results)) and (figure.compares or len(results) == 1)
+def chosen_by_default(results: Sequence[Result]) -> tuple[str, ...]:
+    """Give the names of the figures that are drawn where none is chosen.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        One or more; of several, those figures that compare them.
+    """
+    figures = {name: FIGURES[name] for name in _known(results)}
+    return tuple(
+        name
+        for name, figure in figures.items()
+        if all(map(figure.by_default, results)) and (figure.compares or len(results) == 1)
+    )
+
+
+def _known(results: Sequence[Result]) -> list[str]:
+    """Names of the figures of all these results."""
+    return [name for name, figure in FIGURES.items() if all(result.kind in figure.of for result in results)]

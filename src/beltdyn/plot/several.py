@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
 
-from beltdyn.model import Drive, loads
+from beltdyn.model import loads
 from beltdyn.plot.headline import file_name, name_of
 from beltdyn.plot.style import INK, dash, name_lines
 from beltdyn.results import Result
@@ -73,17 +73,29 @@ def names_of_results(results: Sequence[Result]) -> list[str]:
         names = [name(result) for result in results]
         if all(names) and len(set(names)) == len(names):
             return names
-    given = [dict(_keys(_drive_as_given(result).data)) for result in results]
+    given = [given_keys(result) for result in results]
     keys = list(dict.fromkeys(key for one in given for key in one))
     differing = [key for key in keys if len({str(one.get(key)) for one in given}) > 1][:_MOST_KEYS]
     names = [", ".join(f"{key} = {one.get(key, 'by default')}" for key in differing) for one in given]
     return names if len(set(names)) == len(names) else [f"result {n}" for n, _ in zip(count(1), results, strict=False)]
 
 
-def _drive_as_given(result: Result) -> Drive:
-    """The drive before its length or take-up was found for an installed tension."""
+def given_keys(result: Result) -> dict[str, Any]:
+    """Give the numbers and texts of a drive file with their paths.
+
+    Parameters
+    ----------
+    result : Result
+        The drive is taken as it was before its length or take-up was found for an installed tension.
+
+    Returns
+    -------
+    dict
+        Path, such as "pulley[driver].radius" -> value.
+    """
     text = result.dataset.attrs.get("drive_as_given")
-    return loads(text, base=result.path.parent if result.path else None) if text else result.drive
+    drive = loads(text, base=result.path.parent if result.path else None) if text else result.drive
+    return dict(_keys(drive.data))
 
 
 def _keys(data: Any, path: str = "") -> Iterator[tuple[str, Any]]:

@@ -29,7 +29,7 @@ class KeyNumber:
     value : float
         The number; NaN where there is none, as the margin of a drive without load.
     unit : str
-        Its SI unit, "1" for a pure number.
+        Its SI unit, "1" for a pure number; "%" for one that is written as a part in a hundred.
     where : str
         Pulley or span, and when or at which operating point.
     limit : float or None
@@ -98,7 +98,7 @@ def _of_run(run: Result) -> Iterator[Found]:
         tension = np.asarray(recorded["span_tension"])
         pulleys, spans, time = names(recorded, "pulley"), names(recorded, "span"), _times(recorded)
     over = "" if len(time) == 1 else "mean at the end"
-    yield _worst("largest_slip", np.abs([[one.slip for one in means]]), "1", [over], pulleys)
+    yield _worst("largest_slip", np.abs([[one.slip for one in means]]), "%", [over], pulleys)
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
     yield _worst("largest_tension", tension, "N", time, spans)
     yield _worst("least_tension", tension, "N", time, spans)
@@ -112,24 +112,24 @@ def _times(recorded: Recorded) -> list[str]:
 
 
 _OF_TABLES = {
-    "largest_slip": ("pulley_slip", "pulley"),
-    "largest_hub_load": ("hub_load", "pulley"),
-    "largest_tension": ("span_tension", "span"),
-    "least_tension": ("span_tension", "span"),
-    "least_margin": ("slip_safety", "pulley"),
+    "largest_slip": ("pulley_slip", "pulley", "%"),
+    "largest_hub_load": ("hub_load", "pulley", "N"),
+    "largest_tension": ("span_tension", "span", "N"),
+    "least_tension": ("span_tension", "span", "N"),
+    "least_margin": ("slip_safety", "pulley", "1"),
 }
-"""Key -> variable of operating points, and the dimension of its names."""
+"""Key -> variable of operating points, the dimension of its names, and the unit."""
 
 
 def _of_table(result: Result) -> Iterator[Found]:
     dataset = result.dataset
     places = _places(dataset)
-    for key, (name, of) in _OF_TABLES.items():
+    for key, (name, of, unit) in _OF_TABLES.items():
         if name in dataset:
             variable = dataset[name].transpose(..., of)
             values = variable.values.reshape(len(places), -1)
             values = np.abs(values) if key == "largest_slip" else values
-            yield _worst(key, values, str(variable.attrs["units"]), places, list(map(str, dataset[of].values)))
+            yield _worst(key, values, unit, places, list(map(str, dataset[of].values)))
 
 
 def _places(dataset: "xr.Dataset") -> list[str]:

@@ -1,0 +1,175 @@
+"""From results to the file: what the page shows, and how it is written."""
+
+import json
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jinja2 import ChoiceLoader, Environment, FunctionLoader, PackageLoader, StrictUndefined
+from matplotlib.colors import to_hex
+
+from beltdyn.errors import ModelError
+from beltdyn.model.picture import picture
+from beltdyn.plot.headline import name_of
+from beltdyn.plot.several import names_of_results
+from beltdyn.plot.style import tension_colors
+from beltdyn.report.figures import charted
+from beltdyn.report.library import embedded, library
+from beltdyn.report.motion import motion
+from beltdyn.report.origin import differing_keys, origin
+from beltdyn.report.verdict import compared, in_unit, limit_in_words, verdict
+from beltdyn.results import Result, Run
+from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
+from beltdyn.results.sheet import sheet
+from beltdyn.results.sheet_parts import Table
+
+_SHADES = 48
+_SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
+
+
+def write_report(results: Result | Sequence[Result], path: Path | str, overwrite: bool = False) -> Path:
+    """Write a report of a result, or of several side by side, as one page that needs nothing but a browser.
+
+    It shows the numbers that decide about the drive beside the limits that its file states, warnings with their
+    remedies, the drive moving, figures that zoom and read out, tables, where the result comes from, and the drive file.
+    It prints, and reads without JavaScript; nothing is fetched from a network.
+
+    Parameters
+    ----------
+    results : Result or sequence of Result
+        A run, or the result of another analysis; or several, to compare them.
+    path : Path or str
+        The HTML file; a report of beltdyn that is there is replaced.
+    overwrite : bool
+        Replace any regular file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If there is no result, a run holds no output, or the file cannot be written or would replace another one.
+
+    Examples
+    --------
+    >>> bd.write_report(run, "report.html").name
+    'report.html'
+    """
+    path, several = Path(path), [results] if isinstance(results, Result) else list(results)
+    require_report(path, overwrite)
+    if not several:
+        raise ModelError("a report shows a result or several, and there is none. Give one.")
+    for one in several:
+        if isinstance(one, Run):
+            one.require_output()
+    text = _page(several)
+    with atomic_path(path, _is_report, overwrite) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path
+
+
+def require_report(path: Path, overwrite: bool = False) -> None:
+    """Make sure that a report would replace nothing but a report.
+
+    Parameters
+    ----------
+    path : Path
+        The HTML file.
+    overwrite : bool
+        Whether any regular file may be replaced.
+
+    Raises
+    ------
+    ModelError
+        If it would.
+    """
+    require_replaceable(path, _is_report, overwrite)
+
+
+def report_file(files: Sequence[Path]) -> Path:
+    """The report of result files where none is named: beside the first, and named after it.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        One result file or more.
+    """
+    first, *more = files
+    others = f"-and-{more[0].stem if len(more) == 1 else f'{len(more)}-more'}" if more else ""
+    return first.with_name(f"{first.stem}{others}.html")
+
+
+def _is_report(path: Path) -> bool:
+    return is_marked(path, _SAYS_WHO_MADE_IT)
+
+
+def _page(results: Sequence[Result]) -> str:
+    environment = Environment(
+        loader=ChoiceLoader([FunctionLoader(_read), PackageLoader("beltdyn")]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"in_unit": in_unit, "limit_of": limit_in_words}
+    names = names_of_results(results) if len(results) > 1 else [name_of(results[0]) or results[0].drive.title]
+    drawn, charts = charted(results)
+    moving = {
+        f"motion-{number}": motion(one, len(results))
+        for number, one in enumerate(results)
+        if isinstance(one, Run) and _moves(one)
+    }
+    return environment.get_template("page.html.jinja").render(
+        title=" and ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} more",
+        mark=_SAYS_WHO_MADE_IT,
+        compares=len(results) > 1,
+        verdict=verdict(results),
+        parts=[_part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))],
+        numbers=compared(results),
+        differences=differing_keys(results),
+        names=names,
+        figures=drawn,
+        motions=embedded(moving),
+        colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _SHADES))]),
+        charts=embedded(charts),
+        library=library() if charts else "",
+        style=_read("page.css"),
+        script=_read("page.js") if charts or moving else "",
+    )
+
+
+def _moves(run: Run) -> bool:
+    """Whether anything turns."""
+    return bool((run.dataset["pulley_speed"] != 0.0).any())
+
+
+def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> dict[str, Any]:
+    """What the page shows of one result."""
+    tables = [part for part in sheet(result).parts if isinstance(part, Table)]
+    facts = [fact for part in sheet(result).parts if not isinstance(part, Table) for fact in part.facts]
+    target = f"motion-{number}"
+    return {
+        "name": name,
+        "kind": result.kind,
+        "status": result.status,
+        "description": result.drive.description or "",
+        "picture": picture(result.drive),
+        "motion": target if target in moving else "",
+        "findings": result.findings if isinstance(result, Run) else [],
+        "warnings": result.warnings,
+        "tables": tables,
+        "facts": facts,
+        "origin": origin(result),
+        "drive": result.dataset.attrs.get("drive_as_given") or result.drive.text,
+    }
+
+
+def _read(name: str) -> str | None:
+    """Read a file of this package; None where there is none of this name."""
+    file = files("beltdyn.report").joinpath(name)
+    return file.read_text(encoding="utf-8") if file.is_file() else None

@@ -1,0 +1,67 @@
+"""The figures of a report: as they are on paper, and where they are lines as charts beside."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from matplotlib.figure import Figure
+
+from beltdyn.plot.figures import chosen_by_default
+from beltdyn.plot.registry import FIGURES, Choice
+from beltdyn.plot.saving import data_uri
+from beltdyn.plot.style import styled
+from beltdyn.report.chart import charts
+from beltdyn.results import Result
+
+_LARGEST_DRAWING = 300_000
+"""Letters of a drawing of lines from which on it is smaller as pixels."""
+
+
+class Shown(NamedTuple):
+    """A figure on the page.
+
+    Attributes
+    ----------
+    name : str
+        Its name in words.
+    source : str
+        The picture, for paper and for browsers without JavaScript.
+    charts : list of str
+        Where its charts stand on the page; none where it is best as it is.
+    """
+
+    name: str
+    source: str
+    charts: list[str]
+
+
+@styled
+def charted(results: Sequence[Result]) -> tuple[list[Shown], dict[str, Any]]:
+    """Draw the figures that these results have by default.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        One or more, which are compared.
+
+    Returns
+    -------
+    shown : list of Shown
+        The figures.
+    charts : dict
+        Place on the page -> chart of Bokeh.
+    """
+    shown: list[Shown] = []
+    models: dict[str, Any] = {}
+    for name in chosen_by_default(results):
+        drawn = FIGURES[name].arrange(results, Choice())
+        places = {f"{name}-{number}": chart for number, chart in enumerate(charts(drawn))}
+        shown.append(Shown(name.replace("_", " ").capitalize(), _picture(drawn), list(places)))
+        models |= places
+    return shown, models
+
+
+def _picture(drawn: Figure) -> str:
+    """A drawing, or pixels where these are smaller."""
+    drawn.suptitle("")
+    source = data_uri(drawn)
+    return source if len(source) < _LARGEST_DRAWING else data_uri(drawn, "png")

@@ -1,0 +1,67 @@
+"""Where a result comes from, and in what drives differ."""
+
+import hashlib
+from collections.abc import Sequence
+
+from beltdyn.parts.messages import show
+from beltdyn.plot.several import given_keys
+from beltdyn.results import Result, Run
+
+_MOST_DIFFERENCES = 40
+
+
+def origin(result: Result) -> list[tuple[str, str]]:
+    """Facts about how a result was made.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+
+    Returns
+    -------
+    list of (str, str)
+        Versions, hour, hashes, settings and the statement on mesh.
+    """
+    said = result.dataset.attrs
+    packages = ("beltdyn", "numba", "numpy", "scipy", "python")
+    versions = ", ".join(f"{name} {said[f'{name}_version']}" for name in packages if f"{name}_version" in said)
+    facts = [
+        ("analysis", f"{result.kind}, {result.status}"),
+        ("versions", versions),
+        ("computed", str(said.get("created", "not known"))),
+        ("format of the result file", str(said.get("format", "not known"))),
+        ("SHA-256 of the drive", _hash(result.drive.text.encode())),
+    ]
+    if result.path is not None and result.path.is_file():
+        facts += [(f"SHA-256 of {result.path.name}", _hash(result.path.read_bytes()))]
+    settings = result.drive.simulation
+    if isinstance(result, Run):
+        integrator = said.get("integrator", settings.integrator)
+        facts += [("integrator", f"{integrator}, rtol {settings.rtol:g}, start {settings.start}")]
+    facts += [("belt elements", f"{result.drive.elements}, {result.drive.belt.discretization}")]
+    facts += [(choice.key, choice.words) for choice in result.drive.completed.choices]
+    return facts
+
+
+def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:
+    """Give the keys of drive files in which drives differ, with their values.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        One or more.
+
+    Returns
+    -------
+    list of (str, list of str)
+        Path of the key, and its value in each drive; at most forty.
+    """
+    given = [given_keys(result) for result in results]
+    keys = dict.fromkeys(key for one in given for key in one)
+    values = {key: [show(one[key]) if key in one else "by default" for one in given] for key in keys}
+    return [(key, row) for key, row in values.items() if len(set(row)) > 1][:_MOST_DIFFERENCES]
+
+
+def _hash(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

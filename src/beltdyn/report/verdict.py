@@ -1,0 +1,103 @@
+"""The key numbers of results beside their limits, and what follows."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.results import KeyNumber, Result, key_numbers
+
+
+class Compared(NamedTuple):
+    """A key number of all results.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    key : str
+        Key of its limit in the drive file.
+    numbers : list of KeyNumber or None
+        One for each result; None where a result does not know it.
+    """
+
+    name: str
+    key: str
+    numbers: list[KeyNumber | None]
+
+    def difference(self, number: int) -> str:
+        """By how much a result differs from the first, in words; nothing where that is not known."""
+        first, other = self.numbers[0], self.numbers[number]
+        if number == 0 or first is None or other is None or not np.isfinite([first.value, other.value]).all():
+            return ""
+        if first.value == 0.0:
+            return "" if other.value == 0.0 else f"{in_unit(other.value - first.value, first.unit, '+')} to the first"
+        return f"{other.value / first.value - 1.0:+.1%} to the first"
+
+
+def compared(results: Sequence[Result]) -> list[Compared]:
+    """Set the key numbers of results side by side.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        One or more.
+
+    Returns
+    -------
+    list of Compared
+        Those that any of them knows.
+    """
+    known = [{one.key: one for one in key_numbers(result)} for result in results]
+    names = {key: one.name for numbers in known for key, one in numbers.items()}
+    return [Compared(name, key, [numbers.get(key) for numbers in known]) for key, name in names.items()]
+
+
+def verdict(results: Sequence[Result]) -> tuple[str, str]:
+    """Say how results stand to their limits.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        One or more.
+
+    Returns
+    -------
+    kind : {"pass", "fail", "open"}
+        "open" where no limit is stated.
+    words : str
+        In a sentence.
+    """
+    judged = [one.passes for result in results for one in key_numbers(result) if one.passes is not None]
+    kept = sum(judged)
+    if not judged:
+        return "open", "No limit is judged"
+    if kept == len(judged):
+        return "pass", f"All {kept} limits are kept" if kept > 1 else "The limit is kept"
+    return "fail", f"{kept} of {len(judged)} limits are kept"
+
+
+def limit_in_words(number: KeyNumber | None) -> str:
+    """Write the limit of a key number; a dash where there is none."""
+    if number is None or number.limit is None:
+        return "–"
+    return f"at {'most' if number.at_most else 'least'} {in_unit(number.limit, number.unit)}"
+
+
+def in_unit(value: float, unit: str, sign: str = "") -> str:
+    """Write a key number: four digits with its unit; pure numbers below one as parts in a hundred.
+
+    Parameters
+    ----------
+    value : float
+        The number.
+    unit : str
+        Its unit, "1" for a pure number, "%" for a part.
+    sign : str
+        "+" to write the sign of a positive number too.
+    """
+    if np.isnan(value):
+        return "–"
+    if unit == "%":
+        return f"{100.0 * value:{sign}.3g} %"
+    return f"{value:{sign}.4g} {unit}".removesuffix(" 1")

@@ -1,0 +1,166 @@
+"""The page as a browser gets it: whole, without a network, and safe against what drive files say."""
+
+import json
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.report import report_file, write_report
+from beltdyn.results import Result, Run
+
+_EMPTY = {"meta", "img", "input", "link", "br", "hr", "circle", "path"}
+LARGEST = 5_000_000
+
+
+class Page(HTMLParser):
+    """Elements of a page, whose tags must close in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.feed(text)
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in _EMPTY:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag not in _EMPTY:
+            assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def limited(run: Run) -> Run:
+    limits = {"largest_slip": 0.01, "largest_hub_load": 10.0}
+    return Run(run.dataset, run.drive.replace(name="Fan <script>alert(1)</script>", limits=limits))
+
+
+@pytest.fixture(scope="module")
+def text(limited: Run, tmp_path_factory: pytest.TempPathFactory) -> str:
+    return write_report(limited, tmp_path_factory.mktemp("report") / "fan.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def page(text: str) -> Page:
+    return Page(text)
+
+
+def data(text: str, name: str) -> Any:
+    found = re.search(rf'<script type="application/json" id="{name}">(.*?)</script>', text, re.DOTALL)
+    assert found
+    return json.loads(found[1])
+
+
+def test_the_page_is_whole_and_small(text: str, page: Page) -> None:
+    assert len(text.encode()) < LARGEST
+    identities = [one["id"] for _, one in page.elements if "id" in one]
+    assert len(identities) == len(set(identities))
+    links = {str(one["href"]) for tag, one in page.elements if tag == "a"}
+    assert {link.removeprefix("#") for link in links} <= set(identities)
+
+
+def test_nothing_is_fetched(text: str, page: Page) -> None:
+    """Neither by an element nor by a style; Bokeh names addresses in its texts, and calls none by itself."""
+    for tag, one in page.elements:
+        assert not str(one.get("src", "data:")).startswith(("http", "//", "/")), tag
+        assert tag not in {"link", "iframe", "object"}
+    style = text[text.index("<style>") : text.index("</style>")]
+    assert "url(" not in style
+    assert "@import" not in style
+
+
+def test_what_a_drive_file_says_is_text(text: str) -> None:
+    assert "<script>alert" not in text
+    assert "Fan &lt;script&gt;alert(1)&lt;/script&gt;" in text
+
+
+def test_limits_pass_and_fail(text: str) -> None:
+    assert "✓ pass" in text
+    assert "✗ fail" in text
+    assert "1 of 2 limits are kept" in text
+    assert "at most 1 %" in text
+
+
+def test_charts_and_motion_stand_where_they_belong(text: str, page: Page) -> None:
+    identities = {one["id"] for _, one in page.elements if "id" in one}
+    charts, motions = data(text, "charts"), data(text, "motions")
+    (item,) = charts["items"]
+    assert set(item["roots"].values()) <= identities
+    (document,) = charts["documents"].values()
+    assert set(item["roots"]) == {root["id"] for root in document["roots"]}
+    assert motions.keys() == {"motion-0"} <= identities
+    assert len(data(text, "colors")) > 10
+
+
+def test_every_figure_is_there_for_paper_too(page: Page) -> None:
+    pictures = [one for tag, one in page.elements if tag == "img"]
+    assert len(pictures) > 8
+    assert all(str(one["src"]).startswith("data:image/") and one["alt"] for one in pictures)
+
+
+def test_several_runs_stand_side_by_side(limited: Run, run: Run, tmp_path: Path) -> None:
+    other = Run(run.dataset, run.drive.replace(name="Other", belt=run.drive.belt.replace(width=0.02)))
+    text = write_report([limited, other], tmp_path / "two.html").read_text(encoding="utf-8")
+    Page(text)
+    assert "<code>belt.width</code>" in text
+    assert "+0.0% to the first" in text
+    assert data(text, "motions").keys() == {"motion-0", "motion-1"}
+
+
+def test_a_result_without_a_time_has_a_report(run: Run, tmp_path: Path) -> None:
+    import xarray as xr
+
+    tension = ("span", np.array([60.0, 30.0]), {"units": "N", "long_name": "Span tension"})
+    attributes = {"kind": "other", "title": "Belt drive, other", "status": "completed", "warnings": "it is wrong."}
+    dataset = xr.Dataset({"span_tension": tension}, {"span": ["a", "b"]}, attributes)
+    text = write_report(Result(dataset, run.drive), tmp_path / "other.html").read_text(encoding="utf-8")
+    Page(text)
+    assert "it is wrong." in text
+    assert "Bokeh" not in text
+    assert "not judged by limits" in text
+
+
+def test_a_drive_that_stands_still_does_not_move(make_run: Callable[..., Run], tmp_path: Path) -> None:
+    still = make_run(pulley_speed=np.zeros((101, 2)))
+    assert data(write_report(still, tmp_path / "still.html").read_text(encoding="utf-8"), "motions") == {}
+
+
+def test_only_a_report_is_replaced(limited: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("beltdyn.report.build._page", lambda _: '<meta name="generator" content="beltdyn report">')
+    path = tmp_path / "report.html"
+    assert write_report(limited, path) == write_report(limited, path) == path
+    path.write_text("<p>Mine.</p>", encoding="utf-8")
+    with pytest.raises(ModelError, match="is there already"):
+        write_report(limited, path)
+    assert path.read_text(encoding="utf-8") == "<p>Mine.</p>"
+    assert write_report(limited, path, overwrite=True) == path
+
+
+def test_an_error_leaves_no_file(limited: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(ModelError, match=r"there is none\. Give one"):
+        write_report([], tmp_path / "report.html")
+    empty = Run(limited.dataset.isel(time=slice(0)), limited.drive)
+    with pytest.raises(ModelError, match="ended before its first output"):
+        write_report(empty, tmp_path / "report.html")
+    monkeypatch.setattr("beltdyn.report.build._page", lambda _: "")
+    with pytest.raises(ModelError, match="cannot be written"):
+        write_report(limited, tmp_path / "missing" / "report.html")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_name_of_a_report() -> None:
+    assert report_file([Path("a/b.nc")]) == Path("a/b.html")
+    assert report_file([Path("a/b.nc"), Path("c.nc")]) == Path("a/b-and-c.html")
+    assert report_file([Path("a/b.nc"), Path("c.nc"), Path("d.nc")]) == Path("a/b-and-2-more.html")

@@ -1,0 +1,48 @@
+"""Figures as charts: the same lines, and no peak lost where they are thinned."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from beltdyn.report.chart import charts, thinned
+
+
+def test_lines_keep_names_numbers_and_labels() -> None:
+    figure = Figure()
+    ax = figure.add_subplot(xlabel="Time [s]", ylabel="Torque [N·m]")
+    ax.plot([0.0, 1.0, 2.0], [3.0, np.nan, 5.0], label="driver")
+    ax.plot([0.0, 1.0, 2.0], [1.0, 2.0, 3.0], label="driven", linestyle="--")
+    ax.axhline(2.5)
+    (chart,) = charts(figure)
+    assert (chart.xaxis[0].axis_label, chart.yaxis[0].axis_label) == ("Time [s]", "Torque [N·m]")
+    first, second = chart.renderers
+    assert first.data_source is second.data_source  # read out together
+    np.testing.assert_array_equal(first.data_source.data["y0"], [3.0, np.nan, 5.0])
+    assert [item.label.value for item in chart.legend[0].items] == ["driver", "driven"]
+    assert chart.center[-1].location == 2.5 or any(getattr(one, "location", None) == 2.5 for one in chart.center)
+
+
+def test_a_figure_of_more_than_lines_stays_as_it_is() -> None:
+    figure = Figure()
+    figure.add_subplot().plot([0.0, 1.0])
+    figure.add_subplot().imshow(np.eye(2))
+    assert charts(figure) == []
+    assert charts(Figure()) == []
+
+
+@pytest.mark.parametrize("bins", [10, 97])
+def test_peaks_survive_thinning(bins: int) -> None:
+    x = np.linspace(0.0, 1.0, 10_000)
+    values = np.column_stack([np.sin(50.0 * x), x])
+    values[1234, 0], values[8765, 1], values[4000, 0] = 9.0, -7.0, np.nan
+    thin_x, thin = thinned(x, values, bins)
+    assert thin.shape == (2 * bins, 2) == (len(thin_x), 2)
+    assert np.all(np.diff(thin_x) >= 0.0)
+    np.testing.assert_array_equal(
+        [np.nanmax(thin, axis=0), np.nanmin(thin, axis=0)], [np.nanmax(values, axis=0), np.nanmin(values, axis=0)]
+    )
+
+
+def test_few_points_stay() -> None:
+    x, values = np.arange(5.0), np.arange(5.0)[:, None]
+    assert thinned(x, values) == (x, values)
