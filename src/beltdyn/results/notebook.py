@@ -1,17 +1,18 @@
-"""A run as a notebook shows it: the picture of its drive, means of pulleys and spans, and its warnings."""
+"""A result as a notebook shows it: the picture of its drive, its sheet, and its warnings."""
 
 from beltdyn.model.notebook import templates
 from beltdyn.model.picture import picture
-from beltdyn.results.run import Run
-from beltdyn.results.summary import summarize
+from beltdyn.results.result import Result
+from beltdyn.results.sheet import sheet
 
 
-def run_html(run: Run) -> str:
-    """Show a run as HTML.
+def result_html(result: Result) -> str:
+    """Show a result as HTML.
 
     Parameters
     ----------
-    run : Run
+    result : Result
+        Of any analysis.
 
     Returns
     -------
@@ -20,11 +21,13 @@ def run_html(run: Run) -> str:
     """
     return (
         templates()
-        .get_template("run.html.jinja")
+        .get_template("result.html.jinja")
         .render(
-            drive=run.drive,
-            picture=picture(run.drive),
-            summary=summarize(run) if run.outputs else None,
-            warnings=run.warnings,
+            drive=result.drive,
+            picture=picture(result.drive),
+            kind=result.kind,
+            status=result.status,
+            sheet=sheet(result).parts,
+            warnings=result.warnings,
         )
     )

@@ -38,8 +38,10 @@ class Result:
         return f"{type(self).__name__}(kind={self.kind!r}, path={self.path!r})"
 
     def _repr_html_(self) -> str:
-        """Show the result in a notebook."""
-        return str(self.dataset._repr_html_())
+        """Show the result in a notebook: the drive, tables of numbers, and warnings."""
+        from beltdyn.results.notebook import result_html
+
+        return result_html(self)
 
     @property
     def dataset(self) -> "xr.Dataset":

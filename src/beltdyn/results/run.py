@@ -44,12 +44,6 @@ class Run(Result):
     def __repr__(self) -> str:
         return f"Run(path={self.path!r})"
 
-    def _repr_html_(self) -> str:
-        """Show the run in a notebook."""
-        from beltdyn.results.notebook import run_html
-
-        return run_html(self)
-
     @property
     def kind(self) -> str:
         """The kind of all results over time."""

@@ -1,17 +1,19 @@
-"""What a notebook shows of a run: its numbers and its warnings."""
+"""What a notebook shows of a result: its numbers and its warnings."""
 
 from collections.abc import Callable
 
 import numpy as np
+import xarray as xr
 
-from beltdyn.results import Run
+from beltdyn.results import Result, Run
 
 
 def test_means_and_warnings_are_shown(run: Run, make_run: Callable[..., Run]) -> None:
     shown = run._repr_html_()
-    assert "Completed; 101 outputs" in shown
-    assert "<td>driven</td>" in shown
-    assert "0.500 %" in shown
+    assert "Run, completed." in shown
+    assert '<th scope="row">driven</th>' in shown
+    assert "<td>0.500%</td>" in shown
+    assert "<dt>efficiency</dt>" in shown
     slack = make_run(span_tension=np.full((101, 2), -1.0))._repr_html_()
     assert "<strong>Warning:</strong>" in slack
     assert "goes slack" in slack
@@ -22,3 +24,12 @@ def test_a_run_without_outputs_shows_its_drive(run: Run) -> None:
     shown = empty._repr_html_()
     assert "<svg" in shown
     assert "nothing was recorded" in shown
+
+
+def test_results_of_other_analyses_show_their_tables(run: Run) -> None:
+    tension = ("span", [60.0, 30.0], {"units": "N", "long_name": "Span tension"})
+    attributes = {"kind": "other", "title": "Belt drive, other", "status": "completed", "warnings": "it is <wrong>."}
+    dataset = xr.Dataset({"span_tension": tension}, {"span": ["a", "b"]}, attributes)
+    shown = Result(dataset, run.drive)._repr_html_()
+    assert "<td>60.000</td>" in shown
+    assert "it is &lt;wrong&gt;." in shown
