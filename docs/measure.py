@@ -20,6 +20,7 @@ from beltdyn.model import ERROR_LIMITS, layer_lengths
 from beltdyn.paper.distribution import distribution, find_peak, fit_line
 from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
 from beltdyn.solve import find_equilibrium
+from beltdyn.solve.installation import drawn_in
 from beltdyn.solve.simulate import choose_integrator
 from beltdyn.solve.trajectory import Chunk, Statistics, drive_task
 from beltdyn.system.build import drive_system
@@ -106,9 +107,11 @@ def torque_ripple(run: bd.Run, since: float) -> float:
     return float(run.dataset["pulley_torque"][:, DRIVEN].sel(time=slice(since, None)).std())
 
 
-def mean(run: bd.Run, name: str, outputs: int) -> FloatArray:
-    """Mean of a variable over the last outputs."""
-    return np.asarray(run.dataset[name][-outputs:].mean("time"))
+def mean(run: bd.Run, name: str, duration: float) -> FloatArray:
+    """Mean of a variable over the last while, s."""
+    values = run.dataset[name]
+    time = run.dataset[values.dims[0]].values
+    return np.asarray(values.values[time > time[-1] - duration].mean(axis=0))
 
 
 def steps(run: bd.Run) -> str:
@@ -343,14 +346,14 @@ def coarse_meshes() -> Iterator[Row]:
     runs = {count: bd.simulate(case_1(count, rtol=1e-4)) for count in (240, 120, 60, 30, 20, 16, 12)}
     for count, run in runs.items():
         error = speed_difference(run, runs[240])
-        tension = float(mean(run, "belt_tension", 200).mean())
+        tension = float(mean(run, "belt_tension", 0.2).mean())
         yield f"{count}", f"{tension:.2f} N", f"{rms(error):.3g} rad/s", f"{abs(error).max():.2g} rad/s"
 
 
 def from_shift(elements: int, part: float) -> tuple[float, FloatArray]:
     """Case 1 from the rest of a belt shifted by part of an element: span tension at rest, driven speed over time."""
     drive = case_1(elements, rtol=1e-4)
-    system, path = drive_system(drive), drive.path
+    system, path = drive_system(drive), drawn_in(drive, bd.install(drive), 1.0)
     stretch = path.length / float(np.sum(system.length))
     along = stretch * (np.concatenate([[0.0], np.cumsum(system.length)])[: system.nodes] + part * system.length[0])
     tangent = path.tangent(along)
@@ -475,11 +478,11 @@ def friction_peaks() -> Iterator[Row]:
     for stiffness in (1e7, 4e7):
         drive = changed(better(loaded_two_pulley(), 90), contact={"stiffness": stiffness})
         run = bd.simulate(drive)
-        forces = distribution(run, DRIVER)
+        forces = distribution(bd.Run(run.fields_at(), drive), DRIVER)
         level = fit_line(forces, "friction").level
         rises = [find_peak(forces, at_exit).excess * level for at_exit in (False, True)]
-        _, layer = layer_lengths(drive, float(mean(run, "span_tension", 200).mean()))
-        speed = float(mean(run, "belt_speed", 200).mean())
+        _, layer = layer_lengths(drive, float(mean(run, "span_tension", 0.2).mean()))
+        speed = float(mean(run, "belt_speed", 0.2).mean())
         by_hand = 0.5 * 1e4 * speed * (layer / drive.pulleys[DRIVER].radius) ** 2
         yield f"{stiffness:.0e}", *(f"{value:.0f} N/m" for value in (level, *rises, by_hand))
 
@@ -493,7 +496,7 @@ def tutorial_loads() -> Iterator[Row]:
     yield "load [N m]", "driven speed [rad/s]", "slack span [N]", "tight span [N]"
     for load in (0.0, 0.5, 1.0, 1.5, 2.0):
         run = bd.simulate(tutorial(driven={"torque": {"kind": "cosine_ramp", "value": -load, **RISE}}))
-        slack, tight = mean(run, "span_tension", 100)
+        slack, tight = mean(run, "span_tension", 0.1)
         yield f"{load:g}", f"{mean(run, 'pulley_speed', 100)[DRIVEN]:.4f}", f"{slack:.1f}", f"{tight:.1f}"
 
 
@@ -516,8 +519,8 @@ def tutorial_elements() -> Iterator[Row]:
     for elements in (20, 30, 60, 120):
         run = bd.simulate(tutorial(belt={"elements": elements}, duration=2.0))
         angle = np.degrees(run.drive.belt_length / (elements * run.drive.pulleys[DRIVER].radius))
-        speed = mean(run, "pulley_speed", 500)
-        tight, hub = mean(run, "span_tension", 500)[1], abs(mean(run, "hub_force", 500)[:, 0]).mean()
+        speed = mean(run, "pulley_speed", 0.5)
+        tight, hub = mean(run, "span_tension", 0.5)[1], abs(mean(run, "hub_force", 0.5)[:, 0]).mean()
         slip = 1.0 - speed[DRIVEN] / speed[DRIVER]
         yield f"{elements}", f"{angle:.1f}°", f"{100 * slip:.4f} %", f"{tight:.2f} N", f"{hub:.2f} N", seconds(run)
 
