@@ -66,7 +66,7 @@ def tables_folder(path: Path) -> Path:
 
 def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
     """Write what is asked for beside a result file, and name it; nothing of a run without outputs."""
-    from beltdyn.results import Run, write_csv
+    from beltdyn.results import Run, open_result, write_csv
 
     if isinstance(result, Run) and not result.outputs:
         return
@@ -75,7 +75,7 @@ def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> N
     if extras.report:
         from beltdyn.report import report_file, write_report
 
-        show(f"Report: {write_report(result, report_file([path]), force)}")
+        show(f"Report: {write_report(open_result(path), report_file([path]), force)}")
 
 
 def analyse_to(analysis: Analysis, drive: "Drive", path: Path, force: bool = False, **options: Any) -> "Result":

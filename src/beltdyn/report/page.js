@@ -202,11 +202,13 @@
   }
 
   function link(plots) {
+    const kind = ({ tags, x_range }) => [tags[0], x_range.start.toPrecision(6), x_range.end.toPrecision(6)].join();
+    const kinds = new Map(plots.map((plot) => [plot, kind(plot)]));
     for (const plot of plots) {
       const range = plot.x_range;
       const follow = () => {
         for (const other of plots) {
-          if (other === plot || other.tags[0] !== plot.tags[0]) continue;
+          if (other === plot || kinds.get(other) !== kinds.get(plot)) continue;
           if (other.x_range.start !== range.start || other.x_range.end !== range.end) {
             other.x_range.setv({ start: range.start, end: range.end });
           }

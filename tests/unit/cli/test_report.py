@@ -70,7 +70,7 @@ def test_a_run_with_a_report(
     calls = []
 
     def simulate(drive: Drive, output: Path) -> Run:
-        calls.append(output)
+        calls.append(run.save(output))
         return run
 
     app["run"].default_command = None  # it is made of the function
