@@ -47,10 +47,15 @@ def test_the_energy_account_closes() -> None:
 
 @pytest.mark.parametrize("window", [BEFORE, AFTER])
 def test_pulleys_turn_by_their_effective_radii(window: tuple[float, float]) -> None:
-    """Those on the back the other way, and all slower than the crank by a slip of less than 1 %."""
-    drive, speed = run().drive, means(window)["pulley_speed"].values
-    slip = 1.0 - speed * drive.radii * [pulley.turning for pulley in drive.pulleys] / (speed[0] * drive.radii[0])
-    assert np.all(slip[1:] > 0.0)
+    """Those on the back the other way, and all slower than the crank by a slip of less than 1 %.
+
+    The compressor turns idle before its clutch closes, next to the crank, and slips by as good as nothing; the belt's
+    tension swings, so that ends of the window may differ by 1e-5 of it.
+    """
+    drive, angles = run().drive, run().dataset["pulley_angle"].sel(time=slice(*window)).values
+    turned = (angles[-1] - angles[0]) * drive.radii * [pulley.turning for pulley in drive.pulleys]
+    slip = 1.0 - turned / turned[0]
+    assert np.all(slip[1:] > -1e-5)
     assert np.all(slip[1:] < 0.01)
 
 
