@@ -148,7 +148,7 @@ def test_python_of_the_results_page_runs(new_drive: str, tmp_path: Path, monkeyp
     """Its drive has an alternator, and runs longer."""
     monkeypatch.chdir(tmp_path)
     simulate(loads(new_drive), "drive.nc")
-    (code,) = blocks(RESULTS, "python")
+    code = "\n".join(blocks(RESULTS, "python"))
     assert {"alternator", "start=0.9"} <= set(re.findall(r"alternator|start=0.9", code))
     exec(code.replace("alternator", "driven").replace("start=0.9", "start=0.05"), {})
 
