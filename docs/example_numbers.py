@@ -217,7 +217,7 @@ def flat_belt_idler(run: Run) -> Iterator[Number]:
     force = summary.spans[2].tension - summary.spans[0].tension
     torque = force * float(drive.radii[0])
     yield Number("torque of the motor, N m", torque, summary.pulleys[0].shaft_torque, 0.01 * torque)
-    yield from slip_and_efficiency(run, 0.1)  # friction is capped on a third of the motor's arc, which adds slip
+    yield from slip_and_efficiency(run, 0.05)
     turning = 0.5 * float(drive.frictions[0] * moved(drive, position).path.wrap_angles[0])
     margin = (2.0 * pressing + force) * tanh(turning) / force
     yield Number("capstan margin of the motor", margin, summary.pulleys[0].margin, 0.03 * margin)

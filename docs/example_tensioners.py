@@ -1,11 +1,11 @@
 """What the pages of the drives with a tensioner say in numbers, as `docs/example_numbers.py` has it of the others.
 
-The drives are the conveyor, and the one of an alternator.
+The drives are the conveyor, that of an alternator, and that of a press whose arm meets its stop.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import cos, hypot, pi, sqrt
+from math import cos, hypot, log, pi, sqrt, tanh
 
 import numpy as np
 from example_numbers import RPM, Number, bending_forces, creep
@@ -17,6 +17,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Path
 from beltdyn.model.carrier import moved
 from beltdyn.results import summarize
+from beltdyn.results.derived import capstan_margins
 from beltdyn.theory.elastic_creep import slip_arc
 
 STEP = 1e-5
@@ -49,20 +50,28 @@ class Arm:
         return (lengths[0] - 2.0 * lengths[1] + lengths[2]) / 1e-6
 
     def slack(self, position: float) -> float:
-        """Tension beside the tensioner's pulley where its spring balances the belt, N."""
-        (spring,) = self.drive.tensioners
-        return (spring.preload - spring.rate * position) / self.lengthening(position) + self.lifted
+        """Tension beside the tensioner's pulley where its spring, and a stop, balance the belt, N.
+
+        It goes by moment and leverage over those at rest, so that what bending takes from the leverage, 1 %, drops
+        out. Far beyond the stop, where no moment would be left, a hundredth of that at rest counts.
+        """
+        (arm,) = self.drive.carriers
+        moment = max(arm.force(position) / arm.force(self.resting), 0.01)
+        return self.tension * moment * self.lengthening(self.resting) / self.lengthening(position) + self.lifted
 
     def surplus(self, position: float, slack: float, pull: float) -> float:
         """Mean tension along the belt less that which stretches it to the path, N.
 
-        Belt that adheres keeps the tension with which it runs on to a pulley; where it slides, half is counted.
+        Belt that adheres keeps the tension with which it runs on to a pulley; where it slides, the tension falls
+        exponentially over the arc, and the mean of that is counted.
         """
         path, tight = self.path(position), slack + pull
         pressing = tight - self.lifted, slack - self.lifted
+        ratio = pressing[0] / pressing[1]
+        share = 1.0 / log(ratio) - 1.0 / (ratio - 1.0)
         driver, driven = (path.wrap_angles[k] * path.radii[k] for k in (0, -1))
         slid = [path.radii[k] * slip_arc(*pressing, float(self.drive.frictions[k])) for k in (0, -1)]
-        tightened = path.span_lengths[-1] + driver - 0.5 * min(slid[0], driver) + 0.5 * min(slid[1], driven)
+        tightened = path.span_lengths[-1] + driver - (1.0 - share) * min(slid[0], driver) + share * min(slid[1], driven)
         longer = path.length - self.path(self.resting).length
         needed = self.tension + longer * self.drive.belt.axial_stiffness / self.drive.belt_length
         return float(slack + pull * tightened / path.length - needed)
@@ -81,24 +90,27 @@ def arm_of(run: bd.Run) -> Arm:
 
 
 def conveyor(run: bd.Run) -> Iterator[Number]:
-    """The weight gives the sum of the tensions, the load their difference; strands hang as parabolas."""
+    """The weight gives the sum of the tensions, load and height their difference; strands hang as parabolas."""
     drive, summary, belt = run.drive, summarize(run), run.drive.belt
     (weight,), (load,) = drive.tensioners, drive.pulleys[1].load
     radius, length = float(drive.radii[0]), drive.pulleys[1].center[0]
     bent = float(bending_forces(drive)[0])
     speed = float(drive.pulleys[0].speed.value) * radius
-    pull = load.constant / radius + bent
-    total = weight.preload + 2.0 * belt.mass_per_length * speed**2
-    slack, tight = 0.5 * (total - pull), 0.5 * (total + pull)
+    pull, weighing = load.constant / radius + bent, 9.81 * belt.mass_per_length
+    total, apart = weight.preload + 2.0 * belt.mass_per_length * speed**2, pull + 2.0 * radius * weighing
+    slack, tight = 0.5 * (total - apart), 0.5 * (total + apart)
     found = {span.name: span.tension for span in summary.spans}
     high, low = found["tail-head"], found["head-tail"]
     yield Number("tight tension, N", tight, high, 0.01 * tight)
     yield Number("slack tension, N", slack, low, 0.01 * slack)
     yield Number("sum of the tensions, N", total, high + low, 0.005 * total)
-    yield Number("ΔT/EA, %", 100.0 * pull / belt.axial_stiffness, 100.0 * creep(run), 0.002)
+    yield Number("difference of the tensions, N", apart, high - low, 0.005 * apart)
+    yield Number("ΔT/EA, %", 100.0 * apart / belt.axial_stiffness, 100.0 * creep(run), 0.001)
+    margin = weight.preload * tanh(0.5 * pi * float(drive.frictions[1])) / apart
+    yield Number("capstan margin", margin, summary.pulleys[1].margin, 0.01 * margin)
     hanging = run.dataset["mid_span_displacement"].sel(time=slice(summary.start, None)).mean("time")
     for which, tension in (("tail-head", tight), ("head-tail", slack)):
-        sag = belt.mass_per_length * 9.81 * length**2 / (8.0 * tension)
+        sag = weighing * length**2 / (8.0 * tension)
         strand = "upper" if which == "tail-head" else "lower"
         yield Number(
             f"sag of the {strand} strand, mm", 1e3 * sag, 1e3 * abs(float(hanging.sel(span=which))), 30.0 * sag
@@ -119,7 +131,7 @@ def alternator_drive(run: bd.Run) -> Iterator[Number]:
     loss = creep(run)
     (found,) = summary.tensioners
     yield Number("arm at the end, °", float(np.degrees(position)), float(np.degrees(found.position)), 0.1)
-    yield Number("slack tension, N", slack, summary.spans[1].tension, 0.01 * slack)
+    yield Number("slack tension, N", slack, summary.spans[1].tension, 0.005 * slack)
     yield Number("tight tension, N", tight, summary.spans[2].tension, 0.01 * tight)
     torque = float(radii[0]) * (pull + float(bent[:2].sum()))
     yield Number("torque of the crank, N m", torque, summary.pulleys[0].shaft_torque, 0.01 * torque)
@@ -133,6 +145,38 @@ def alternator_drive(run: bd.Run) -> Iterator[Number]:
     yield Number("slip, %", 100.0 * pull / drive.belt.axial_stiffness, 100.0 * summary.pulleys[2].slip, 0.015)
     lowest = natural_frequencies(arm, position, slack, tight)[0]
     yield Number("lowest natural frequency, Hz", lowest, swing_frequency(run, lowest), 0.05 * lowest)
+
+
+def tensioner_stop(run: bd.Run) -> Iterator[Number]:
+    """The arm's moment gives the slack tension; in the stroke the stop holds the arm, and the belt's length does."""
+    drive, arm = run.drive, arm_of(run)
+    (spring,), (load,), radius = drive.tensioners, drive.pulleys[2].load, float(drive.radii[2])
+    bent, friction = float(bending_forces(drive)[2]), float(drive.frictions[2])
+    for when, share, instants in (("idling", 0.2, slice(0.35, 0.434)), ("stroke", 1.0, slice(0.66, 0.744))):
+        pull = share * load.constant / radius + bent
+        position = arm.balance(pull)
+        slack, wrapped = arm.slack(position), float(arm.path(position).wrap_angles[2])
+        found = run.dataset.sel(time=instants).mean("time")
+        loose, tight = (float(found["span_tension"][span]) for span in (1, 2))
+        arm_at, force = float(found["tensioner_position"][0]), hypot(*found["hub_force"].values[2])
+        yield Number(f"{when}: arm, °", float(np.degrees(position)), float(np.degrees(arm_at)), 0.1)
+        yield Number(f"{when}: slack tension, N", slack, loose, 0.02 * slack)
+        yield Number(f"{when}: tight tension, N", slack + pull, tight, 0.01 * (slack + pull))
+        one, other = slack + pull - arm.lifted, slack - arm.lifted
+        hub = sqrt(one**2 + other**2 - 2.0 * one * other * cos(wrapped))
+        yield Number(f"{when}: hub load of the press, N", hub, force, 0.015 * hub)
+        margin = (one + other) * tanh(0.5 * friction * wrapped) / pull
+        margins = capstan_margins(run, instants.start, instants.stop).sel(pulley="press")
+        yield Number(f"{when}: capstan margin of the press", margin, float(margins.mean()), 0.02 * margin)
+    meets = brentq(lambda torque: arm.balance(torque / radius + bent) - spring.stops[1], 11.0, 55.0)
+    steady = summarize(bd.steady_state(drive.with_({"pulley[press].load[1].constant": meets}), at=0.6))
+    reached = np.degrees(steady.tensioners[0].position)
+    yield Number(f"arm under {meets:.3g} N m, °", float(np.degrees(spring.stops[1])), float(reached), 0.1)
+    free = drive.replace(tensioner=[spring.replace(stops=None, stop_stiffness=None, stop_damping=0.0)])
+    by_hand = Arm(free, arm.resting, arm.tension, arm.lifted)
+    slack = by_hand.slack(by_hand.balance(load.constant / radius + bent))
+    found = summarize(bd.steady_state(free, at=0.6)).spans[1].tension
+    yield Number("stroke without stops: slack tension, N", slack, found, 0.02 * slack)
 
 
 def natural_frequencies(arm: Arm, position: float, slack: float, tight: float) -> FloatArray:

@@ -61,6 +61,7 @@ EXAMPLES: Mapping[str, Example] = MappingProxyType(
         "band_brake": Example(("span_tensions", "configuration", "capstan_margins"), by_hand.band_brake),
         "conveyor": Example(("configuration", "span_tensions", "tensioners"), tensioned.conveyor),
         "alternator_drive": Example(("speeds", "span_tensions", "tensioners", "hub_loads"), tensioned.alternator_drive),
+        "tensioner_stop": Example(("span_tensions", "tensioners", "capstan_margins"), tensioned.tensioner_stop),
         "slip_through": Example(("speeds", "torques", "capstan_margins", "slip"), by_hand.slip_through),
         "accessory_drive": Example(
             ("speeds", "span_tensions", "tensioners", "slip", "hub_loads"), accessory.numbers, accessory.study

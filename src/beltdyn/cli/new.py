@@ -22,8 +22,8 @@ def new(
         The drive file to write, by default drive.toml, or the example's name with .toml; it must not exist yet.
     example
         Write an example in place of the plain two-pulley drive: accessory_drive, alternator_drive, band_brake,
-        conveyor, crossed_belt, fan_direct_start, flat_belt_idler, slip_through, two_pulley, unequal_radii or
-        washing_machine.
+        conveyor, crossed_belt, fan_direct_start, flat_belt_idler, slip_through, tensioner_stop, two_pulley,
+        unequal_radii or washing_machine.
     """
     source = files("beltdyn.cli").joinpath("new_drive.toml") if example is None else _example(example)
     target = file or Path("drive.toml" if example is None else source.name)

@@ -207,7 +207,7 @@ def _preferred(situation: _Situation) -> float:
             return position
         nearest = position if nearest is None else nearest
     if nearest is None:
-        raise ValueError(_no_balance(situation.carrier, situation.excess(0.0)))
+        raise ValueError(_no_balance(situation, 0.0))
     if situation.belt.installed_tension is not None:
         raise ValueError(_no_stable_balance(situation.carrier, nearest, situation.belt.installed_tension))
     return nearest
@@ -218,7 +218,7 @@ def _nearest(situation: _Situation) -> float:
     start = float(situation.positions[situation.number])
     found = next(_balances(situation, start), None)
     if found is None:
-        raise ValueError(_no_balance(situation.carrier, situation.excess(start)))
+        raise ValueError(_no_balance(situation, start))
     return found
 
 
@@ -281,8 +281,16 @@ def _covers_another(path: Path, pulley: int) -> bool:
     return bool(np.any(_distances(path, pulley) < np.maximum(np.delete(radii, pulley), radii[pulley])))
 
 
-def _no_balance(one: Carrier, excess: float) -> str:
+def _no_balance(situation: _Situation, start: float) -> str:
+    one, excess, tension = situation.carrier, situation.excess(start), situation.belt.installed_tension
     name = one.tensioner.pulley
+    if tension is not None:
+        unit = "N m" if one.tensioner.turns else "N"
+        return (
+            f'belt.installed_tension = {tension:.5g} N is not what the tensioner of "{name}" holds: it presses with '
+            f"{one.force(start):.5g} {unit}, and that tension takes {one.force(start) - excess:.5g} {unit}. Set its "
+            "preload to that, or give belt.length in place of the tension, which the tensioner sets then"
+        )
     if excess > 0:
         return (
             f'the tensioner of "{name}" moves on and on without tensioning the belt enough. '

@@ -14,13 +14,12 @@ from beltdyn.analyses import RUN, STATIC
 from beltdyn.arrays import FloatArray
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
-from beltdyn.plot.style import INK, axes_or_new, color, dash, label, reserve, unit
+from beltdyn.plot.style import INK, SHADE, axes_or_new, color, dash, label, reserve, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Result, Run, StaticResult, derived
 
 Kind = Literal["normal", "friction"]
 _KILO = 1e3
-_SLIDING = "#f6d9c9"
 
 
 def _pulleys(run: Result, choice: Choice) -> list[list[str]]:
@@ -147,7 +146,7 @@ def _shade_sliding(ax: Axes, angle: FloatArray, sliding: FloatArray) -> None:
     """Shade what slides, half of the way to the neighbours of each point."""
     if angle.size:
         edges = np.concatenate([angle[:1], 0.5 * (angle[1:] + angle[:-1]), angle[-1:]])
-        ax.stairs(sliding, edges, transform=ax.get_xaxis_transform(), fill=True, color=_SLIDING, zorder=0)
+        ax.stairs(sliding, edges, transform=ax.get_xaxis_transform(), fill=True, color=SHADE, zorder=0)
 
 
 def _draw_limits(ax: Axes, instant: xr.Dataset, wrap: Wrap, friction: float) -> None:

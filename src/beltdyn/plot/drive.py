@@ -10,6 +10,7 @@ from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path as Outline
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
@@ -31,6 +32,10 @@ _LONG, _LONGEST, _WORDS = 0.25, 14.0, 2.2
 """Height over width below which a drive is long; the widest figure, and what words take of its height, inches."""
 _MARGIN = 0.04
 _ROUNDS = 8
+_HEADED = 1.6
+"""How much larger letters may get against the drive, when a headline takes its share of the figure."""
+_POINTS_AN_INCH, _TICK = 72.0, 50.0
+"""What a number below the axis takes of its width, points."""
 
 
 class DrivePicture:
@@ -146,10 +151,14 @@ def make_room(ax: Axes, extent: FloatArray) -> None:
         low, high = held.min(axis=0) - margin, held.max(axis=0) + margin
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
         ax.figure.canvas.figure.draw_without_rendering()
-        boxes = [ax.transData.inverted().transform(text.get_window_extent().get_points()) for text in ax.texts]
+        drawn = [text.get_window_extent().expanded(_HEADED, _HEADED).get_points() for text in ax.texts]
+        boxes = [ax.transData.inverted().transform(box) for box in drawn]
         held = np.concatenate([extent, *boxes])
         if np.all(held > low) and np.all(held < high):
-            return
+            break
+    ax.apply_aspect()
+    width = ax.get_window_extent().width * _POINTS_AN_INCH / ax.figure.dpi
+    ax.xaxis.set_major_locator(MaxNLocator(max(2, int(width / _TICK)), steps=[1, 2, 2.5, 5, 10]))
 
 
 def arc(path: Path, number: int) -> FloatArray:

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import envelope, lines
 from beltdyn.plot.registry import Choice, figure, over_time
-from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, new_figure, note, polar_or_new
+from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, new_figure, note, polar_or_new, shade
 from beltdyn.results import Run, derived, summarize
 from beltdyn.results.cycles import mean_window
 
@@ -98,8 +98,7 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     margins = derived.capstan_margins(run)
     loaded = margins.median("time") < _LARGEST_MARGIN
     ax = envelope(margins.where(np.isfinite(margins) & (loaded | ~loaded.any())), axes_or_new(ax))
-    ax.axhspan(0.0, 1.0, color="#f6d9c9", linewidth=0.0, zorder=0)
-    ax.annotate("gross slip", (0.995, 0.5), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=9)
+    shade(ax, 0.0, 1.0, "gross slip")
     ax.set_ylim(0.0, _LARGEST_MARGIN)
     return ax
 

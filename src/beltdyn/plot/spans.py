@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import lines
 from beltdyn.plot.registry import figure, over_time
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
+from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, shade
 from beltdyn.results import Run, derived
 
 _FLOOR = 1e-6
@@ -86,6 +86,8 @@ def _moves_over_time(run: Run) -> bool:
 def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the positions of the tensioners over time: mm along a line, degrees of an arm.
 
+    What lies beyond a stop is shaded.
+
     Parameters
     ----------
     run : Run
@@ -108,5 +110,14 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     position = run.dataset["tensioner_position"]
     rotary = np.array([one.turns for one in run.drive.moving_tensioners])
     units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]
-    scaled = position * np.where(rotary, np.degrees(1.0), 1e3)
-    return lines(scaled.assign_attrs(position.attrs | {"units": ", ".join(units)}), axes_or_new(ax))
+    factors = np.where(rotary, np.degrees(1.0), 1e3)
+    scaled = (position * factors).assign_attrs(position.attrs | {"units": ", ".join(units)})
+    ax = lines(scaled, axes_or_new(ax))
+    low, high = ax.get_ylim()
+    for tensioner, factor in zip(run.drive.moving_tensioners, factors.tolist(), strict=True):
+        lower, upper = (factor * stop for stop in tensioner.stops or (-np.inf, np.inf))
+        for name, begin, end in (("lower", low, lower), ("upper", upper, high)):
+            if begin < end:
+                shade(ax, begin, end, f"{tensioner.pulley}: {name} stop")
+    ax.set_ylim(low, high)
+    return ax

@@ -25,6 +25,9 @@ INK = "#2b2f36"
 PALE = "#e9ecf1"
 """Color of surfaces."""
 
+SHADE = "#f6d9c9"
+"""Areas where something is at its limit."""
+
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#5d5d5d")
 """Colors of lines (Okabe and Ito 2008), which all can tell apart."""
 
@@ -194,6 +197,13 @@ def note(ax: Axes, text: str) -> None:
         In few lines.
     """
     ax.annotate(text, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+
+
+def shade(ax: Axes, low: float, high: float, text: str) -> None:
+    """Shade a band of the values, and write in it what is at its limit there."""
+    ax.axhspan(low, high, color=SHADE, linewidth=0.0, zorder=0)
+    middle = ("axes fraction", "data")
+    ax.annotate(text, (0.995, 0.5 * (low + high)), xycoords=middle, ha="right", va="center", fontsize=9)
 
 
 def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:

@@ -162,6 +162,12 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
         ahead, change = _shortened(first.drive, done, change, at_rest)
         gained = ahead.tension - rest.tension
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
+    if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
+        raise ConvergenceError(
+            f"belt.installed_tension = {wanted:.5g} N is not what the tensioner holds: its force makes "
+            f"{first.tension:.5g} N at any length of the belt. Give belt.length in place of the tension, near "
+            f"{length:.5g} m, and set the tension by tensioner.preload."
+        )
     raise _out_of_reach(
         first.drive,
         f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt_length:.6g} m, and "

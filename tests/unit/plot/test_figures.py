@@ -64,6 +64,21 @@ def test_the_place_of_an_arm_is_drawn_in_degrees(run: Run, ax: Axes) -> None:
     np.testing.assert_allclose(np.asarray(ax.lines[0].get_ydata()), np.degrees(run.dataset["shaft_angle"].values[:, 0]))
 
 
+def test_stops_that_an_arm_comes_near_are_shaded(run: Run, ax: Axes) -> None:
+    """The upper one lies within what is drawn, the lower one far below it."""
+    swung = tensioned_run(run)
+    (arm,), place = swung.drive.tensioners, 0.1 * swung.dataset["tensioner_position"]
+    dataset = swung.dataset.assign(tensioner_position=place.assign_attrs(swung.dataset["tensioner_position"].attrs))
+    reached = 0.9 * float(place.max())
+    stopped = arm.replace(stops=(-reached, reached), stop_stiffness=1e4)
+    plot.tensioners(Run(dataset, swung.drive.replace(tensioner=[stopped])), ax)
+    assert [text.get_text() for text in ax.texts] == ["driver: upper stop"]
+    (band,) = ax.patches
+    low, high = (edge for _, edge in band.get_extents().transformed(ax.transData.inverted()).get_points())
+    assert low == pytest.approx(np.degrees(reached))
+    assert high == pytest.approx(ax.get_ylim()[1])
+
+
 def test_slip_in_vibration_is_drawn_as_means_over_a_turn(make_run: Callable[..., Run], run: Run, ax: Axes) -> None:
     speed = run.dataset["pulley_speed"].values.copy()
     speed[60:, 1] *= 1.0 + 0.1 * (-1.0) ** np.arange(41)

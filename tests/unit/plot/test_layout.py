@@ -1,3 +1,4 @@
+import itertools
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -166,3 +167,14 @@ def test_a_long_drive_is_drawn_wide(drive: Drive) -> None:
     page = plot.layout(far).figure.figure
     assert page.get_figwidth() > 12.0
     assert page.get_figheight() < 4.0
+
+
+def test_numbers_below_a_narrow_drive_do_not_meet(drive: Drive) -> None:
+    first, last = drive.pulleys
+    upright = [first.replace(center=(0.0, 0.0)), last.replace(center=(0.0, 0.382882))]
+    ax = plot.layout(drive.replace(pulley=upright))
+    ax.figure.canvas.figure.draw_without_rendering()
+    low, high = ax.get_xlim()
+    boxes = [tick.label1.get_window_extent() for tick in ax.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+    assert len(boxes) > 1
+    assert all(one.x1 < other.x0 for one, other in itertools.pairwise(boxes))

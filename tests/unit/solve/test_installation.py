@@ -3,13 +3,14 @@
 import math
 import pickle
 from collections.abc import Callable
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive, install, loads, tensioner_balances
+from beltdyn.model import Drive, install, load, loads, tensioner_balances
 from beltdyn.results import open_run
 from beltdyn.solve import bring_to_rest, equilibrium, simulate
 from beltdyn.solve.installation import follow
@@ -130,6 +131,22 @@ def test_take_up_for_a_tension() -> None:
     again = loads(rest.drive.text)
     assert again == rest.drive
     np.testing.assert_array_equal(again.centers, rest.drive.centers)
+
+
+@pytest.mark.parametrize(
+    ("tension", "said"),
+    [
+        (600.0, "it presses with 1700 N, and that tension takes 1200 N"),
+        (850.0, "its force makes 850.* N at any length"),
+    ],
+)
+def test_a_take_up_of_constant_force_sets_the_tension(tension: float, said: str) -> None:
+    """Far from it there is no balance by hand; near to it no length of the belt has that tension."""
+    conveyor = load(str(files("beltdyn").joinpath("examples", "conveyor.toml")))
+    coarse = conveyor.belt.replace(length=None, installed_tension=tension, elements=120)
+    with pytest.raises((ConvergenceError, ModelError), match=said) as error:
+        bring_to_rest(conveyor.replace(belt=coarse))
+    assert "belt.length in place of the tension" in str(error.value)
 
 
 def test_a_run_and_its_file_have_the_length_that_was_found(tmp_path: Any) -> None:
