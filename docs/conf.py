@@ -74,3 +74,5 @@ exclude_patterns = ["_build"]
 html_theme = "pydata_sphinx_theme"
 html_title = "beltdyn"
 html_static_path = ["_static"]
+html_theme_options = {"header_links_before_dropdown": 6, "navigation_with_keys": True}
+html_sidebars = dict.fromkeys(("index", "tutorial", "reference"), [])  # pages without others below them
