@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
+from beltdyn.errors import ModelError
 from beltdyn.plot.figures import chosen_by_default
 from beltdyn.plot.registry import FIGURES, Choice
 from beltdyn.plot.saving import data_uri
@@ -27,11 +28,14 @@ class Shown(NamedTuple):
         The picture, for paper and for browsers without JavaScript.
     charts : list of str
         Where its charts stand on the page; none where it is best as it is.
+    missing : str
+        Why it cannot be drawn of these results, as of drives with other pulleys; empty where it is.
     """
 
     name: str
     source: str
     charts: list[str]
+    missing: str = ""
 
 
 @styled
@@ -53,9 +57,14 @@ def charted(results: Sequence[Result]) -> tuple[list[Shown], dict[str, Any]]:
     shown: list[Shown] = []
     models: dict[str, Any] = {}
     for name in chosen_by_default(results):
-        drawn = FIGURES[name].arrange(results, Choice())
+        title = name.replace("_", " ").capitalize()
+        try:
+            drawn = FIGURES[name].arrange(results, Choice())
+        except ModelError as error:
+            shown.append(Shown(title, "", [], str(error)))
+            continue
         places = {f"{name}-{number}": chart for number, chart in enumerate(charts(drawn))}
-        shown.append(Shown(name.replace("_", " ").capitalize(), _picture(drawn), list(places)))
+        shown.append(Shown(title, _picture(drawn), list(places)))
         models |= places
     return shown, models
 
