@@ -75,4 +75,4 @@ html_theme = "pydata_sphinx_theme"
 html_title = "beltdyn"
 html_static_path = ["_static"]
 html_theme_options = {"header_links_before_dropdown": 6, "navigation_with_keys": True}
-html_sidebars = dict.fromkeys(("index", "tutorial", "reference"), [])  # pages without others below them
+html_sidebars = {page: [] for page in ("index", "tutorial", "reference")}  # without pages below them
