@@ -155,4 +155,4 @@ def _draw_limits(ax: Axes, instant: xr.Dataset, wrap: Wrap, friction: float) -> 
     edges = [np.column_stack([wrap.distance, sign * limit]) for sign in (1, -1)]
     lines = LineCollection(edges, colors=INK, linestyles=dash(1), linewidths=1.0, label="Coulomb limit")
     ax.add_collection(lines, autolim=False)
-    ax.legend(loc="lower left", bbox_to_anchor=(0.62, 1.0), borderaxespad=0.2)
+    ax.legend(handles=[lines], loc="lower left", bbox_to_anchor=(0.62, 1.0), borderaxespad=0.2)

@@ -52,7 +52,15 @@ def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Resul
     assert ax is not None
     if len(titles) > 1:
         ax.set_title("")
-    name_lines(ax, _named(drawn, names))
+    legend, page = _named(drawn, names), ax.figure.figure
+    styles = [line for line in legend if not any(line in lines for lines in drawn)]
+    if not styles or len(page.axes) == 1:
+        name_lines(ax, legend)
+        return ax
+    if len(legend) > len(styles) + 1:  # one line is named by the title of its panel
+        name_lines(ax, [line for line in legend if line not in styles])
+    if not page.legends:
+        page.legend(handles=styles, loc="outside lower center")
     return ax
 
 

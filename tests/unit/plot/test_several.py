@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 
 from beltdyn import plot
 from beltdyn.errors import ModelError
@@ -95,3 +96,13 @@ def test_contact_forces_of_two_runs_differ_in_line_style(pair: list[Run], ax: Ax
 def test_what_cannot_be_compared_is_refused(pair: list[Run]) -> None:
     with pytest.raises(ModelError, match=r"'configuration' shows one result.* Draw each by itself"):
         plot.configuration(pair)  # type: ignore[arg-type]
+
+
+def test_panels_of_several_runs_share_a_legend_of_line_styles(pair: list[Run]) -> None:
+    """Each panel has its whole width: what it shows stands in its title."""
+    page = Figure(layout="constrained")
+    for ax in page.subplots(1, 2):
+        plot.contact_forces(pair, "driven", ax=ax)  # type: ignore[arg-type]
+    (shared,) = page.legends
+    assert [text.get_text() for text in shared.get_texts()] == ["one", "other"]
+    assert [ax.get_legend() for ax in page.axes] == [None, None]
