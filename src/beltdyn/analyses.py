@@ -104,6 +104,7 @@ _ALL = (
     Analysis(
         "sensitivity", "beltdyn.solve.sensitivity:sensitivity", "Find what results owe to each number of a drive."
     ),
+    Analysis("modes", "beltdyn.solve.modes:modes", "Find the modes of a drive: frequencies, damping, shapes."),
     # one line for each
 )
 

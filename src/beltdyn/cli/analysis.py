@@ -4,7 +4,8 @@ import re
 from collections.abc import Callable
 from inspect import Parameter, cleandoc, signature
 from pathlib import Path
-from typing import Annotated, Any
+from types import UnionType
+from typing import Annotated, Any, Union, get_args
 
 from cyclopts import Parameter as Option
 from cyclopts.validators import Number
@@ -76,7 +77,7 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         return ended(result) or (doubt(result.warnings) if strict else 0)
 
     own = {
-        name: one.replace(kind=Parameter.KEYWORD_ONLY)
+        name: one.replace(kind=Parameter.KEYWORD_ONLY, annotation=_in_words(one.annotation))
         for name, one in signature(function, eval_str=True).parameters.items()
         if one.kind is Parameter.KEYWORD_ONLY and name not in SHARED
     }
@@ -87,6 +88,14 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
     command.__name__ = analysis.name
     command.__doc__ = _help(analysis, own)
     return command
+
+
+def _in_words(annotation: Any) -> Any:
+    """The type of an option, without results in a union, which no word of a command line gives."""
+    from beltdyn.results import Result
+
+    kept = [one for one in get_args(annotation) if not (isinstance(one, type) and issubclass(one, Result))]
+    return Union[tuple(kept)] if isinstance(annotation, UnionType) else annotation  # noqa: UP007
 
 
 def _help(analysis: Analysis, own: dict[str, Parameter]) -> str:

@@ -75,13 +75,17 @@ def draw(
     from beltdyn.results import Run
 
     first = results[0]
-    if animation and not (isinstance(first, Run) and len(results) == 1):
+    if animation and not ((isinstance(first, Run) or first.kind == "modes") and len(results) == 1):
         these = f"are of {first.kind}" if len(results) == 1 else f"are {len(results)}"
-        raise ModelError(f"--animate needs results over time of one run, and these {these}. Leave it away.")
+        raise ModelError(f"--animate needs results over time of one run, or modes, and these {these}. Leave it away.")
     paths = plot.save_all(results, folder, **choice)
-    if animation and isinstance(first, Run):
+    if animation:
         path, film = animation
-        paths = [*paths, plot.animate(first, path, overwrite=bool(choice.get("overwrite")), **film)]
+        overwrite = bool(choice.get("overwrite"))
+        if isinstance(first, Run):
+            paths.append(plot.animate(first, path, overwrite=overwrite, **film))
+        else:
+            paths.append(plot.animate_modes(first, path, overwrite=overwrite))
     show(f"Figures in {folder}: {', '.join(path.name for path in paths)}")
 
 

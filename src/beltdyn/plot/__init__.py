@@ -12,6 +12,8 @@ from beltdyn.plot.history import torques as torques
 from beltdyn.plot.layout import layout as layout
 from beltdyn.plot.layout import save_layout as save_layout
 from beltdyn.plot.losses import losses as losses
+from beltdyn.plot.modes import animate_modes as animate_modes
+from beltdyn.plot.modes import mode_shape as mode_shape
 from beltdyn.plot.operating_points import efficiency_map as efficiency_map
 from beltdyn.plot.operating_points import operating_points as operating_points
 from beltdyn.plot.operating_points import traction_curve as traction_curve
@@ -31,4 +33,4 @@ from beltdyn.plot.tensioner_sheet import tensioner_sheet as tensioner_sheet
 from beltdyn.plot.wear import wear_by_arc as wear_by_arc
 from beltdyn.plot.wear import wear_by_belt as wear_by_belt
 
-__all__ = ["FIGURES", "animate", "layout", "save_all", "save_layout", *FIGURES]
+__all__ = ["FIGURES", "animate", "animate_modes", "layout", "save_all", "save_layout", *FIGURES]

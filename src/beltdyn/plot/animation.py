@@ -1,11 +1,14 @@
 """A run as a moving picture."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from PIL.Image import Image
 
 from beltdyn.arrays import FloatArray
@@ -69,16 +72,44 @@ def animate(
     chosen = _instants(run, frames, start, end, per_turn)
     figure = new_figure(size_of(run.drive))
     tension = run.dataset["belt_tension"].sel(field_time=slice(chosen[0], chosen[-1]))
+    with film(figure, path, frame_rate, overwrite) as take:
+        picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
+        for time in chosen:
+            picture.show(run.fields_at(time))
+            take()
+    return path
+
+
+@contextmanager
+def film(figure: Figure, path: Path, frame_rate: int, overwrite: bool) -> Iterator[Callable[[], None]]:
+    """Write an animation: what is given takes the figure as it is as the next picture.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    path : Path
+        The file, GIF or MP4.
+    frame_rate : int
+        Pictures shown per second.
+    overwrite : bool
+        Replace any regular file.
+
+    Raises
+    ------
+    ModelError
+        If the format is unknown or needs a program that is missing, or the file cannot be written.
+    """
     with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg()}):
         writer = _writer(path, frame_rate)
         require_replaceable(path, is_marked, overwrite)
-        picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
+
+        def take() -> None:
+            writer.grab_frame()
+            figure.set_layout_engine("none")
+
         with atomic_path(path, is_marked, overwrite) as temporary, writer.saving(figure, str(temporary), _DPI):
-            for time in chosen:
-                picture.show(run.fields_at(time))
-                writer.grab_frame()
-                figure.set_layout_engine("none")
-    return path
+            yield take
 
 
 def _instants(run: Run, frames: int, start: float | None, end: float | None, per_turn: int | None) -> FloatArray:

@@ -5,6 +5,7 @@ from beltdyn.solve.duty import duty
 from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
+from beltdyn.solve.modes import modes
 from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.sensitivity import sensitivity
@@ -34,6 +35,7 @@ __all__ = [
     "duty",
     "equilibrium",
     "find_equilibrium",
+    "modes",
     "operating_map",
     "sensitivity",
     "simulate",

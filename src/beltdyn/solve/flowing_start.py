@@ -61,7 +61,7 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
     direction = anchor_at(rest.system, rest.state, True).direction
     state = _running(rest) if steady else rest.state
     speed = float(rest.system.frame.speed[0])
-    return Beginning(rest.drive, flowing_system(rest.system, direction), _with_passage(rest.system, state, speed))
+    return Beginning(rest.drive, flowing_system(rest.system, direction), with_passage(rest.system, state, speed))
 
 
 def _require_steady(drive: Drive) -> None:
@@ -92,8 +92,8 @@ def _running(rest: Standing) -> State:
     return State(place, search.state.velocity, np.zeros_like(place))
 
 
-def _with_passage(system: System, state: State, speed: float) -> State:
-    """A state with the length that has passed, zero, and its speed (m/s)."""
+def with_passage(system: System, state: State, speed: float) -> State:
+    """Add the length of belt that has passed, zero, and its speed (m/s) to a state on a mesh that stays."""
     at = system.first_body + system.bodies.size - system.tensioners.size
 
     vectors = zip((state.position, state.velocity, state.acceleration), (0.0, speed, 0.0), strict=True)

@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
+from beltdyn.solve.arnoldi import arnoldi
 from beltdyn.solve.engine import linearise
 from beltdyn.system.arrays import Motion, System, TangentFactors
+from beltdyn.system.frame import Flowing
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.ring_matrix import entries, places
 
@@ -19,8 +21,8 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
 
-_BATCH, _BATCHES = 40, 2
-"""Steps of the Arnoldi method after which it looks what it has found, and how often it does at most."""
+_BATCHES = 2
+"""Batches of steps of the Arnoldi method, at most."""
 _TOLERANCE = 1e-3
 """Residual of an eigenvalue that counts as found, relative."""
 
@@ -41,6 +43,8 @@ class Vibrations:
         self.size = system.first_body + len(self._equations.matrix.corner)
         multipliers = self.size - len(system.scale) * system.joint
         self._ties = np.maximum(self._rows, self._columns) >= multipliers
+        if isinstance(system.frame, Flowing):
+            self._ties |= self._rows == self.size - 1
 
     def tangents(
         self, time: float, position: FloatArray, velocity: FloatArray
@@ -57,7 +61,7 @@ class Vibrations:
         Returns
         -------
         tuple of 3 ndarray
-            The ties of a joint, which are in any tangent, are left in K alone.
+            The ties of a joint, and of a mesh to its place, which are in any tangent, are left in K alone.
         """
         motion = Motion(time, position.copy(), velocity.copy(), np.zeros_like(position))
 
@@ -95,8 +99,11 @@ class Vibrations:
             Its eigenvalue s, 1/s; NaN where none is found.
         """
         solve = self._shifted_inverse(self.tangents(time, position, velocity), shift)
-        inverse = _largest_eigenvalues(solve, 2 * self.size) if solve else np.zeros(0)
-        return complex(max(shift + 1.0 / inverse, key=lambda value: value.real, default=np.nan))
+        for ritz in arnoldi(solve, 2 * self.size, _BATCHES) if solve else ():
+            found = ritz.values[ritz.residuals < _TOLERANCE]
+            if found.size:
+                return complex(max(shift + 1.0 / found, key=lambda value: value.real))
+        return complex(np.nan)
 
     def _shifted_inverse(
         self, tangents: tuple[FloatArray, FloatArray, FloatArray], shift: complex
@@ -120,28 +127,3 @@ class Vibrations:
             return np.concatenate([moved, (shift * moved + place) / scale])
 
         return solve
-
-
-def _largest_eigenvalues(apply: Callable[[ComplexArray], ComplexArray], size: int) -> ComplexArray:
-    """Eigenvalues of largest magnitude of a linear map, those that the Arnoldi method finds first.
-
-    It works on one vector at a time: on the small matrices of whole bases (ARPACK) the threads of linear algebra wait
-    for each other longer than they compute.
-    """
-    vector = np.random.default_rng(0).standard_normal(size).astype(complex)
-    basis = [vector / np.linalg.norm(vector)]
-    projected = np.zeros((_BATCHES * _BATCH + 1, _BATCHES * _BATCH), complex)
-    for steps in range(1, _BATCHES * _BATCH + 1):
-        vector = apply(basis[-1])
-        for number, direction in enumerate(basis):
-            projected[number, steps - 1] = np.vdot(direction, vector)
-            vector -= projected[number, steps - 1] * direction
-        rest = np.linalg.norm(vector)
-        if steps % _BATCH == 0 and np.isfinite(rest):
-            values, vectors = np.linalg.eig(projected[:steps, :steps])
-            found = values[rest * abs(vectors[-1]) < _TOLERANCE * abs(values)]
-            if found.size:
-                return np.asarray(found)
-        projected[steps, steps - 1] = rest
-        basis.append(vector / rest if rest > 0.0 else vector)
-    return np.zeros(0, complex)

@@ -1,0 +1,244 @@
+"""An analysis: the modes of a drive, with frequency, damping and shape, about rest or about steady running."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import ComplexArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.number_range import numbers_in
+from beltdyn.parts.quantity import RPM
+from beltdyn.results import Result, Run, Variable, build_result
+from beltdyn.results.schema import AXIS_NAMES, COORDINATES
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
+from beltdyn.solve.eigenvalues import pencil, swinging
+from beltdyn.solve.mode_shapes import Points, Shapes, belt_points, kind_of_mode, parts_of_mode, shapes_of
+from beltdyn.solve.progress import Report
+from beltdyn.solve.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
+from beltdyn.solve.steady import steady_state
+
+REST, STEADY = "rest", "steady"
+SLIDING, STUCK = "sliding", "stuck"
+"""Whether tensioners with dry friction move in a mode, without it, or are held by it."""
+_GROWS = 1e-6
+"""Growth rate of a mode that grows by itself, over its angular frequency."""
+_MODE = ("mode",)
+
+VARIABLES = {
+    "frequency": Variable(_MODE, "Hz", "Frequency"),
+    "damping_ratio": Variable(_MODE, "1", "Damping ratio"),
+    "growth_rate": Variable(_MODE, "1/s", "Growth rate, below zero where the mode decays"),
+    "kind": Variable(_MODE, "1", "Kind, by the shares of kinetic energy", "str"),
+    "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
+    "dry_tensioners": Variable(_MODE, "1", "Tensioners with dry friction", "str"),
+    "span_share": Variable((*_MODE, "span"), "1", "Share of the kinetic energy, of the span across itself"),
+    "pulley_share": Variable((*_MODE, "pulley"), "1", "Share of the kinetic energy, of the pulley's rotation"),
+    "belt_share": Variable((*_MODE, "whole"), "1", "Share of the kinetic energy, of the belt along itself"),
+    "tensioner_share": Variable((*_MODE, "tensioner"), "1", "Share of the kinetic energy, of the tensioner"),
+    "belt_shape": Variable((*_MODE, "part", "point"), "1", "Displacement of the belt to its left"),
+    "rim_shape": Variable((*_MODE, "part", "pulley"), "1", "Way of the rim, counter-clockwise"),
+    "tensioner_shape": Variable((*_MODE, "part", "tensioner"), "1", "Way of the tensioned pulley"),
+    "point_position": Variable(("point", "axis"), "m", "Position of the belt's points"),
+    "point_normal": Variable(("point", "axis"), "1", "Unit vector to the left of the belt"),
+    "point_span": Variable(("point",), "1", "Number of the span, or of that behind the arc", "int64"),
+}
+"""What is known of modes; shapes are real and imaginary parts, over the largest displacement of the mode."""
+
+_COORDINATES = {
+    "mode": Variable(_MODE, "1", "Mode", "int64"),
+    "part": Variable(("part",), "1", "Real or imaginary part", "str"),
+    "axis": COORDINATES["axis"],
+    "pulley": COORDINATES["pulley"],
+    "span": COORDINATES["span"],
+    "tensioner": COORDINATES["tensioner"],
+    "point_coordinate": Variable(("point",), "m", "Belt coordinate of the point, unstretched"),
+}
+
+
+class _Found(NamedTuple):
+    """Modes of a drive with tensioners that slide or stick."""
+
+    values: ComplexArray
+    shapes: Shapes
+    dry: str
+
+
+def modes(
+    drive: Drive,
+    *,
+    about: str | Run = STEADY,
+    speed: str | None = None,
+    pulley: str | None = None,
+    at: float | None = None,
+    count: int = 12,
+    force_tolerance: float = 0.01,
+    progress: Report | None = None,
+) -> Result:
+    """Find the modes of a drive: frequency, damping ratio, and what swings.
+
+    Vibrations are small, about a state that stays: at rest with a belt that sticks to its pulleys, or in steady
+    running, where the belt moves, creeps and slides as it does there. A pulley of prescribed speed does not swing.
+    Where tensioners have dry friction, modes are given twice: with tensioners that slide without it, and with stuck
+    ones.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    about
+        "steady" or "rest"; or the results of `steady_state`, whose drive counts then.
+    speed
+        Speed of the pulley that drives, such as "800 rpm", in place of its motor; by default it turns as its file says.
+    pulley
+        The pulley whose speed is prescribed by `speed`; by default the one that drives.
+    at
+        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+    count
+        How many modes to give, from the lowest frequency on.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh of steady running is refined.
+    progress
+        Called now and then with a `Progress`.
+
+    Returns
+    -------
+    Result
+        Variables along ``mode``.
+
+    Raises
+    ------
+    ModelError
+        If the belt is open, the drive cannot run steadily, or options do not go together.
+    ConvergenceError
+        If there is no such state, or nothing swings.
+
+    Examples
+    --------
+    >>> found = bd.modes(drive, about="rest", count=3)
+    >>> found.dataset.frequency.values.round(1).tolist()  # Hz
+    [9.2, 21.0, 21.0]
+    >>> found.dataset.kind.values.tolist()
+    ['rotational', 'span', 'span']
+    """
+    _require_sense(about, speed, pulley, at, count)
+    if isinstance(about, Run):
+        motions, state = about_steady(about), _running(about)
+    elif about == REST:
+        motions, state = about_rest(drive), "at rest"
+    else:
+        held = drive if speed is None else _at_speed(drive, speed, pulley, at)
+        run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
+        motions, state = about_steady(run), _running(run)
+    points, dry = belt_points(motions), dry_tensioners(motions.drive)
+    found = [_find(motions, points, count, SLIDING if dry.size else "")]
+    if dry.size:
+        found.append(_find(motions.with_stuck(dry), points, count, STUCK))
+    result = _result(motions, points, found)
+    return Result(result.dataset.assign_attrs(title=f"Modes of {drive.title}, {state}"), result.drive)
+
+
+def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | None, count: int) -> None:
+    """Make sure that the options make sense."""
+    if count < 1:
+        raise ModelError(f"count = {count} modes are none. Give 1 or more.")
+    if isinstance(about, Run):
+        if "belt_parameter" not in about.dataset.attrs:
+            raise ModelError(
+                "about holds no steady running, but a run over time. Give what `steady_state` has returned."
+            )
+    elif about not in (REST, STEADY):
+        raise ModelError(
+            f'about = {about!r} is no state. Give "{REST}", "{STEADY}", or what `steady_state` has returned.'
+        )
+    if about != STEADY and any(one is not None for one in (speed, pulley, at)):
+        raise ModelError(f'speed, pulley and at go with about = "{STEADY}" alone. Leave them out.')
+    if pulley is not None and speed is None:
+        raise ModelError(f"pulley = {pulley!r} names whose speed to prescribe, and there is no speed. Give speed.")
+
+
+def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | None) -> Drive:
+    """The drive with a pulley at a speed."""
+    values = numbers_in("speed", speed, "rad/s", 2)
+    if values.size > 1:
+        raise ModelError(f'speed = {speed!r} must be one speed, such as "800 rpm".')
+    held = held_at(drive, at)
+    number = driver_of(held) if pulley is None else held.number_of(pulley)
+    return at_speed(held, number, sense_of(held, number) * float(values[0]))
+
+
+def _running(run: Run) -> str:
+    """The state of steady running in words."""
+    name, speed = run.drive.pulleys[0].name, float(run.dataset["pulley_speed"][-1, 0])
+    return f"in steady running with {name} at {RPM * speed:.4g} rpm"
+
+
+def _find(motions: SmallMotions, points: Points, count: int, dry: str) -> _Found:
+    """Modes of a drive about a state."""
+    given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
+    values, vectors = swinging(given, count)
+    if not values.size:
+        raise ConvergenceError("the drive has no mode that swings. Check its masses, stiffnesses and damping.")
+    return _Found(values, shapes_of(motions, points, values, given.coordinates(values, vectors)), dry)
+
+
+def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Result:
+    """Modes as a result, sliding tensioners before stuck ones."""
+    drive, values = motions.drive, np.concatenate([one.values for one in found])
+    shapes = Shapes(*(np.concatenate(parts) for parts in zip(*(one.shapes for one in found), strict=True)))
+    pulleys, spans = [one.name for one in drive.pulleys], [f"{a}-{b}" for a, b in drive.spans]
+    tensioners = [pulleys[number] for number in motions.system.tensioners.pulley]
+    numbers = range(values.size)
+    arrays: dict[str, ArrayLike] = {
+        "frequency": values.imag / (2.0 * np.pi),
+        "damping_ratio": -values.real / np.abs(values),
+        "growth_rate": values.real,
+        "kind": [kind_of_mode(shapes, number) for number in numbers],
+        "moving_parts": [parts_of_mode(shapes, number, spans, pulleys, tensioners) for number in numbers],
+        "dry_tensioners": [one.dry for one in found for _ in one.values],
+        "span_share": shapes.span_share,
+        "pulley_share": shapes.pulley_share,
+        "belt_share": shapes.belt_share[:, None],
+        "tensioner_share": shapes.tensioner_share,
+        "belt_shape": _parts(shapes.belt),
+        "rim_shape": _parts(shapes.rims),
+        "tensioner_shape": _parts(shapes.tensioners),
+        "point_position": points.place,
+        "point_normal": points.normal,
+        "point_span": points.span,
+    }
+    labels: dict[str, ArrayLike] = {
+        "mode": np.arange(1, values.size + 1),
+        "part": ["real", "imaginary"],
+        "axis": list(AXIS_NAMES),
+        "pulley": pulleys,
+        "span": spans,
+        "tensioner": tensioners,
+        "point_coordinate": points.along,
+    }
+    absent = {*(() if tensioners else ("tensioner",)), *(() if found[0].dry else ("dry_tensioners",))}
+    return build_result(
+        "modes",
+        drive,
+        {name: (one, arrays[name]) for name, one in VARIABLES.items() if absent.isdisjoint((name, *one.dims))},
+        {name: (one, labels[name]) for name, one in _COORDINATES.items() if name not in absent},
+        list(_warnings(values)),
+    )
+
+
+def _parts(shape: ComplexArray) -> ArrayLike:
+    """Real and imaginary parts along a second axis."""
+    return np.stack([shape.real, shape.imag], axis=1)
+
+
+def _warnings(values: ComplexArray) -> list[str]:
+    """What grows by itself."""
+    growing = [number for number, one in enumerate(values, 1) if one.real > _GROWS * one.imag]
+    if not growing:
+        return []
+    named = ", ".join(f"{number} ({values[number - 1].real:.3g} 1/s)" for number in growing)
+    return [
+        f"modes grow by themselves: {named}. The drive does not stay in this state. Add damping, or look at a run over "
+        "time with `beltdyn run`."
+    ]
