@@ -19,6 +19,8 @@ _PALER = 0.25
 """By how much the lines of a result are paler than those of the result before."""
 _PALEST = 0.6
 _MOST_KEYS = 2
+_ROOMY = 50
+"""Letters of a legend from which on the names of results stand below the figure."""
 
 
 def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Result], ax: Axes | None) -> Axes:
@@ -43,7 +45,7 @@ def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Resul
         before = set(ax.get_children()) if ax is not None else set()
         ax = draw(result, ax)
         titles.add(ax.get_title(loc="left"))
-        new = [artist for artist in ax.get_children() if artist not in before]
+        new = [artist for artist in ax.get_children() if artist not in before | {ax.patch, *ax.spines.values()}]
         drawn.append([artist for artist in new if isinstance(artist, Line2D)])
         _tell_apart(new, number)
         for one in new:
@@ -54,10 +56,10 @@ def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Resul
         ax.set_title("")
     legend, page = _named(drawn, names), ax.figure.figure
     styles = [line for line in legend if not any(line in lines for lines in drawn)]
-    if not styles or len(page.axes) == 1:
+    if not styles or (len(page.axes) == 1 and sum(len(str(line.get_label())) for line in legend) < _ROOMY):
         name_lines(ax, legend)
         return ax
-    if len(legend) > len(styles) + 1:  # one line is named by the title of its panel
+    if len(page.axes) == 1 or len(legend) > len(styles) + 1:  # one line is named by the title of its panel
         name_lines(ax, [line for line in legend if line not in styles])
     if not page.legends:
         page.legend(handles=styles, loc="outside lower center")

@@ -106,3 +106,13 @@ def test_panels_of_several_runs_share_a_legend_of_line_styles(pair: list[Run]) -
     (shared,) = page.legends
     assert [text.get_text() for text in shared.get_texts()] == ["one", "other"]
     assert [ax.get_legend() for ax in page.axes] == [None, None]
+
+
+def test_long_names_stand_below_the_figure(make_run: Callable[..., Run]) -> None:
+    runs = [make_run(), make_run()]
+    for run, name in zip(runs, ("before", "after"), strict=True):
+        run.path = Path(f"a drive with a name as long as this one, {name}.nc")
+    ax = plot.speeds(runs)  # type: ignore[arg-type]
+    assert legend(ax) == ["driver", "driven"]
+    (below,) = ax.figure.figure.legends
+    assert [text.get_text().rsplit(" ", 1)[1] for text in below.get_texts()] == ["before", "after"]
