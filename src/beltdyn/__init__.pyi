@@ -62,6 +62,7 @@ from .report import write_report
 from .results import (
     VARIABLES,
     Balance,
+    Compared,
     Finding,
     PulleySummary,
     Resolution,
@@ -77,6 +78,7 @@ from .results import (
     open_result,
     open_run,
     power_balance,
+    steady_comparison,
     summarize,
     write_csv,
 )
@@ -119,6 +121,7 @@ __all__ = [
     "Belt",
     "BeltdynError",
     "Brake",
+    "Compared",
     "Constant",
     "Contact",
     "ConvergenceError",
@@ -206,6 +209,7 @@ __all__ = [
     "sensitivity",
     "simulate",
     "simulate_all",
+    "steady_comparison",
     "steady_state",
     "summarize",
     "sweep",

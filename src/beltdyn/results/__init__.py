@@ -16,6 +16,7 @@ from beltdyn.results.run import Run, open_result, open_run
 from beltdyn.results.schema import COORDINATES, RECORDED, VARIABLES, Variable
 from beltdyn.results.size import describe_size, expected_bytes, require_room
 from beltdyn.results.static import StaticResult, static_result
+from beltdyn.results.steady_comparison import Compared, steady_comparison
 from beltdyn.results.summary import Summary, summarize
 from beltdyn.results.tables import write_csv
 
@@ -27,6 +28,7 @@ __all__ = [
     "RECORDED",
     "VARIABLES",
     "Balance",
+    "Compared",
     "FileRecorder",
     "Finding",
     "KeyNumber",
@@ -55,6 +57,7 @@ __all__ = [
     "provenance",
     "require_room",
     "static_result",
+    "steady_comparison",
     "summarize",
     "write_csv",
 ]

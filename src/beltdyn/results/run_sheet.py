@@ -9,6 +9,7 @@ from beltdyn.results.recorded import attribute
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
+from beltdyn.results.steady_comparison import steady_parts
 from beltdyn.results.summary import Summary, summarize
 
 _LARGEST_MARGIN = 100.0
@@ -43,7 +44,7 @@ def run_sheet(run: Run) -> Sheet:
         tuple(_spans(summary)),
     )
     facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_solver(summary)))
-    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, facts))
+    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *steady_parts(run), facts))
 
 
 def _run_up(run: Run) -> list[tuple[str, str]]:

@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import get_args
 
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
 from beltdyn.results import Run, mesh_error_attribute, require_room
+from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
 from beltdyn.solve.flowing_start import Beginning, begin_flowing
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import bring_to_rest
@@ -15,6 +16,7 @@ from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.settling import Start
 from beltdyn.solve.standard import Name, StandardIntegrator
+from beltdyn.solve.steady import require_steady, steady_state
 from beltdyn.solve.trajectory import Integrator, drive_task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
@@ -30,6 +32,8 @@ def simulate(
     progress: Report | None = None,
     overwrite: bool = False,
     integrator: Integrator | None = None,
+    *,
+    compare_steady: bool = False,
 ) -> Run:
     """Simulate a drive over time.
 
@@ -46,6 +50,8 @@ def simulate(
     integrator
         Method of time integration; that of the drive, `simulation.integrator`, by default. A one-step method becomes
         one by `Stepwise`.
+    compare_steady
+        Find the steady running under the speeds and loads at the end too, and tell how the run differs from it.
 
     Returns
     -------
@@ -69,7 +75,7 @@ def simulate(
     >>> run.status, run.outputs
     ('completed', 11)
     """
-    return record_run(drive, output, progress, overwrite, integrator)
+    return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady)
 
 
 def record_run(
@@ -81,6 +87,7 @@ def record_run(
     *,
     begin: Begin | None = None,
     watch: Callable[[Arrays], None] | None = None,
+    compare_steady: bool = False,
     **attributes: str,
 ) -> Run:
     """Simulate a drive over time, for an analysis that says something of its own about the run.
@@ -93,6 +100,8 @@ def record_run(
         Finds the state to begin with from that at rest.
     watch
         Is given all outputs, and may end the run by an error.
+    compare_steady
+        As for `simulate`.
     **attributes
         Global attributes of the dataset.
 
@@ -102,6 +111,9 @@ def record_run(
         As `simulate` gives it.
     """
     require_room(drive, Path(output) if output is not None else None)
+    given = drive
+    if compare_steady:
+        require_steady(drive)
     integrator = integrator or choose_integrator(drive)
     flowing = None
     if drive.simulation.frame == "staying":
@@ -123,7 +135,17 @@ def record_run(
         for chunk in integrator(task):
             recording.take(chunk)
         recording.check()
+        if compare_steady:
+            recording.note(**_steady_running(given))
     return recording.run()
+
+
+def _steady_running(drive: Drive) -> dict[str, object]:
+    """Attributes that tell of the steady running under the speeds and loads at the end, or why there is none."""
+    try:
+        return {VALUES: steady_values(steady_state(drive))}
+    except (ConvergenceError, ModelError) as error:
+        return {FAILURE: str(error)}
 
 
 def _begin_travelling(drive: Drive, system: System, progress: Report | None) -> Beginning:
