@@ -182,6 +182,17 @@ class Pulley(Part):
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
     """Coefficient of friction of a belt on a pulley, with the wedge factor where its inside touches.
 
+    Raises
+    ------
+    ValueError
+        If none is given.
+    """
+    return flat_friction_on(pulley, belt, contact) * (belt.wedge_factor if pulley.side == "inside" else 1.0)
+
+
+def flat_friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
+    """Coefficient of friction of a belt on a pulley, without the wedge.
+
     It is that of the pulley, or of the contact, or of the belt: the first that is given.
 
     Raises
@@ -191,7 +202,7 @@ def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
     """
     for given in (pulley.friction, contact.friction, belt.friction):
         if given is not None:
-            return given * (belt.wedge_factor if pulley.side == "inside" else 1.0)
+            return given
     raise ValueError(
         "contact.friction is missing, and the belt has none of its own. Give the coefficient of friction, without the "
         "wedge: 0.3 to 0.4 for rubber on metal"

@@ -125,7 +125,7 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
 
 @figure(always, of=("traction",))
 def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
-    """Draw slip over torque up to gross slip, with elastic creep and what the slope of the friction law adds to it.
+    """Draw slip over torque past gross slip, with elastic creep and what the slope of the friction law adds to it.
 
     The vertical line is the largest torque by Euler's formula, with the tensions there.
 

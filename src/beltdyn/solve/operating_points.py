@@ -3,6 +3,7 @@
 import re
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -148,6 +149,16 @@ class OperatingPoints:
     def found(self) -> bool:
         """Whether there is a point with steady running."""
         return self._near is not None
+
+    @property
+    def near(self) -> Run | None:
+        """The operating point that was found last."""
+        return self._near
+
+    def pass_by(self, drive: Drive, force_tolerance: float) -> None:
+        """Find an operating point on the way to another one, without noting it; parameters as for `find`."""
+        with suppress(ConvergenceError):
+            self._near = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
 
     def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> None:
         """Find an operating point, from the one that was found before.

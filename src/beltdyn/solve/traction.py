@@ -1,4 +1,4 @@
-"""An analysis: slip of one pulley over the torque that it takes, up to gross slip."""
+"""An analysis: slip of one pulley over the torque that it takes, past gross slip."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
+from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.number_range import numbers_in
-from beltdyn.results import Result, Variable, summarize
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
+from beltdyn.results import Result, Run, Variable, summarize
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of, with_pulley
 from beltdyn.solve.operating_points import Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
@@ -25,6 +26,14 @@ _NEAR = 0.02
 """Part of the slip up to which gross slip is found."""
 _ROUGHLY = 0.05
 """Error of contact forces with which that is looked for."""
+_BEYOND = 1.2
+"""Slip up to which a curve goes, over gross slip."""
+_STRIDE = 0.02
+"""Slip from one operating point to the next, at most."""
+_FIRMER = 1.002
+"""Friction of the driver over its own, where its whole arc is about to slide together with that of the pulley."""
+_ABOUT = 0.7
+"""Part of both arcs that slides then."""
 _FEWEST = 3
 _ALL = 0.99
 """Part of an arc that slides as a whole."""
@@ -52,9 +61,11 @@ def traction(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Find the traction curve of a pulley: its slip over the torque that it takes, up to gross slip.
+    """Find the traction curve of a pulley: its slip over the torque that it takes, past gross slip.
 
-    The slip of the rim against the driver's is prescribed, and the torque follows. Beside it stand elastic creep, which
+    The slip of the rim against the driver's is prescribed, and the torque follows. Beyond gross slip it stays as it is.
+    Where the driver would slide on its whole arc at once, the speed of the belt would be open: its friction is raised
+    by 0.2 %. Beside the torque stand elastic creep, which
     Coulomb's friction would leave, what the slope of the friction law adds, and the torque by Euler's formula with the
     tensions of each point. Other pulleys keep their loads. A hub chain of the pulley is left out.
 
@@ -65,7 +76,7 @@ def traction(
     pulley
         The pulley; by default the one that is loaded, where it is one alone.
     slip
-        Slips: a range such as "0..20 %", or a list. By default from zero to where the whole arc slides.
+        Slips: a range such as "0..20 %", or a list. By default from zero to a fifth beyond gross slip.
     points
         Number of slips of a range.
     at
@@ -112,16 +123,23 @@ def traction(
     if one.hub:
         held = held.replace(pulley=[other.replace(hub=()) if other is one else other for other in held.pulleys])
 
-    def slipping(part: float) -> Drive:
-        return at_speed(held, number, (1.0 - part) * fastest)
+    def slipping(part: float, firmer: float = 1.0) -> Drive:
+        first = held.pulleys[0]
+        friction = firmer * flat_friction_on(first, held.belt, held.contact)
+        firm = held if firmer == 1.0 else with_pulley(held, 0, first.replace(friction=friction))
+        return at_speed(firm, number, (1.0 - part) * fastest)
 
-    slips = _up_to_gross_slip(slipping, number, points) if slip is None else numbers_in("slip", slip, "", points)
+    slips = _past_gross_slip(slipping, number, points) if slip is None else numbers_in("slip", slip, "", points)
     axes = {"slip": (Variable(("slip",), "1", f"Slip of {one.name}"), slips)}
     with OperatingPoints("traction", slipping(0.0), axes, output, progress, overwrite) as table:
         table.derive = partial(_curve, number=number, sense=float(np.sign(fastest)))
         table.attributes = {"drive_as_given": drive.text, "pulley": one.name}
-        for index, part in enumerate(slips):
-            table.find((index,), slipping(float(part)), force_tolerance)
+        before = 0.0
+        for index, part in enumerate(slips.tolist()):
+            for on_the_way in np.arange(before + _STRIDE, part, _STRIDE).tolist():
+                table.pass_by(slipping(on_the_way, _firmness(table.near, number)), force_tolerance)
+            table.find((index,), slipping(part, _firmness(table.near, number)), force_tolerance)
+            before = part
     return table.result()
 
 
@@ -151,24 +169,35 @@ def _loaded(drive: Drive, driver: int) -> int:
     return found[0]
 
 
-def _up_to_gross_slip(slipping: Callable[[float], Drive], number: int, points: int) -> FloatArray:
-    """Slips from zero to where the whole arc of the pulley slides, or that of the driver."""
+def _sliding(run: Run, number: int) -> tuple[float, float]:
+    """Parts of the arcs of the driver and of a pulley that slide."""
+    pulleys = summarize(run).pulleys
+    first, other = (one.sliding_arc / one.wrap_angle for one in (pulleys[0], pulleys[number]))
+    return first, other
+
+
+def _firmness(near: Run | None, number: int) -> float:
+    """Friction of the driver, over its own, next to an operating point."""
+    return _FIRMER if near is not None and min(_sliding(near, number)) > _ABOUT else 1.0
+
+
+def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, points: int) -> FloatArray:
+    """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver."""
     if points < _FEWEST:
         raise ModelError(f"points = {points} must be {_FEWEST} or more: give more, or slips of your own.")
     creeping, sliding, run = 0.0, _LAST, None
     while sliding - creeping > _NEAR * sliding:
         part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
         try:
-            found = steady_state(slipping(part), force_tolerance=_ROUGHLY, start=run)
+            found = steady_state(slipping(part, _FIRMER), force_tolerance=_ROUGHLY, start=run)
         except ConvergenceError:
             sliding = part
             continue
-        pulleys = summarize(found).pulleys
-        if any(one.sliding_arc > _ALL * one.wrap_angle for one in (pulleys[0], pulleys[number])):
+        if max(_sliding(found, number)) > _ALL:
             sliding = part
         else:
             creeping, run = part, found
-    return np.linspace(0.0, sliding if run is None else creeping, points)
+    return np.linspace(0.0, _BEYOND * sliding, points)
 
 
 def _curve(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axes:

@@ -19,16 +19,17 @@ def loaded() -> Drive:
     return drive.replace(contact=drive.contact.replace(friction=0.3))
 
 
-def test_from_nothing_to_gross_slip(loaded: Drive, tmp_path: Path) -> None:
+def test_from_nothing_past_gross_slip(loaded: Drive, tmp_path: Path) -> None:
     file = tmp_path / "traction.nc"
     found = traction(loaded, points=8, output=file).dataset
     xr.testing.assert_allclose(open_result(file).dataset[["torque", "elastic"]], found[["torque", "elastic"]])
     assert found.attrs["pulley"] == "driven"
-    assert np.all(np.diff(found.torque) > 0.0)
+    assert np.all(np.diff(found.torque) > -1e-6 * found.limit_torque)
     assert abs(float(found.torque[0])) < 0.1
-    assert found.sliding_share[-1] > 0.75
+    assert found.sliding_share[-1] > 0.99
+    assert float(found.slip[-1]) == pytest.approx(1.2 * 0.164, rel=0.03)
     assert found.sliding_share[0] < 0.05
-    assert float(found.limit_torque) == float(found.torque[-1])
+    assert float(found.limit_torque) == pytest.approx(float(found.torque[-1]), rel=1e-6)
     np.testing.assert_allclose(found.elastic + found.added + found.slid, found.slip, atol=1e-9)
     np.testing.assert_allclose(found.pulley_slip.sel(pulley="driven"), found.slip, atol=1e-9)
 
