@@ -49,7 +49,7 @@ def test_a_run_that_begins_in_steady_running_stays_there(settled: Run, capsys: p
     assert "contact force of driven" in said
 
 
-def test_numbers_stand_in_their_order(make_run: Callable[..., Run]) -> None:
+def test_numbers_stand_in_their_order(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
     """Twice those of the run itself."""
     run = make_run(outputs=101)
     values = steady_values(run)
@@ -61,6 +61,10 @@ def test_numbers_stand_in_their_order(make_run: Callable[..., Run]) -> None:
     assert [one.run for one in compared if one.quantity == "speed"] == speeds
     forces = [one for one in compared if one.quantity == "contact force"]
     assert [one.name for one in forces] == [one.name for one in summarize(run).pulleys]
+    show_result(run)
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Against steady running" in said
+    assert "speed of driver 114.59 229.18 rpm -115 -50.00%" in said
 
 
 def test_nothing_is_said_where_nothing_was_asked_for(
