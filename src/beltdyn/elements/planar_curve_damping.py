@@ -1,7 +1,8 @@
-"""Kelvin-Voigt damping of a planar centreline in the strains eps = sqrt(G) - 1 and kappa = c / sqrt(G).
+"""Damping of a planar centreline in the strains eps = sqrt(G) - 1 and kappa = c / sqrt(G), point by point.
 
-With the rate potential A / 2 (deps/dt)^2 + B / 2 (dkappa/dt)^2 of a point; G and c as in `planar_curve`.  These are the
-strains that `ancf.material_damping` damps, without shear.
+Of Kelvin-Voigt, with the rate potential A / 2 (deps/dt)^2 + B / 2 (dkappa/dt)^2 of a point, and by hysteresis of the
+curvature (`hysteretic`); G and c as in `planar_curve`.  The strains are those that `ancf.material_damping` damps,
+without shear.
 """
 
 from math import sqrt
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.elements.hysteretic import Hysteretic, hysteretic
 from beltdyn.elements.planar_curve import Density, add_density_tangent, fill_slopes
 from beltdyn.kernel import kernel
 
@@ -35,13 +37,20 @@ class PointDamping(NamedTuple):
     """A, N s m."""
     bending: float
     """B, N s m^3."""
+    hysteresis: float
+    """Modulus of the hysteresis of bending, N m^3."""
+    passing_length: float
+    """Length over which slow rates are smoothed in it, m."""
+    square: float
+    """Of the belt's speed, m^2/s^2."""
     by_position: float
     by_velocity: float
 
 
 def curve_damping_scratch(vectors: int) -> dict[str, str]:
-    """Fields of ``work`` for `add_curve_damping`: derivatives of both strains, and of their rates."""
-    return {"strain_slope": f"(2,{2 * vectors})f8", "strain_drift": f"(2,{2 * vectors})f8"}
+    """Fields of ``work`` for `add_curve_damping`: derivatives of both strains, of their rates, and by the speed."""
+    size = 2 * vectors
+    return {"strain_slope": f"(2,{size})f8", "strain_drift": f"(2,{size})f8", "by_square": f"{size}f8"}
 
 
 @kernel
@@ -59,7 +68,8 @@ def add_curve_damping(
     motion
         The point.
     work
-        `gradient` and `tangent` are changed; fields of `curve_scratch` and `curve_damping_scratch`.
+        `gradient`, `tangent` and `by_square`, the derivative of the force by the square of the speed, are changed;
+        fields of `curve_scratch` and `curve_damping_scratch`.
 
     Returns
     -------
@@ -76,7 +86,8 @@ def add_curve_damping(
     by_gg = 0.75 * cross * by_c / (metric * metric)
     stretch_g, stretch_gg = 0.5 * by_c, -0.25 * by_c / metric
     strain_rate, curvature_rate = stretch_g * metric_rate, by_g * metric_rate + by_c * cross_rate
-    force, moment = damping.axial * strain_rate, damping.bending * curvature_rate
+    law = hysteretic(damping.hysteresis, cross * by_c, curvature_rate, damping.square, damping.passing_length)
+    force, moment = damping.axial * strain_rate, damping.bending * curvature_rate + law.stress
     for a in range(len(slope)):
         for axis in range(2):
             column, side = 2 * a + axis, 1.0 - 2.0 * axis
@@ -93,24 +104,26 @@ def add_curve_damping(
                 + by_gc * metric_rate * of_cross
             )
             work.gradient[column] += force * work.strain_slope[0, column] + moment * work.strain_slope[1, column]
+            work.by_square[column] += law.by_square * work.strain_slope[1, column]
     if damping.by_position != 0.0 or damping.by_velocity != 0.0:
         pull, turn = damping.by_position * force, damping.by_position * moment
         density = Density(
             pull * stretch_g + turn * by_g, turn * by_c, pull * stretch_gg + turn * by_gg, turn * by_gc, 0.0
         )
         add_density_tangent(density, slope, bend, work)
-        _add_products(damping, work)
+        _add_products(damping, law, work)
     return force * strain_rate, moment * curvature_rate
 
 
 @kernel(inline=True)
-def _add_products(damping: PointDamping, work: np.record) -> None:
-    """Add what the rates of the strains contribute to the tangent."""
-    size = work.strain_slope.shape[1]
-    for k, factor in ((0, damping.axial), (1, damping.bending)):
+def _add_products(damping: PointDamping, law: Hysteretic, work: np.record) -> None:
+    """Add what the strains and their rates contribute to the tangent."""
+    size, by_strain = work.strain_slope.shape[1], damping.by_position * law.by_strain
+    for k, factor, share in ((0, damping.axial, 0.0), (1, damping.bending + law.by_rate, by_strain)):
+        if factor == 0.0:
+            continue
         for column in range(size):
-            by_rate = factor * (
-                damping.by_position * work.strain_drift[k, column] + damping.by_velocity * work.strain_slope[k, column]
-            )
+            drift, slope = work.strain_drift[k, column], work.strain_slope[k, column]
+            change = factor * damping.by_position * drift + (factor * damping.by_velocity + share) * slope
             for row in range(size):
-                work.tangent[row, column] += work.strain_slope[k, row] * by_rate
+                work.tangent[row, column] += work.strain_slope[k, row] * change

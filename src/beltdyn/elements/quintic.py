@@ -8,6 +8,7 @@ is that of the paper's element without shear,
 with the energy W of the law of stretch.  The curvature is continuous from element to element.
 """
 
+from functools import cache
 from math import comb
 from typing import NamedTuple
 
@@ -30,6 +31,19 @@ from beltdyn.stretch import stretching
 
 Six = tuple[float, float, float, float, float, float]
 _DEGREE = 5
+_ORDERS = np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0])
+"""Of the derivatives that the six vectors are."""
+_UNIT_CONTROL = np.array(
+    [
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [1.0, 0.2, 0.0, 0.0, 0.0, 0.0],
+        [1.0, 0.4, 0.05, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0, -0.4, 0.05],
+        [0.0, 0.0, 0.0, 1.0, -0.2, 0.0],
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    ]
+)
+"""Control points from the six vectors of an element of length 1."""
 
 
 class Quintic(NamedTuple):
@@ -131,17 +145,21 @@ def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, 
 
 def quintic_control(length: float) -> FloatArray:
     """Control points of the Bezier curve from the six vectors, shape (1, 6, 6)."""
-    fifth, square = length / 5.0, length**2 / 20.0
-    near = np.array([[1.0, 0.0, 0.0], [1.0, fifth, 0.0], [1.0, 2.0 * fifth, square]])
-    far = near * [1.0, -1.0, 1.0]
-    return np.block([[near, np.zeros((3, 3))], [np.zeros((3, 3)), far[::-1]]])[None]
+    return np.asarray(_UNIT_CONTROL * length**_ORDERS)[None]
 
 
 def quintic_mass(section: Section, length: float) -> FloatArray:
-    """Mass matrix, the integral of rho A S^T S, which six Gauss points take exactly, shape (12, 12)."""
+    """Mass matrix, the integral of rho A S^T S, shape (12, 12)."""
+    scale = length ** np.repeat(_ORDERS, 2)
+    return np.asarray(section.mass * length * scale[:, None] * _unit_mass() * scale)
+
+
+@cache
+def _unit_mass() -> FloatArray:
+    """Integral of S^T S over an element of length 1, which six Gauss points take exactly, shape (12, 12)."""
     xi, weights = gauss_points(_DEGREE + 1)
     bernstein = np.array([comb(_DEGREE, k) * xi**k * (1.0 - xi) ** (_DEGREE - k) for k in range(_DEGREE + 1)])
-    shape = np.sqrt(section.mass * length * weights)[:, None] * (bernstein.T @ quintic_control(length)[0])
+    shape = np.sqrt(weights)[:, None] * (bernstein.T @ _UNIT_CONTROL)
     return np.kron(shape.T @ shape, np.eye(2))
 
 
@@ -155,18 +173,36 @@ def quintic_damping(
     by_velocity: float,
     work: np.record,
 ) -> tuple[float, float]:
-    """Damping of the strains sqrt(G) - 1 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`."""
-    stretching, turning, points, weights = 0.0, 0.0, element.elastic.points, element.elastic.weights
+    """Damping of the strains sqrt(G) - 1 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`.
+
+    Hysteresis of bending takes the mean velocity of both ends for that of the belt.
+    """
+    section, points, weights = element.section, element.elastic.points, element.elastic.weights
+    speed = 0.5 * (velocity[0] + velocity[6]), 0.5 * (velocity[1] + velocity[7])
+    stretching, turning, square = 0.0, 0.0, speed[0] * speed[0] + speed[1] * speed[1]
+    work.by_square[:] = 0.0
     for k in range(points.size):
         slope, bend = slopes(points[k], length), bends(points[k], length)
         q, w, weight = combine(e, slope), combine(e, bend), weights[k] * length
         motion = CurveMotion(q, w, combine(velocity, slope), combine(velocity, bend))
         damping = PointDamping(
-            weight * element.section.axial_damping, weight * element.section.bending_damping, by_position, by_velocity
+            weight * section.axial_damping,
+            weight * section.bending_damping,
+            weight * section.bending_hysteresis,
+            section.passing_length,
+            square,
+            by_position,
+            by_velocity,
         )
         stretch, turn = add_curve_damping(damping, slope, bend, motion, work)
         stretching += stretch
         turning += turn
+    if by_velocity != 0.0:
+        for axis in range(2):
+            for row in range(e.size):
+                moved = by_velocity * work.by_square[row] * speed[axis]
+                work.tangent[row, axis] += moved
+                work.tangent[row, 6 + axis] += moved
     return stretching, turning
 
 

@@ -29,6 +29,10 @@ class Section(NamedTuple):
     """E A alpha1 times the damping time of stretch, N s."""
     bending_damping: float = 0.0
     """E I alpha2 times the damping time of bending, N m^2 s."""
+    bending_hysteresis: float = 0.0
+    """Modulus of the hysteresis of bending that elements themselves take point by point, N m^2."""
+    passing_length: float = 1.0
+    """Length over which slow rates of bending are smoothed in it, m."""
 
     @property
     def axial(self) -> float:
@@ -38,5 +42,5 @@ class Section(NamedTuple):
 
 @kernel(inline=True)
 def is_damped(section: Section) -> bool:
-    """Whether the material of a section has damping."""
-    return section.axial_damping > 0.0 or section.bending_damping > 0.0
+    """Whether the material of a section has damping, or hysteresis of its own."""
+    return section.axial_damping > 0.0 or section.bending_damping > 0.0 or section.bending_hysteresis > 0.0

@@ -10,7 +10,7 @@ from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
-from beltdyn.elements.quintic import QUINTIC
+from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
@@ -52,7 +52,7 @@ def drive_system(drive: Drive) -> System:
 
 
 def staying_system(drive: Drive, lengths: FloatArray) -> System:
-    """Arrays of a drive with a closed belt on a mesh that stays, of quintic elements.
+    """Arrays of a drive with a closed belt on a mesh that stays, of quintic elements with hysteresis of their own.
 
     Parameters
     ----------
@@ -66,14 +66,25 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
     System
         With a belt that does not flow.
     """
-    belt = drive.completed.belt.replace(
-        discretization=QUINTIC.name, elements=lengths.size, integration="full", quadrature_points=_STAYING_ELASTIC
+    given = drive.completed.belt
+    belt = given.replace(
+        discretization=QUINTIC.name,
+        elements=lengths.size,
+        integration="full",
+        quadrature_points=_STAYING_ELASTIC,
+        bending_loss_factor=0.0,
     )
     contact = drive.completed.contact.replace(
         sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT
     )
     system = _system_of(drive, belt, contact, "shared_node", lengths=lengths)
-    return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
+    element = system.element
+    if given.bending_loss_factor > 0.0:
+        passing = passing_strains(drive)
+        modulus = passing.bending_share * given.bending_loss_factor * given.bending_stiffness
+        section = element.section._replace(bending_hysteresis=modulus, passing_length=passing.bending_length)
+        element = Quintic(section, element.elastic)
+    return system._replace(element=element, frame=staying(system.control, system.length, belt.mass_per_length))
 
 
 def flowing_system(system: System, direction: FloatArray) -> System:
@@ -110,7 +121,7 @@ def _system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **m
         tensioners=completed.tensioners,
         path=completed.path,
         gravity=drive.gravity,
-        passing=passing_strains(drive) if drive.belt.has_hysteresis else None,
+        passing=passing_strains(drive) if belt.has_hysteresis else None,
         **more,
     )
 

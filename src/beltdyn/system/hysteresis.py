@@ -1,4 +1,4 @@
-"""Hysteresis of stretch and bending: stress that resists the rate of a strain by a share of the strain, at any speed.
+"""Hysteresis of stretch and bending in an element: its law is in `elements.hysteretic`.
 
 Of an element with the reference length L it takes two strains, both of them means over the element: the elongation
 
@@ -6,30 +6,22 @@ Of an element with the reference length L it takes two strains, both of them mea
 
 beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centreline
 at both ends.  Bending without tension shortens the centreline by b kappa^2, which is no stretch: it is added to eps.
-Of a strain x with the rate dx/dt and the modulus c (N, or N m^2) the stress is
-
-    c |x| dx/dt / sqrt((dx/dt)^2 + (w x)^2),    w^2 = (v^2 + v_0^2) / l^2,
-
-after Reid (1956), who has the sign of the rate: rates far above w |x| meet c |x|, whatever the rate; slower ones are
-damped in proportion.  v is the speed of the element and l a length over which strains change on the way of the belt.
-The power is never negative.  Means know no waves of the strain within an element, and a strain that passes from one
-element to the next loses the same on any mesh.  The paper has no damping of the belt's material.
+Means know no waves of the strain within an element, and a strain that passes from one element to the next loses the
+same on any mesh that travels.  In a mesh that stays nothing passes from element to element, and means would jump there:
+bending is damped point by point (`elements.planar_curve_damping`), and rows are of stretch alone.
 """
 
-from math import atan2, comb, sqrt
-from typing import Final, NamedTuple
+from math import atan2, comb
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.elements.hysteretic import Hysteretic, hysteretic
 from beltdyn.kernel import kernel
 from beltdyn.model import Belt
 from beltdyn.model.hysteresis import SMOOTHED, Passing
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import Records, record, records
-
-CREEPING: Final = 0.1
-"""v_0: speed of the belt below which hysteresis turns into damping in proportion to the rate, m/s."""
 
 
 def hysteresis_record(vectors: int) -> np.dtype[np.void]:
@@ -101,51 +93,6 @@ def hysteresis_rows(belt: Belt, length: FloatArray, control: FloatArray, passing
         metric=np.einsum("p,ecpa,ecpb->eab", weights / curves, slopes, slopes),
         ends=np.concatenate(sides, axis=1),
         middle=0.5 * (control[:, 0, 0] + control[:, -1, -1]),
-    )
-
-
-class Hysteretic(NamedTuple):
-    """A stress by hysteresis and its derivatives."""
-
-    stress: float
-    """N, or N m."""
-    by_strain: float
-    by_rate: float
-    by_square: float
-    """By the square of the belt's speed."""
-
-
-@kernel
-def hysteretic(modulus: float, strain: float, rate: float, square: float, length: float) -> Hysteretic:
-    """Stress of rate-independent damping (Reid 1956), smoothed at slow rates.
-
-    Parameters
-    ----------
-    modulus
-        c, N or N m^2.
-    strain, rate
-        x, and dx/dt (1/s times the unit of x).
-    square
-        v^2, m^2/s^2.
-    length
-        l, m.
-
-    Returns
-    -------
-    Hysteretic
-    """
-    slow = (square + CREEPING * CREEPING) / (length * length)
-    root = sqrt(rate * rate + slow * strain * strain)
-    if root == 0.0:
-        return Hysteretic(0.0, 0.0, 0.0, 0.0)
-    size, sign = abs(strain), 1.0 if strain >= 0.0 else -1.0
-    share = rate / root
-    fast = share * share
-    return Hysteretic(
-        modulus * size * share,
-        modulus * sign * share * fast,
-        modulus * size / root * (1.0 - fast),
-        -0.5 * modulus * size * share * (1.0 - fast) / (slow * length * length),
     )
 
 

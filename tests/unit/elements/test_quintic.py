@@ -5,6 +5,7 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.strain_energy import energy_density
+from beltdyn.elements.hysteretic import hysteretic
 from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes
 from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
@@ -110,14 +111,19 @@ def test_factors_are_the_derivatives_of_the_curve_that_contact_sees() -> None:
 
 
 DAMPED = Quintic(SECTION._replace(axial_damping=30.0, bending_damping=1e-4), gauss_points(4))
+LOSSY = Quintic(SECTION._replace(bending_hysteresis=0.01, passing_length=0.03), gauss_points(4))
 VELOCITY = 2.0 * SCALE * np.random.default_rng(7).uniform(-1.0, 1.0, 12)
 
 
 def damping(
-    e: FloatArray, velocity: FloatArray, by_position: float = 0.0, by_velocity: float = 0.0
+    e: FloatArray,
+    velocity: FloatArray,
+    by_position: float = 0.0,
+    by_velocity: float = 0.0,
+    element: Quintic = DAMPED,
 ) -> tuple[tuple[float, float], FloatArray, FloatArray]:
     work = blank(QUINTIC.workspace)
-    powers = QUINTIC.damping(DAMPED, e, velocity, LENGTH, by_position, by_velocity, work)
+    powers = QUINTIC.damping(element, e, velocity, LENGTH, by_position, by_velocity, work)
     return powers, work.gradient, work.tangent
 
 
@@ -133,14 +139,35 @@ def test_power_of_damping_is_that_of_the_strain_rates(deformed: FloatArray) -> N
     assert force @ VELOCITY == pytest.approx(sum(powers), rel=1e-12)
 
 
+@pytest.mark.parametrize(("element", "accuracy"), [(DAMPED, DIFFERENCES), (LOSSY, 1e-6)])
 @pytest.mark.parametrize("by", [(1.0, 0.0), (0.0, 1.0), (0.7, 30.0)])
-def test_tangent_of_damping_is_the_slope_of_the_force(deformed: FloatArray, by: tuple[float, float]) -> None:
+def test_tangent_of_damping_is_the_slope_of_the_force(
+    deformed: FloatArray, by: tuple[float, float], element: Quintic, accuracy: float
+) -> None:
+    """Hysteresis bends sharply where the curvature and its rate are small: its differences err more."""
     found = np.zeros((12, 12))
     for column, move in enumerate(1e-5 * np.diag(SCALE)):
-        ends = [damping(deformed + s * by[0] * move, VELOCITY + s * by[1] * move)[1] for s in (1, -1)]
+        ends = [
+            damping(deformed + s * by[0] * move, VELOCITY + s * by[1] * move, 0.0, 0.0, element)[1] for s in (1, -1)
+        ]
         found[:, column] = SCALE * (ends[0] - ends[1]) / 2e-5
-    expected = SCALE[:, None] * damping(deformed, VELOCITY, *by)[2] * SCALE
-    np.testing.assert_allclose(found, expected, atol=DIFFERENCES * np.abs(expected).max())
+    expected = SCALE[:, None] * damping(deformed, VELOCITY, *by, element)[2] * SCALE
+    np.testing.assert_allclose(found, expected, atol=accuracy * np.abs(expected).max())
+
+
+def test_power_of_hysteresis_is_that_of_the_law_at_points(deformed: FloatArray) -> None:
+    """With the curvature c / sqrt(G), its rate by complex steps, and the mean velocity of both ends."""
+    moved, expected = (deformed + 1e-30j * VELOCITY).reshape(6, 2), 0.0
+    square = float(np.sum((0.5 * (VELOCITY[:2] + VELOCITY[6:8])) ** 2))
+    for xi, weight in zip(*gauss_points(4), strict=True):
+        q, w = slopes(xi, LENGTH) @ moved, bends(xi, LENGTH) @ moved
+        curvature = (q[0] * w[1] - q[1] * w[0]) / np.sqrt(q @ q)
+        rate = float(curvature.imag) / 1e-30
+        expected += weight * LENGTH * hysteretic(0.01, float(curvature.real), rate, square, 0.03).stress * rate
+    powers, force, _ = damping(deformed, VELOCITY, element=LOSSY)
+    assert powers[0] == 0.0
+    assert powers[1] == pytest.approx(expected, rel=1e-11)
+    assert force @ VELOCITY == pytest.approx(expected, rel=1e-11)
 
 
 def test_rigid_motion_is_not_damped(deformed: FloatArray) -> None:

@@ -3,9 +3,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from beltdyn.elements.hysteretic import CREEPING, hysteretic
 from beltdyn.model import Drive, install
 from beltdyn.model.hysteresis import SMOOTHED, bending_resistance, passing_strains
-from beltdyn.system.hysteresis import CREEPING, hysteretic
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, stretch_loss
 
 MakeDrive = Callable[..., Drive]

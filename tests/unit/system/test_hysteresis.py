@@ -1,6 +1,4 @@
-"""Hysteresis of an element: its law, exact tangents, power, and what it leaves alone."""
-
-from itertools import product
+"""Hysteresis of an element: exact tangents, power, and what it leaves alone."""
 
 import numpy as np
 import pytest
@@ -12,7 +10,7 @@ from beltdyn.records import Records, blank
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.element_state import element_workspace
-from beltdyn.system.hysteresis import CREEPING, add_hysteresis, hysteresis_tension, hysteretic
+from beltdyn.system.hysteresis import add_hysteresis, hysteresis_tension
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE
 
 PASSING = Passing(strain=0.01, stretch_length=0.05, bending_length=0.02)
@@ -51,32 +49,6 @@ def evaluate(
     work.coordinates[0], work.coordinates[1] = e, velocity
     powers = add_hysteresis(system.hysteresis[0], system.vectors, *by, work)
     return powers, work.element.gradient, work.element.tangent
-
-
-@pytest.mark.parametrize(("strain", "rate"), list(product((-0.3, 0.2), (-5.0, 0.04, 9.0))))
-def test_fast_rates_meet_a_share_of_the_strain(strain: float, rate: float) -> None:
-    found = hysteretic(7.0, strain, 1e6 * rate, 4.0, 0.1)
-    assert found.stress == pytest.approx(7.0 * abs(strain) * np.sign(rate), rel=1e-6)
-
-
-def test_slow_rates_are_damped_in_proportion() -> None:
-    """With the time l / v."""
-    found = hysteretic(7.0, 0.2, 1e-6, 4.0, 0.1)
-    assert found.stress == pytest.approx(7.0 * 1e-6 * 0.1 / np.hypot(2.0, CREEPING), rel=1e-6)
-    assert found.stress == pytest.approx(found.by_rate * 1e-6, rel=1e-6)
-
-
-def test_without_strain_and_rate_there_is_no_stress() -> None:
-    assert hysteretic(7.0, 0.0, 0.0, 4.0, 0.1) == (0.0, 0.0, 0.0, 0.0)
-
-
-@pytest.mark.parametrize(("strain", "rate"), list(product((-0.3, 0.2), (-5.0, 0.04, 9.0))))
-def test_derivatives_of_the_law(strain: float, rate: float) -> None:
-    found, step = hysteretic(7.0, strain, rate, 4.0, 0.1), 1e-6
-    for number, slope in enumerate((found.by_strain, found.by_rate, found.by_square)):
-        moved = [(np.array([strain, rate, 4.0]) + sign * step * np.eye(3)[number]).tolist() for sign in (1, -1)]
-        up, down = (hysteretic(7.0, x, velocity, square, 0.1).stress for x, velocity, square in moved)
-        assert slope == pytest.approx((up - down) / (2 * step), rel=1e-6, abs=1e-8)
 
 
 @pytest.mark.parametrize("by", [(1.0, 0.0), (0.0, 30.0), (0.7, 30.0)])

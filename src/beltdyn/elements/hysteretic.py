@@ -1,0 +1,63 @@
+"""Hysteresis: stress that resists the rate of a strain by a share of the strain, at any speed.
+
+Of a strain x with the rate dx/dt and the modulus c (N, or N m^2) the stress is
+
+    c |x| dx/dt / sqrt((dx/dt)^2 + (w x)^2),    w^2 = (v^2 + v_0^2) / l^2,
+
+after Reid (1956), who has the sign of the rate: rates far above w |x| meet c |x|, whatever the rate; slower ones are
+damped in proportion.  v is the speed of the belt and l a length over which strains change on the way of the belt.
+The power is never negative.  The paper has no damping of the belt's material.
+"""
+
+from math import sqrt
+from typing import Final, NamedTuple
+
+from beltdyn.kernel import kernel
+
+CREEPING: Final = 0.1
+"""v_0: speed of the belt below which hysteresis turns into damping in proportion to the rate, m/s."""
+
+
+class Hysteretic(NamedTuple):
+    """A stress by hysteresis and its derivatives."""
+
+    stress: float
+    """N, or N m."""
+    by_strain: float
+    by_rate: float
+    by_square: float
+    """By the square of the belt's speed."""
+
+
+@kernel
+def hysteretic(modulus: float, strain: float, rate: float, square: float, length: float) -> Hysteretic:
+    """Stress of rate-independent damping (Reid 1956), smoothed at slow rates.
+
+    Parameters
+    ----------
+    modulus
+        c, N or N m^2.
+    strain, rate
+        x, and dx/dt (1/s times the unit of x).
+    square
+        v^2, m^2/s^2.
+    length
+        l, m.
+
+    Returns
+    -------
+    Hysteretic
+    """
+    slow = (square + CREEPING * CREEPING) / (length * length)
+    root = sqrt(rate * rate + slow * strain * strain)
+    if root == 0.0:
+        return Hysteretic(0.0, 0.0, 0.0, 0.0)
+    size, sign = abs(strain), 1.0 if strain >= 0.0 else -1.0
+    share = rate / root
+    fast = share * share
+    return Hysteretic(
+        modulus * size * share,
+        modulus * sign * share * fast,
+        modulus * size / root * (1.0 - fast),
+        -0.5 * modulus * size * share * (1.0 - fast) / (slow * length * length),
+    )
