@@ -16,6 +16,7 @@ from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points
+from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.pulley_state import pulley_center
 from beltdyn.system.state import State, at_rest
@@ -233,10 +234,11 @@ def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor:
 
 
 def without_friction(system: System) -> System:
-    """The same system with a belt that slides without friction on pulleys that stand still."""
+    """The same system with a belt that slides without friction on pulleys that stand still, as do tensioners."""
     pulleys = system.pulleys.copy()
     pulleys["friction"] = 0.0
-    return system._replace(pulleys=pulleys, bodies=only_tensioners(system))
+    tensioners = without_motion(system.tensioners)
+    return system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners)
 
 
 def _lying(drive: Drive, system: System, installation: Installation, span: int, factor: float) -> State:

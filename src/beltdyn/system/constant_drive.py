@@ -13,6 +13,7 @@ from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT
 from beltdyn.records import Records, records
 from beltdyn.system.arrays import System
+from beltdyn.system.state import State
 
 _OF_MOTION = ("damping", "tensioning_friction", "yielding_friction", "stop_damping")
 """Constants of a spring-loaded tensioner that matter while it moves."""
@@ -43,12 +44,18 @@ def constant_drive(system: System, time: float) -> System:
             segment=records(SEGMENT, start=np.full(held.size, -np.inf), offset=held),
         ),
         shaft_loads=loads._replace(table=table),
-        tensioners=_without_motion(system.tensioners),
+        tensioners=without_motion(system.tensioners),
     )
 
 
-def _without_motion(tensioners: Records) -> Records:
-    """Tensioners without damping and dry friction."""
+def without_motion(tensioners: Records) -> Records:
+    """Tensioners without damping and dry friction.
+
+    Parameters
+    ----------
+    tensioners
+        Rows of tensioners.
+    """
     still = tensioners.copy()
     for name in still.dtype.names or ():
         if "spring" in (still.dtype[name].names or ()):
@@ -147,6 +154,13 @@ def guess_hubs(system: System, velocity: FloatArray) -> None:
 
         if balance(1.0) != 0.0 and balance(0.0) * balance(1.0) <= 0.0:
             velocity[first + link.back] = rim * bisect(balance, 0.0, 1.0)
+
+
+def own_torque(system: System, state: State, pulley: int, speed: float) -> float:
+    """Torque of the loads and motors of a pulley at a speed (rad/s) of its shaft, N m."""
+    states = state.position[system.first_body :]
+    torque = interpreted(shaft_torque)
+    return float(torque(system.profiles, system.shaft_loads, pulley, 0.0, 0.0, speed, states).torque)
 
 
 def twists(system: System, moments: FloatArray) -> FloatArray:

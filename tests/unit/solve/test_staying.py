@@ -1,16 +1,37 @@
 """A belt at rest on a mesh that stays, and on its way to another one."""
 
+from importlib.resources import files
+from typing import Any
+
 import numpy as np
 import pytest
 
+import beltdyn as bd
 from beltdyn.model import Drive
+from beltdyn.solve import staying
 from beltdyn.solve.staying import Laid, bring_to_stand, carried, found_arcs, stand, stand_like, transfer
+from beltdyn.solve.steady_newton import find_steady
 from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points
 
 
 def with_length(drive: Drive, length: float) -> Drive:
     return drive.replace(belt=drive.belt.replace(length=length))
+
+
+def test_dry_friction_of_a_tensioner_is_left_out_at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tangent has derivatives by places alone, so that the search ends quadratically and not after 28 steps."""
+    taken = list[int]()
+
+    def counted(*arguments: Any) -> tuple[int, int]:
+        found = find_steady(*arguments)
+        taken.append(found[1])
+        return found
+
+    monkeypatch.setattr(staying, "find_steady", counted)
+    drive = bd.load(str(files("beltdyn") / "examples" / "accessory_drive.toml"))
+    stand(drive)
+    assert sum(taken) <= 10
 
 
 def test_arcs_of_a_laid_belt(drive: Drive) -> None:
