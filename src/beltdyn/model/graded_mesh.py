@@ -1,9 +1,12 @@
 """A mesh graded towards the ends of arcs, where the belt takes the curvature of a pulley within short layers.
 
+Nodes stand at the ends of arcs, and at the kinks of friction on them: within an element all is smooth.
+
 At the end of an arc the deflection obeys EI w'''' - T w'' + k_p w = 0 inside of the pulley, and without the last term
 outside.  It decays over sqrt(EI / T) and sqrt(T / k_p), or over (EI / k_p)^(1/4) where the second is the shorter.
 """
 
+from itertools import pairwise
 from math import ceil, pi, sqrt
 from typing import NamedTuple
 
@@ -21,6 +24,8 @@ _FEWEST = 3
 """Elements of a span, if its layers do not ask for more."""
 _ENOUGH = 0.2
 """Length to resolve, over sqrt(T / k_p), where that of bending is shorter: it matters by the square of their ratio."""
+_KINK = 0.1
+"""Length of the elements at a kink, over the radius."""
 _SAMPLES = 400
 
 
@@ -32,6 +37,8 @@ class Arc(NamedTuple):
     end: float
     radius: float
     """m."""
+    kinks: tuple[float, ...] = ()
+    """Where in between friction begins or ends to be fully used, in ascending order; forces have a kink there."""
 
 
 def layer_length(bending: float, sinking: float) -> float:
@@ -68,7 +75,8 @@ def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = 
     around = length - arcs[-1].end + arcs[0].start
     pieces = [_divide(arcs[0].start, first, around / _FEWEST, fineness, (False, True))]
     for number, arc in enumerate(arcs):
-        pieces.append(_divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True)))
+        kinked = tuple(kink - arc.start for kink in arc.kinks), _KINK * arc.radius
+        pieces.append(_divide(arc.end - arc.start, first, _WIDEST * arc.radius, fineness, (True, True), kinked))
         if number + 1 < len(arcs):
             span = arcs[number + 1].start - arc.end
             pieces.append(_divide(span, first, span / _FEWEST, fineness, (True, True)))
@@ -76,10 +84,28 @@ def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = 
     return np.concatenate(pieces)
 
 
-def _divide(length: float, first: float, largest: float, fineness: float, graded: tuple[bool, bool]) -> FloatArray:
-    """Lengths of the elements of a piece of belt, with small ones at those of its ends that are ends of arcs."""
+def _divide(
+    length: float,
+    first: float,
+    largest: float,
+    fineness: float,
+    graded: tuple[bool, bool],
+    kinked: tuple[tuple[float, ...], float] = ((), 0.0),
+) -> FloatArray:
+    """Lengths of the elements of a piece of belt, with small ones at those of its ends that are ends of arcs.
+
+    Kinks are given by their distances from its start, and the length of elements there. Those within the first elements
+    get no node.
+    """
+    kinks, kink_size = kinked
     place = np.linspace(0.0, length, _SAMPLES + 1)
     from_start, from_end = (away if own else np.inf for own, away in zip(graded, (place, length - place), strict=True))
-    size = np.minimum(first + _GROWTH * np.minimum(from_start, from_end), largest) / fineness
+    size = np.minimum(first + _GROWTH * np.minimum(from_start, from_end), largest)
+    for kink in kinks:
+        size = np.minimum(size, kink_size + _GROWTH * np.abs(place - kink))
+    size /= fineness
     passed = np.concatenate([[0.0], np.cumsum(0.5 * (1.0 / size[1:] + 1.0 / size[:-1]) * np.diff(place))])
-    return np.diff(np.interp(np.linspace(0.0, passed[-1], ceil(passed[-1]) + 1), passed, place))
+    inner = [kink for kink in kinks if first < kink < length - first]
+    marks = [0.0, *np.interp(inner, place, passed), passed[-1]]
+    nodes = [np.linspace(start, end, max(ceil(end - start), 1), endpoint=False) for start, end in pairwise(marks)]
+    return np.diff(np.interp(np.append(np.concatenate(nodes), passed[-1]), passed, place))

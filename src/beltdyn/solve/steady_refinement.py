@@ -11,6 +11,7 @@ from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points
+from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
@@ -27,8 +28,8 @@ class _Solution(NamedTuple):
 
     system: System
     state: State
-    tensions: FloatArray
-    """Of the spans, N."""
+    seen: Observations
+    """What is seen there, one instant."""
     slips: FloatArray
     """Of the rims behind the first one, relative."""
 
@@ -75,7 +76,26 @@ def _finer(search: SteadySearch, now: _Solution, layer: float, fineness: float, 
     if elements is not None:
         count = round(elements * fineness)
         return np.full(count, length / count)
-    return graded_mesh(length, found_arcs(now.system, now.state), layer, fineness)
+    kinks = _kinks(now)
+    arcs = found_arcs(now.system, now.state)
+    within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
+    return graded_mesh(length, within, layer, fineness)
+
+
+def _kinks(now: _Solution) -> list[float]:
+    """Where friction begins or ends to be fully used, in ascending order along the belt, m."""
+    system, seen, found = now.system, now.seen, list[float]()
+    starts = np.cumsum(system.length) - system.length
+    along = (starts[:, None] + system.length[:, None] * system.contact.points).ravel()
+    rims = now.state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius
+    for p, rim in enumerate(rims):
+        here = np.flatnonzero(seen.contact_pulley[0] == p)
+        limit = system.law.friction.saturation(seen.normal_force[0, here], system.pulleys.friction[p], rim)
+        beyond, places = np.abs(seen.slip_velocity[0, here]) - limit, along[here]
+        last = np.flatnonzero((beyond[1:] > 0.0) != (beyond[:-1] > 0.0))
+        part = beyond[last] / (beyond[last] - beyond[last + 1])
+        found += (places[last] + part * (places[last + 1] - places[last])).tolist()
+    return sorted(found)
 
 
 def _solution(search: SteadySearch) -> _Solution:
@@ -83,7 +103,7 @@ def _solution(search: SteadySearch) -> _Solution:
     system, state = search.constant, search.state
     seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
     speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
-    return _Solution(system, state, seen.span_tension[0], 1.0 - speeds / speeds[0])
+    return _Solution(system, state, seen, 1.0 - speeds / speeds[0])
 
 
 def _differences(before: _Solution, after: _Solution) -> dict[str, float]:
@@ -95,8 +115,9 @@ def _differences(before: _Solution, after: _Solution) -> dict[str, float]:
         peaks.append(float(np.max(np.abs(other - one)) / np.max(other)))
         means.append(float(abs(np.sum(other - one)) / np.sum(other)))
     slip = float(np.max(np.abs(after.slips - before.slips)))
+    tensions, other = after.seen.span_tension[0], before.seen.span_tension[0]
     return {
-        "tension": float(np.max(np.abs(after.tensions - before.tensions)) / np.max(np.abs(after.tensions))),
+        "tension": float(np.max(np.abs(tensions - other)) / np.max(np.abs(tensions))),
         "mean pressure": max(means),
         "peak pressure": max(peaks),
         "slip": slip / max(_LEAST_SLIP, float(np.max(np.abs(after.slips)))),

@@ -24,6 +24,19 @@ def test_nodes_stand_at_the_ends_of_arcs_where_elements_are_smallest() -> None:
         assert max(lengths[node - 1], lengths[node]) < 2.2 * LAYER
 
 
+def test_nodes_stand_at_kinks_amid_small_elements() -> None:
+    """Those within the first elements of an arc get none."""
+    kinked = [ARCS[0]._replace(kinks=(0.181, 0.3)), ARCS[1]]
+    lengths, plain = (graded_mesh(LENGTH, arcs, LAYER) for arcs in (kinked, ARCS))
+    nodes = np.concatenate([[0.0], np.cumsum(lengths)])
+    node = int(np.argmin(np.abs(nodes - 0.3)))
+    assert nodes[node] == pytest.approx(0.3, abs=1e-12)
+    assert max(lengths[node - 1], lengths[node]) < 0.015
+    assert np.abs(nodes - 0.181).min() > 1e-4
+    assert lengths.sum() == pytest.approx(LENGTH, rel=1e-12)
+    assert plain.size < lengths.size < plain.size + 10
+
+
 def test_neighbours_differ_by_a_bounded_factor() -> None:
     lengths = graded_mesh(LENGTH, ARCS, LAYER)
     ratios = lengths[1:] / lengths[:-1]
