@@ -12,7 +12,6 @@ from beltdyn.solve.steady import require_steady
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build import flowing_system
-from beltdyn.system.constant_drive import twists
 from beltdyn.system.state import State
 
 _FINENESS = 1.0
@@ -83,13 +82,10 @@ def _meshed(drive: Drive) -> Standing:
 
 
 def _running(rest: Standing) -> State:
-    """Steady running at time zero, with the twists of hub chains."""
+    """Steady running at time zero."""
     search = SteadySearch(rest.drive, rest.system, rest.state, 0.0)
     search.run(rest)
-    place = search.state.position.copy()
-    rims = slice(rest.system.first_body, place.size - rest.system.tensioners.size)
-    place[rims] = twists(search.constant, search.forces.moment)
-    return State(place, search.state.velocity, np.zeros_like(place))
+    return search.running()
 
 
 def with_passage(system: System, state: State, speed: float) -> State:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, mesh_error_attribute
@@ -17,7 +18,6 @@ from beltdyn.solve.steady_refinement import refine
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import System
-from beltdyn.system.constant_drive import twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
@@ -88,19 +88,19 @@ def steady_state(
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     found = _continued(drive, start, instant, force_tolerance) if start is not None else None
-    search, errors, seconds = found or _from_rest(drive, instant, force_tolerance, elements)
+    search, band, errors, seconds = found or _from_rest(drive, instant, force_tolerance, elements)
     duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
     turns = drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
     shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
     title = f"{drive.title} in steady running, as at {instant:g} s"
     with Recording(shown, search.constant, None, title, None) as recording:
         recording.start(search.drive, search.constant, ())
-        recording.take(_running(search.constant, search.state, duration))
+        recording.take(_running(search.constant, search.running(), duration))
         recording.note(
             drive_as_given=drive.text,
             steady_at=instant,
             wall_time=seconds,
-            **search.friction_band(),
+            **band,
             belt_parameter=search.belt_parameter,
             newton_iterations_of_search=search.iterations,
             **{mesh_error_attribute(name): error for name, error in errors.items()},
@@ -112,6 +112,8 @@ class _Found(NamedTuple):
     """Steady running, and how it was found."""
 
     search: SteadySearch
+    band: Mapping[str, FloatArray]
+    """Where dry friction holds tensioners; from rest that of the first mesh, on which forces as a whole are known."""
     errors: Mapping[str, float]
     """Of the mesh, relative."""
     seconds: float
@@ -124,6 +126,7 @@ def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: i
     for trial in range(1, _MOST_STARTS + 1):
         search = SteadySearch(rest.drive, rest.system, rest.state, instant)
         search.run(rest)
+        band = search.friction_band()
         try:
             errors = refine(search, rest, force_tolerance, elements)
             break
@@ -131,7 +134,7 @@ def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: i
             if elements is not None or trial == _MOST_STARTS:
                 raise
             rest = stand(rest.drive, fineness=FINER * rest.fineness)
-    return _Found(search, errors, time.perf_counter() - begun)
+    return _Found(search, band, errors, time.perf_counter() - begun)
 
 
 def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float) -> _Found | None:
@@ -140,8 +143,10 @@ def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float)
         return None
     installed = with_length_of(drive, start) or bring_to_stand(drive).drive
     search, begun = search_from(installed, start, instant), time.perf_counter()
+    if not search.resume():
+        return None
     errors = {name: error for name, error in start.resolution.errors.items() if np.isfinite(error)}
-    return _Found(search, errors, time.perf_counter() - begun) if search.resume() else None
+    return _Found(search, search.friction_band(), errors, time.perf_counter() - begun)
 
 
 def require_steady(drive: Drive) -> None:
@@ -181,12 +186,9 @@ def _require_sense(force_tolerance: float, elements: int | None) -> None:
 
 def _running(system: System, state: State, duration: float) -> Chunk:
     """A while of steady running: the shape of the belt stays, and shafts turn on."""
-    place = state.position.copy()
-    rims = slice(system.first_body, place.size - system.tensioners.size)
-    moments = body_forces_at(system, np.zeros(1), place[None].copy(), state.velocity[None].copy()).moment[0]
-    place[rims] = twists(system, moments)
+    rims = slice(system.first_body, state.position.size - system.tensioners.size)
     instants = np.array([0.0, duration])
-    position, velocity = np.stack([place, place]), np.stack([state.velocity, state.velocity])
+    position, velocity = np.stack([state.position] * 2), np.stack([state.velocity] * 2)
     position[1, rims] += duration * state.velocity[rims]
     forces = body_forces_at(system, instants, position, velocity)
     work = np.zeros((2, forces.power.shape[1] + 1))

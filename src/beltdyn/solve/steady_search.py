@@ -10,14 +10,20 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.kernel import interpreted
-from beltdyn.machines.loads.shaft import shaft_torque
 from beltdyn.model import Drive
 from beltdyn.solve.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.solve.steady_slip import slips_through
-from beltdyn.system.arrays import BodyForces, System
-from beltdyn.system.constant_drive import constant_drive, drive_shafts, dry_friction_of, guess_hubs, with_speeds_unknown
+from beltdyn.system.arrays import System
+from beltdyn.system.constant_drive import (
+    constant_drive,
+    drive_shafts,
+    dry_friction_of,
+    guess_hubs,
+    own_torque,
+    twists,
+    with_speeds_unknown,
+)
 from beltdyn.system.operating_point import operating_point
 from beltdyn.system.state import State
 
@@ -28,8 +34,8 @@ _SHORTEST = 1e-3
 _FIRST_LOAD = 0.05
 _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
-_PUSHES = (0.25, 0.5, 0.75, 1.0)
-"""Parts of the dry friction of tensioners on the way to the ends of their bands."""
+_PUSHES = (1.0,), (0.25, 0.5, 0.75, 1.0)
+"""Parts of the dry friction of tensioners on the way to the ends of their bands: at once, or where that fails."""
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
@@ -67,6 +73,7 @@ class SteadySearch:
         self._held: int | None = None
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
+        self._moments = np.zeros(system.pulleys.size)
         self._work_on(system)
 
     def _work_on(self, system: System) -> None:
@@ -82,10 +89,12 @@ class SteadySearch:
         self._system = with_speeds_unknown(self.constant, () if pulley is None else (pulley,))
         self._work = steady_work(self._system)
 
-    @property
-    def forces(self) -> BodyForces:
-        """Body forces of the state that was found last."""
-        return self._work.equations.forces
+    def running(self) -> State:
+        """The state that was found last, with the twists of hub chains."""
+        place = self.state.position.copy()
+        rims = slice(self.constant.first_body, place.size - self.constant.tensioners.size)
+        place[rims] = twists(self.constant, self._moments)
+        return State(place, self.state.velocity, np.zeros_like(place))
 
     @property
     def belt_parameter(self) -> float:
@@ -141,7 +150,8 @@ class SteadySearch:
         self.state = transfer(self.constant, self.state, system)
         self._work_on(system)
         target = self.setting
-        if not (self._try(target._replace(stretch_length=_SOFT)) and self._reach(target)):
+        soft = target._replace(stretch_length=_SOFT)
+        if not (self._try(soft) and self._reach(target) if system.hysteresis.size else self._try(target)):
             raise ConvergenceError(
                 f"steady running is found with fewer elements, but not with the {system.nodes} that force_tolerance "
                 "asks for. Raise force_tolerance, such as to 0.05."
@@ -156,17 +166,18 @@ class SteadySearch:
             "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
             they may stand: where the path had become longer before, and shorter. Nothing without friction.
         """
-        place, own = self.state, self.constant.tensioners.push
+        place, moments, own = self.state, self._moments, self.constant.tensioners.push
         given, found = own.copy(), dict[str, FloatArray]()
         for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
             friction = dry_friction_of(self._tensioners, f"{name}_friction")
             self.state = State(place.position.copy(), place.velocity.copy(), place.acceleration)
             speed = self.belt_parameter
-            if np.any(friction) and all(self._pushed(own, given + part * sense * friction) for part in _PUSHES):
+            pushes = ([given + part * sense * friction for part in parts] for parts in _PUSHES)
+            if np.any(friction) and any(all(self._pushed(own, push) for push in some) for some in pushes):
                 count = self.state.position.size
                 found[f"tensioner_position_after_{name}"] = self.state.position[count - friction.size :].copy()
             self.constant.frame.speed[0] = speed
-        own[:], self.state = given, place
+        own[:], self.state, self._moments = given, place, moments
         return found
 
     def _pushed(self, own: FloatArray, push: FloatArray) -> bool:
@@ -212,12 +223,9 @@ class SteadySearch:
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
         speed = float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[driver]])
-        reaction = float(self.forces.shaft[driver])
+        reaction = float(self._work.equations.forces.shaft[driver])
         self._hold(None)
-        self._at(Setting())
-        loads = self._system.shaft_loads
-        states = self.state.position[self._system.first_body :]
-        own = interpreted(shaft_torque)(self._system.profiles, loads, driver, 0.0, 0.0, speed, states).torque
+        own = own_torque(self._at(Setting()), self.state, driver, speed)
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         self._follow(Setting())
 
@@ -232,7 +240,7 @@ class SteadySearch:
         status, iterations = find_steady(system, state.at(0.0), anchor, tolerance, _MOST, self._work)
         self.iterations += iterations
         if status == FOUND:
-            self.setting = setting
+            self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
             return True
         state.position[:], state.velocity[:], speed[:] = before
         return False

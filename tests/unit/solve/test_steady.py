@@ -74,11 +74,11 @@ def test_it_says_what_slips_through(loaded: Drive) -> None:
 
 
 def test_hysteresis_in_small_elements() -> None:
-    """The shortest element is a 350th of the length over which the stretch of this belt changes."""
+    """The shortest element is a small part of the length over which the stretch of this belt changes."""
     washing = bd.load(str(files("beltdyn") / "examples" / "washing_machine.toml"))
     found = steady_state(washing)
     balance, (motor, drum) = summarize(found).balance, summarize(found).pulleys
-    assert found.dataset.sizes["node"] > 150
+    assert found.dataset.sizes["node"] > 80
     assert motor.power + drum.power == pytest.approx(balance.lost, rel=1e-4)
     assert 0.001 * motor.power < balance.lost < 0.2 * motor.power
 
