@@ -132,11 +132,13 @@ def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]
         return part.replace(**values, **others) if values or others else part
 
     def all_constant(parts: Sequence[_Part], name: str) -> list[_Part]:
-        return [constant(part, f"{name}[{number}]", **_lasting(part)) for number, part in enumerate(parts, 1)]
+        return [constant(part, f"{name}[{number}]", **_held(part, at)) for number, part in enumerate(parts, 1)]
 
     for one in drive.pulleys:
         for number, load in enumerate(one.load, 1):
-            held.extend(f"{one.name}.load[{number}] past its {key}" for key in load.lasting)
+            for key, value in load.held_at(at).items():
+                name = f"{one.name}.load[{number}]"
+                held.append(f"{name} without {key}" if value is None else f"{name}.{key} = {value['value']:.4g}")
             if isinstance(load, FunctionLoad):
                 held.append(f"{one.name}.load[{number}] not, a function that is given the time of the run-up")
     pulleys = [
@@ -151,9 +153,9 @@ def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]
     return drive.replace(pulley=pulleys), held
 
 
-def _lasting(part: Part) -> Mapping[str, Any]:
-    """What a load has after all has changed over time."""
-    return part.lasting if isinstance(part, Load) else {}
+def _held(part: Part, at: float) -> Mapping[str, Any]:
+    """What a load has that stays as it is at an instant (s)."""
+    return part.held_at(at) if isinstance(part, Load) else {}
 
 
 def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float) -> Drive:

@@ -50,9 +50,28 @@ def test_a_motor_runs_in_delta_and_a_function_is_named(drive: Drive) -> None:
     assert "star_until" in motor.keys() - delta.arguments.keys()
     assert same == fan
     assert held[:2] == [
-        "driven.load[1] past its star_until",
+        "driven.load[1] without star_until",
         "driven.load[2] not, a function that is given the time of the run-up",
     ]
+
+
+def test_a_motor_in_star_stays_there(drive: Drive) -> None:
+    """At an instant before it changes to delta it has a third of its torque, as by a schedule."""
+    first, last = drive.pulleys
+    motor = {
+        "kind": "induction_motor",
+        "rated_power": "1.5 kW",
+        "rated_speed": "1430 rpm",
+        "locked_rotor_ratio": 2.0,
+        "breakdown_ratio": 2.5,
+        "star_until": "1 s",
+    }
+    started = drive.replace(pulley=[first, last.replace(torque=None, load=[motor])])
+    for at, factor in ((0.5, 1.0 / 3.0), (1.0, 1.0)):
+        steady, held = without_schedules(started, at)
+        load = steady.pulleys[1].load[0]
+        assert "driven.load[1] without star_until" in held
+        assert (1.0 if load.factor is None else load.factor.at([9.0])[0]) == pytest.approx(factor)
 
 
 def test_a_drive_without_a_prescribed_speed_cannot_be_swept(drive: Drive) -> None:

@@ -38,6 +38,8 @@ INDUCTION_MOTOR = record(
     torque_limit="f8",  # largest torque that the inverter lets the motor have, N m, infinite without
 )
 
+_STAR = 1.0 / 3.0
+"""Torque in star over that in delta."""
 _PULL_UP_SLIP = 6.0 / 7.0
 """The seventh harmonic of the field runs at a seventh of the synchronous speed, and brakes above it."""
 
@@ -184,10 +186,12 @@ class InductionMotor(Load):
         """The slip at which Kloss's formula has its maximum, so that it gives the rated torque at the rated speed."""
         return self._rated_slip * (self.breakdown_ratio + sqrt(self.breakdown_ratio**2 - 1.0))
 
-    @property
-    def lasting(self) -> Mapping[str, Any]:
-        """It runs in delta after its start in star."""
-        return {"star_until": None} if self.star_until is not None else {}
+    def held_at(self, at: float) -> Mapping[str, Any]:
+        """It runs in delta after its start in star, and in star before, as by a schedule."""
+        if self.star_until is None:
+            return {}
+        star = {"schedule": {"kind": "constant", "value": _STAR}} if at < self.star_until else {}
+        return {"star_until": None, **star}
 
     def values(self) -> Mapping[str, Any]:
         """Torques and slips of the curve."""
@@ -208,7 +212,7 @@ class InductionMotor(Load):
         """Its schedule, or the third of the torque that star gives."""
         if self.star_until is None:
             return self.schedule
-        return Step(time=self.star_until, before=1.0 / 3.0, value=1.0)
+        return Step(time=self.star_until, before=_STAR, value=1.0)
 
     @property
     def command(self) -> Profile:

@@ -128,9 +128,8 @@ class Load(Part):
         """The profile whose value its kernels get, such as a set speed; None without."""
         return None
 
-    @property
-    def lasting(self) -> Mapping[str, Any]:
-        """Arguments beside profiles that it has after all has changed over time; nothing by default."""
+    def held_at(self, at: float) -> Mapping[str, Any]:
+        """Arguments with which it stays as it is at an instant (s), beside those that are profiles; none by default."""
         return {}
 
     @property
