@@ -14,7 +14,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset, unreadable
-from beltdyn.results.recorded import Recorded
+from beltdyn.results.recorded import InMemory, Recorded
 from beltdyn.results.resolution import Resolution, estimate_resolution
 from beltdyn.results.result import Result, drive_of
 from beltdyn.results.schema import DERIVED
@@ -96,9 +96,9 @@ class Run(Result):
 
     @contextmanager
     def recorded(self) -> Iterator[Recorded]:
-        """What was recorded: the dataset if it is in memory, or else the open file, which is quicker to read."""
+        """What was recorded: arrays in memory, or else those of the open file, which are quicker than a dataset's."""
         if self._dataset is not None:
-            yield self._dataset
+            yield InMemory(self._dataset)
             return
         with h5py.File(self._file, "r") as file:
             yield file

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 from beltdyn.results import FileRecorder, Layout
-from beltdyn.results.recorded import attribute, names
+from beltdyn.results.recorded import InMemory, attribute, names
 
 
 def test_names_are_text_in_a_file_and_in_a_dataset(
@@ -34,3 +34,17 @@ def test_attributes_are_numbers_in_a_file_and_in_a_dataset(
         for recorded in (dataset, file):
             assert attribute(recorded, "flutter_growth", 0.0) == 7.5
             assert attribute(recorded, "flutter_rate", -1.0) == -1.0
+
+
+def test_a_dataset_as_plain_arrays(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
+    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    recorder.append(make_chunk(np.array([0.0])))
+    with recorder.dataset() as dataset:
+        plain = InMemory(dataset)
+        assert "pulley_speed" in plain
+        assert "nothing" not in plain
+        assert plain.attrs is dataset.attrs
+        assert names(plain, "pulley") == list(layout.pulleys)
+        np.testing.assert_array_equal(plain["pulley_speed"], dataset["pulley_speed"].values)
