@@ -1,6 +1,7 @@
 """Where springs hold tensioners against the belt, and which of these balances are stable."""
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -125,6 +126,35 @@ def balance_tensioners(
     ValueError
         If a tensioner finds no balance, or no stable one at a tension that is asked for.
     """
+    return _balanced(_Layout(path, belt, contact, tuple(carriers)))
+
+
+class _Layout(NamedTuple):
+    """What places of tensioners depend on, known by its values: drives that differ in loads or speeds have the same."""
+
+    path: Path
+    belt: Belt
+    contact: Contact
+    carriers: tuple[Carrier, ...]
+
+    @property
+    def _values(self) -> tuple[object, ...]:
+        centers, radii, ends = self.path.centers, self.path.radii, self.path.ends
+        parts = self.belt, self.contact, *(one.tensioner for one in self.carriers)
+        arrays = centers.tobytes(), radii.tobytes(), b"" if ends is None else ends.tobytes()
+        return *arrays, *(repr(part) for part in parts), *(one.pulley for one in self.carriers)
+
+    def __hash__(self) -> int:
+        return hash(self._values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Layout) and self._values == other._values
+
+
+@lru_cache(maxsize=32)
+def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
+    """Places of the tensioners of a layout; see `balance_tensioners`."""
+    path, belt, contact, carriers = layout
     positions = np.zeros(len(carriers))
     situations = [_Situation(path, belt, contact, carriers, positions, number) for number in range(len(carriers))]
     for situation in situations:
@@ -138,6 +168,7 @@ def balance_tensioners(
     else:
         if situations[1:]:
             raise ValueError("the tensioners find no balance together. Make their springs stiffer, or give stops")
+    positions.setflags(write=False)
     return static_estimate(moved(path, carriers, positions), belt, contact), positions
 
 
