@@ -25,7 +25,7 @@ class Recorded(Protocol):
 
 
 class InMemory:
-    """Variables of a dataset as plain arrays, which take a hundredth of the time of labelled ones to look at.
+    """Variables of a dataset as plain arrays, which are quicker to look at than labelled ones.
 
     Parameters
     ----------
