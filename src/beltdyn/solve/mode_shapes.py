@@ -149,6 +149,6 @@ def parts_of_mode(shapes: Shapes, number: int, spans: list[str], pulleys: list[s
         Names of the parts.
     """
     shares = np.concatenate([shapes.span_share[number], shapes.pulley_share[number], shapes.tensioner_share[number]])
-    names = [*(f"span {one}" for one in spans), *pulleys, *(f"arm of {one}" for one in tensioners)]
+    names = [*spans, *pulleys, *(f"arm of {one}" for one in tensioners)]
     order = [int(one) for one in np.argsort(-shares) if shares[one] >= _NAMED]
     return ", ".join(names[one] for one in order) or "belt"

@@ -16,11 +16,11 @@ def shares(spans: list[float], pulleys: list[float], along: float, arm: float) -
 @pytest.mark.parametrize(
     ("given", "kind", "parts"),
     [
-        (([0.1, 0.85], [0.02, 0.0], 0.03, 0.0), "span", "span b-a"),
-        (([0.5, 0.45], [0.05, 0.0], 0.0, 0.0), "span", "span a-b, span b-a"),
+        (([0.1, 0.85], [0.02, 0.0], 0.03, 0.0), "span", "b-a"),
+        (([0.5, 0.45], [0.05, 0.0], 0.0, 0.0), "span", "a-b, b-a"),
         (([0.1, 0.0], [0.05, 0.6], 0.25, 0.0), "rotational", "b"),
         (([0.0, 0.1], [0.0, 0.05], 0.05, 0.8), "tensioner", "arm of b"),
-        (([0.4, 0.0], [0.3, 0.0], 0.0, 0.3), "coupled", "span a-b, a, arm of b"),
+        (([0.4, 0.0], [0.3, 0.0], 0.0, 0.3), "coupled", "a-b, a, arm of b"),
         (([0.0, 0.0], [0.0, 0.0], 1.0, 0.0), "rotational", "belt"),
     ],
 )
