@@ -22,6 +22,7 @@ WARNINGS = {
         "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, 0.28% "
         "of 0.54% on alternator"
     ],
+    "tensioner_stop": ["the tensioner of tensioner was on its upper stop between t = 0.46"],
     "slip_through": [
         "driver and conveyor slide through",
         "the belt slid through on driver from t = 1.",
