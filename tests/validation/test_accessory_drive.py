@@ -40,7 +40,7 @@ def number(name: str) -> int:
 
 
 def test_the_energy_account_closes() -> None:
-    """Issue: to within 1 % of the energy put in; at any time after the first turn."""
+    """To within 1 % of the energy put in, at any time after the first turn."""
     closure = run().dataset["energy_closure"].sel(time=slice(0.1, None))
     assert float(np.abs(closure).max()) < 0.01
 
