@@ -151,7 +151,7 @@ def quintic_control(length: float) -> FloatArray:
 def quintic_mass(section: Section, length: float) -> FloatArray:
     """Mass matrix, the integral of rho A S^T S, shape (12, 12)."""
     scale = length ** np.repeat(_ORDERS, 2)
-    return np.asarray(section.mass * length * scale[:, None] * _unit_mass() * scale)
+    return np.asarray(section.mass * length * np.outer(scale, scale) * _unit_mass())
 
 
 @cache

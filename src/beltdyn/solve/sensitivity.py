@@ -98,7 +98,7 @@ def sensitivity(
 
     Examples
     --------
-    >>> found = bd.sensitivity(drive, of="efficiency", numbers="belt.installed_tension, pulley[driven].radius")
+    >>> found = bd.sensitivity(drive, of="efficiency", numbers="belt.length, pulley[driven].radius")
     >>> found.dataset.effect.dims
     ('result', 'number')
     """

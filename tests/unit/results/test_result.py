@@ -35,7 +35,7 @@ def test_a_result_says_what_it_is(grip: Result) -> None:
     assert grip.dataset["slip"].sel(torque=2.0) == 2e-3
     assert grip.dataset["torque"].attrs == {"units": "N m", "long_name": "Torque"}
     assert "grip" in repr(grip)
-    assert "torque" in grip._repr_html_()
+    assert "Torque" in grip._repr_html_()
 
 
 def test_its_file_holds_the_same(grip: Result, drive: Drive, tmp_path: Path) -> None:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, install
+from beltdyn.solve.installation import drawn_in
 from beltdyn.solve.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
@@ -62,7 +63,7 @@ def test_equilibrium_is_left_alone(cantilever: System) -> None:
 
 def test_pulleys_stand_still(drive: Drive) -> None:
     system = drive_system(drive)
-    found = find_equilibrium(system, laid(system, drive.path))
+    found = find_equilibrium(system, laid(system, drawn_in(drive, install(drive), 1.0)))
     np.testing.assert_array_equal(found.state.position[-2:], 0.0)
 
 

@@ -39,12 +39,12 @@ def test_a_drive_that_slides_through_has_the_margin_of_a_capstan(
 ) -> None:
     """The margin, from tensions, says 1 when the whole arc slides, which is seen from slip velocities.
 
-    Bending at the ends of the arcs takes some of it: 1.7 % with 40 elements, 0.7 % with 80, 0.4 % with 160.
+    It counts the angle between the spans: within 0.5 % on both meshes.
     """
     coarse, fine = slipping(drive, change, 40), slipping(drive, change, 80)
     errors = [float(np.abs(capstan_margins(run, start=0.25).mean("time") - 1.0).max()) for run in (coarse, fine)]
     measured(coarse=errors[0], fine=errors[1])
-    assert errors[1] < 0.01 < errors[0] < 0.02
+    assert max(errors) < 0.005
     driver, driven = summarize(fine).pulleys
     assert driven.sliding_arc == pytest.approx(driven.wrap_angle)
     parts = slips(fine, start=0.25)
