@@ -1,7 +1,7 @@
 """What a run ended in, beside the steady running under the same speeds and loads."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,7 +20,8 @@ _SHOWN = {"rad/s": ("rpm", RPM), "rad": ("°", np.degrees(1.0)), "m": ("mm", 1e3
 _OF_PARTS = ("rad/s", "N", "N/m")
 
 
-class Compared(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Compared:
     """A number of a run and of steady running.
 
     Attributes
@@ -65,7 +66,7 @@ def steady_comparison(run: Run) -> tuple[Compared, ...]:
     """
     with run.recorded() as recorded:
         steady = np.atleast_1d(np.asarray(recorded.attrs.get(VALUES, []), dtype=float)).tolist()
-    return tuple(one._replace(steady=value) for one, value in zip(_ending(run), steady, strict=True)) if steady else ()
+    return tuple(replace(one, steady=value) for one, value in zip(_ending(run), steady, strict=True)) if steady else ()
 
 
 def steady_parts(run: Run) -> tuple[Table | Facts, ...]:
