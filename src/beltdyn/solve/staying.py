@@ -215,9 +215,9 @@ def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) 
     span = int(np.argmax(before.path.span_lengths))
     here, there = Laid.on(before.path, other.belt_length, span), Laid.on(after.path, drive.belt_length, span)
     moved = np.interp(np.append(0.0, np.cumsum(lengths)), here.marks(), there.marks())
-    old, new = staying_system(other, lengths), staying_system(drive, np.diff(moved))
+    new = staying_system(drive, np.diff(moved))
     state = there.state(new, after.tensioner_positions)
-    state.position[:] -= here.state(old, before.tensioner_positions).position
+    state.position[:] -= here.state(new._replace(length=lengths), before.tensioner_positions).position
     state.nodes(new)[:, _CURVATURE] = 0.0  # it jumps at the ends of arcs, where nodes may be
     state.position[: nodes.size] += nodes
     return new, state
