@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Callable
 from functools import lru_cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Strict, StringConstraints
@@ -19,6 +20,9 @@ _LARGEST = 1e15
 
 RPM = 30.0 / math.pi
 """Revolutions a minute in 1 rad/s."""
+
+SHOWN_UNITS = MappingProxyType({"rad/s": ("rpm", RPM), "rad": ("°", math.degrees(1.0))})
+"""SI unit -> the one that readers are shown, and the factor on numbers."""
 
 
 @lru_cache(maxsize=1)

@@ -9,15 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.quantity import RPM
+from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import INK, axes_or_new, color, dash, label, name_lines, unit
 from beltdyn.results import Result
 
 _SHOWN = ("span_tension", "hub_load", "pulley_slip", "slip_safety", "efficiency", "tensioner_position")
-_SCALES = {"rad/s": ("rpm", RPM), "rad": ("°", np.degrees(1.0))}
-"""Unit -> the one that is drawn, and the factor."""
 _PERCENT = ("pulley_slip", "efficiency")
 _SAFE = 10.0
 """Slip safety up to which it is drawn: more is enough."""
@@ -175,5 +173,5 @@ def _lines(values: xr.DataArray, axis: str) -> list[tuple[str, xr.DataArray]]:
 def _in_shown_units(values: xr.DataArray) -> xr.DataArray:
     """A variable in the unit in which it is drawn."""
     units = str(values.attrs["units"])
-    shown, factor = ("%", 100.0) if values.name in _PERCENT else _SCALES.get(units, (units, 1.0))
+    shown, factor = ("%", 100.0) if values.name in _PERCENT else SHOWN_UNITS.get(units, (units, 1.0))
     return (factor * values).assign_attrs(values.attrs | {"units": shown})

@@ -4,13 +4,13 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.quantity import RPM
+from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results import Run
 
 HUB_LOAD = "hub_load"
 """Magnitude of the hub force."""
 
-_SHOWN = {"rad/s": ("rpm", RPM), "m": ("mm", 1e3), "rad": ("°", np.degrees(1.0))}
+_SHOWN = {**SHOWN_UNITS, "m": ("mm", 1e3)}
 """Unit of a variable -> the one that is shown, and the factor on its numbers."""
 
 

@@ -1,16 +1,15 @@
 """In which units numbers of results are shown to a reader."""
 
-import math
 from typing import TYPE_CHECKING
 
-from beltdyn.parts.quantity import RPM
+from beltdyn.parts.quantity import SHOWN_UNITS
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _MILLIMETRES = 0.1
 """Size of lengths, m, below which they are written in mm."""
-_SHOWN = {"rad": ("°", math.degrees(1.0)), "rad/s": ("rpm", RPM), "1": ("", 1.0)}
+_SHOWN = {**SHOWN_UNITS, "1": ("", 1.0)}
 
 
 def shown_unit(variable: "xr.DataArray") -> tuple[str, float]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beltdyn.parts.columns import aligned
-from beltdyn.parts.quantity import RPM
+from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.run import Run
 from beltdyn.results.sheet_parts import Facts, Table
@@ -15,7 +15,7 @@ from beltdyn.results.summary import Summary, summarize
 VALUES, FAILURE = "steady_values", "steady_failure"
 """Attributes of a run: the numbers of steady running in their order, or why there is none."""
 
-_SHOWN = {"rad/s": ("rpm", RPM), "rad": ("°", np.degrees(1.0)), "m": ("mm", 1e3), "1": ("%", 100.0)}
+_SHOWN = {**SHOWN_UNITS, "m": ("mm", 1e3), "1": ("%", 100.0)}
 """SI unit -> the one that is shown, and the factor."""
 _OF_PARTS = ("rad/s", "N", "N/m")
 
