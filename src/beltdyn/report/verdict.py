@@ -8,7 +8,7 @@ import numpy as np
 from beltdyn.results import KeyNumber, Result, key_numbers
 
 
-class Compared(NamedTuple):
+class SideBySide(NamedTuple):
     """A key number of all results.
 
     Attributes
@@ -35,7 +35,7 @@ class Compared(NamedTuple):
         return f"{other.value / first.value - 1.0:+.1%} to the first"
 
 
-def compared(results: Sequence[Result]) -> list[Compared]:
+def compared(results: Sequence[Result]) -> list[SideBySide]:
     """Set the key numbers of results side by side.
 
     Parameters
@@ -45,12 +45,12 @@ def compared(results: Sequence[Result]) -> list[Compared]:
 
     Returns
     -------
-    list of Compared
+    list of SideBySide
         Those that any of them knows.
     """
     known = [{one.key: one for one in key_numbers(result)} for result in results]
     names = {key: one.name for numbers in known for key, one in numbers.items()}
-    return [Compared(name, key, [numbers.get(key) for numbers in known]) for key, name in names.items()]
+    return [SideBySide(name, key, [numbers.get(key) for numbers in known]) for key, name in names.items()]
 
 
 def verdict(results: Sequence[Result]) -> tuple[str, str]:

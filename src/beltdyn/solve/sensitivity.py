@@ -62,8 +62,8 @@ def sensitivity(
 ) -> Result:
     """Find how results of steady running change with the numbers of the drive file.
 
-    Effects are those of 1 % more of a number; of 1 mm more of a coordinate, and of 1 degree more of an angle. An
-    installed tension that the file asks for is kept: the length of the belt follows.
+    Effects are those of 1 % more of a number, and of 1 mm more of a coordinate of a center or pivot. An installed
+    tension that the file asks for is kept: the length of the belt follows, or the take-up where that is given.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ class _Neighbours:
         self._tightening = np.inf
         if given.belt.installed_tension is not None:
             change = _CHANGE * rest.drive.belt_length
-            shorter, longer = (self._tension(_shortened(rest.drive, sense * change)) for sense in (1.0, -1.0))
+            shorter, longer = (self._tension(self._shortened(rest.drive, sense * change)) for sense in (1.0, -1.0))
             self._tightening = (shorter - longer) / (2.0 * change)
 
     def derivatives(self, number: Number, names: Sequence[str]) -> FloatArray:
@@ -231,22 +231,21 @@ class _Neighbours:
         else:
             drive = drive.with_({path: value})
         if np.isfinite(self._tightening):
-            drive = _shortened(drive, (wanted - self._tension(drive)) / self._tightening)
+            drive = self._shortened(drive, (wanted - self._tension(drive)) / self._tightening)
         run = steady_state(drive, force_tolerance=_ANY_MESH, start=self._run)
         if run.dataset.sizes["node"] != self._run.dataset.sizes["node"]:
             raise ConvergenceError("Newton's method does not follow so small a change.")
         return run
 
+    def _shortened(self, drive: Drive, distance: float) -> Drive:
+        """A drive with a shorter belt or, where its length is given, with more take-up, m; see `Drive.tightened`."""
+        if self._given.belt.length is None:
+            return drive.with_({"belt.length": drive.belt_length - distance})
+        return drive.replace(tensioner=take_up(drive.completed, distance))
+
     def _tension(self, drive: Drive) -> float:
         """At rest, on the same mesh."""
         return stand_like(drive, self._rest).tension
-
-
-def _shortened(drive: Drive, distance: float) -> Drive:
-    """A drive with a shorter belt or, where that is given, with more take-up, m."""
-    if any(one.kind == "fixed" for one in drive.tensioners):
-        return drive.replace(tensioner=take_up(drive.completed, distance))
-    return drive.with_({"belt.length": drive.belt_length - distance})
 
 
 def _result(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from beltdyn.report.verdict import Compared, in_unit, limit_in_words, verdict
+from beltdyn.report.verdict import SideBySide, in_unit, limit_in_words, verdict
 from beltdyn.results import KeyNumber, Run
 
 
@@ -27,11 +27,11 @@ def test_the_verdict(run: Run, limits: dict[str, float], said: tuple[str, str]) 
     [(100.0, 110.0, "+10.0% to the first"), (0.0, 2.0, "+2 N to the first"), (0.0, 0.0, ""), (float("nan"), 1.0, "")],
 )
 def test_differences(first: float, other: float, words: str) -> None:
-    assert Compared("", "", [number(first), number(other)]).difference(1) == words
+    assert SideBySide("", "", [number(first), number(other)]).difference(1) == words
 
 
 def test_a_result_that_does_not_know_a_number_does_not_differ() -> None:
-    assert Compared("", "", [number(1.0), None]).difference(1) == ""
+    assert SideBySide("", "", [number(1.0), None]).difference(1) == ""
 
 
 @pytest.mark.parametrize(
