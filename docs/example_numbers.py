@@ -17,6 +17,7 @@ from xarray import Dataset
 from beltdyn import Drive, Run, simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Pulley
+from beltdyn.model.hysteresis import compression_losses
 from beltdyn.results import summarize
 from beltdyn.results.derived import capstan_margins
 from beltdyn.theory.capstan import capstan_ratio
@@ -63,7 +64,7 @@ def unequal_radii(run: Run) -> Iterator[Number]:
     (motor, fan), summary = run.drive.pulleys, summarize(run)
     (kloss,), (load,) = motor.load, fan.load
     ratio, loss = motor.radius / fan.radius, creep(run)
-    bent = motor.radius * float(bending_forces(run.drive).sum())
+    bent = motor.radius * float(losses_of_the_belt(run.drive).sum())
 
     def surplus(speed: float) -> float:
         slip = 1.0 - speed / kloss.synchronous_speed
@@ -86,7 +87,7 @@ def fan_direct_start(run: Run) -> Iterator[Number]:
     rated, synchronous = 15e3 / (1465.0 * RPM), 1500.0 * RPM
     breakdown = (1.0 - 1465.0 / 1500.0) * (3.0 + sqrt(8.0))
     inertia = motor.inertia + fan.inertia * ratio**2
-    bent = float(run.drive.radii[0] * bending_forces(run.drive).sum())
+    bent = float(run.drive.radii[0] * losses_of_the_belt(run.drive).sum())
 
     def driving(speed: float) -> float:
         slip = 1.0 - speed / synchronous
@@ -119,7 +120,7 @@ def fan_direct_start(run: Run) -> Iterator[Number]:
     yield Number("motor, rpm", steady / RPM, summary.pulleys[0].speed / RPM, 1.0)
     yield Number("fan, rpm", steady * ratio * (1.0 - loss) / RPM, summary.pulleys[1].speed / RPM, 1.5)
     yield Number("torque of the motor, N m", driving(steady), summary.pulleys[0].shaft_torque, 0.5)
-    force = driving(steady) / float(run.drive.radii[0]) - float(bending_forces(run.drive)[0])
+    force = driving(steady) / float(run.drive.radii[0]) - float(losses_of_the_belt(run.drive)[0])
     yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
     yield Number("slip, %", 100.0 * loss, 100.0 * summary.pulleys[1].slip, 5.0 * loss)
 
@@ -149,7 +150,7 @@ def washing_machine(run: Run) -> Iterator[Number]:
     ratio = small / large
     belt = run.drive.belt
     inertia = motor.inertia + drum.inertia * ratio**2 + belt.mass_per_length * run.drive.belt_length * small**2
-    bent = small * float(bending_forces(run.drive).sum())
+    bent = small * float(losses_of_the_belt(run.drive).sum())
 
     def surplus(time: float, speed: FloatArray) -> FloatArray:
         schedule = min(max((time - 0.01) / 0.07, 0.0), 1.0)
@@ -169,7 +170,7 @@ def washing_machine(run: Run) -> Iterator[Number]:
     yield Number("time at which the drum reaches 1100 rpm, s", by_hand, found, 0.03 * by_hand)
     torque = load.constant + load.linear * final * ratio
     yield Number("torque of the motor at 1200 rpm, N m", torque * ratio + bent, summary.pulleys[0].shaft_torque, 0.003)
-    force = torque / large + float(bending_forces(run.drive)[1])
+    force = torque / large + float(losses_of_the_belt(run.drive)[1])
     tight, slack = (summary.spans[i].tension for i in (1, 0))
     yield Number("difference of the span tensions, N", force, tight - slack, 0.01 * force)
 
@@ -286,12 +287,14 @@ def slip_through(run: Run) -> Iterator[Number]:
 
 
 def slip_and_efficiency(run: Run, tolerance: float) -> Iterator[Number]:
-    """Creep of the last pulley, and the efficiency: creep and what bending takes are lost."""
+    """Creep of the last pulley, and the efficiency: creep and what bending and compression take are lost."""
     summary, loss = summarize(run), creep(run)
-    bent = float(bending_forces(run.drive).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
+    bent = float(losses_of_the_belt(run.drive).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
     found = summary.pulleys[-1].slip
     yield Number("slip, %", 100.0 * loss, 100.0 * found, 100.0 * tolerance * loss)
-    yield Number("efficiency, %", 100.0 * (1.0 - loss - bent), 100.0 * summary.balance.efficiency, 0.1)
+    pressed = float(compression_losses(run.drive).sum()) * summary.spans[0].belt_speed / summary.balance.power_in
+    more = 15.0 * pressed  # the tension on an arc is not that at rest
+    yield Number("efficiency, %", 100.0 * (1.0 - loss - bent), 100.0 * summary.balance.efficiency, 0.1 + more)
 
 
 def creep(run: Run) -> float:
@@ -300,9 +303,10 @@ def creep(run: Run) -> float:
     return speed_loss(max(tensions), min(tensions), run.drive.belt.stretch_parameters)
 
 
-def bending_forces(drive: Drive) -> FloatArray:
-    """Force by which bending on to each pulley and off holds the belt back, N."""
-    return bending_loss(drive.belt.bending_stiffness, drive.belt.bending_loss_factor, np.abs(drive.radii))
+def losses_of_the_belt(drive: Drive) -> FloatArray:
+    """Force by which bending on to each pulley and off, and compression on it, hold the belt back, N."""
+    bent = bending_loss(drive.belt.bending_stiffness, drive.belt.bending_loss_factor, np.abs(drive.radii))
+    return bent + compression_losses(drive)
 
 
 def limit_force(run: Run, tension: float, pulley: int) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import cos, hypot, log, pi, sqrt, tanh
 
 import numpy as np
-from example_numbers import RPM, Number, bending_forces, creep
+from example_numbers import RPM, Number, creep, losses_of_the_belt
 from scipy.linalg import eigh
 from scipy.optimize import brentq, curve_fit
 
@@ -94,7 +94,7 @@ def conveyor(run: bd.Run) -> Iterator[Number]:
     drive, summary, belt = run.drive, summarize(run), run.drive.belt
     (weight,), (load,) = drive.tensioners, drive.pulleys[1].load
     radius, length = float(drive.radii[0]), drive.pulleys[1].center[0]
-    bent = float(bending_forces(drive)[0])
+    bent = float(losses_of_the_belt(drive)[0])
     speed = float(drive.pulleys[0].speed.value) * radius
     pull, weighing = load.constant / radius + bent, 9.81 * belt.mass_per_length
     total, apart = weight.preload + 2.0 * belt.mass_per_length * speed**2, pull + 2.0 * radius * weighing
@@ -123,7 +123,7 @@ def alternator_drive(run: bd.Run) -> Iterator[Number]:
     """The arm's moment gives the slack tension, the load the tight one; hub loads are sums of vectors."""
     drive, summary, arm = run.drive, summarize(run), arm_of(run)
     (load,), radii = drive.pulleys[2].load, np.abs(drive.radii)
-    bent = bending_forces(drive)
+    bent = losses_of_the_belt(drive)
     pull = load.constant / float(radii[2]) + float(bent[2])
     position = arm.balance(pull)
     slack = arm.slack(position)
@@ -151,7 +151,7 @@ def tensioner_stop(run: bd.Run) -> Iterator[Number]:
     """The arm's moment gives the slack tension; in the stroke the stop holds the arm, and the belt's length does."""
     drive, arm = run.drive, arm_of(run)
     (spring,), (load,), radius = drive.tensioners, drive.pulleys[2].load, float(drive.radii[2])
-    bent, friction = float(bending_forces(drive)[2]), float(drive.frictions[2])
+    bent, friction = float(losses_of_the_belt(drive)[2]), float(drive.frictions[2])
     for when, share, instants in (("idling", 0.2, slice(0.35, 0.434)), ("stroke", 1.0, slice(0.66, 0.744))):
         pull = share * load.constant / radius + bent
         position = arm.balance(pull)

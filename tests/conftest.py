@@ -208,6 +208,7 @@ def _outputs(drive: Drive, layout: Layout, time: FloatArray) -> Arrays:
         "material_loss": still,
         "stretch_loss": still,
         "bending_loss": still,
+        "compression_loss": still,
         "tensioner_loss": still,
         "coupling_loss": still,
         "numerical_loss": still,

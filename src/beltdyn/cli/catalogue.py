@@ -87,7 +87,7 @@ def _show(profile: str, entry: "Entry") -> None:
 
 def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
     """What the catalogue says of a profile."""
-    from beltdyn.model.belt_form import DAMPING_TIMES, LOSS_FACTORS
+    from beltdyn.model.belt_form import DAMPING_TIMES, LOSSES
 
     yield "width", f"{1e3 * entry.width:.4g} mm{', the pitch or datum width' * (entry.pulley_diameter == 'datum')}"
     yield "thickness", f"{1e3 * entry.thickness:.4g} mm"
@@ -102,7 +102,7 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
         yield "friction", f"{entry.friction:.3g}, before the factor of the groove"
     if entry.contact_stiffness is not None:
         yield "contact_stiffness", f"{entry.contact_stiffness / 1e6:.3g} MN/m²"
-    for name in (*DAMPING_TIMES, *LOSS_FACTORS):
+    for name in LOSSES:
         if getattr(entry, name) > 0:
             yield name, f"{getattr(entry, name):.3g}{' s' if name in DAMPING_TIMES else ''}"
 

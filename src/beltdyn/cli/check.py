@@ -105,7 +105,7 @@ def _facts(drive: "Drive", installation: "Installation", asked_for: bool) -> lis
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
         ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm"),
-        *_lost_in_bending(drive),
+        *_lost_in_the_belt(drive),
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
@@ -118,14 +118,16 @@ def _taken_up(drive: "Drive") -> list[tuple[str, str]]:
     return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
 
 
-def _lost_in_bending(drive: "Drive") -> list[tuple[str, str]]:
-    """What the loss factor of bending costs, at any speed and load."""
-    if drive.belt.bending_loss_factor == 0.0:
-        return []
-    from beltdyn.model.hysteresis import bending_resistance
+def _lost_in_the_belt(drive: "Drive") -> list[tuple[str, str]]:
+    """What the loss factors of bending and compression cost, at any speed and load."""
+    from beltdyn.model.hysteresis import bending_resistance, compression_losses
 
-    force = bending_resistance(drive)
-    return [("lost in bending", f"{force:.3g} N of the pull at the belt, {force:.3g} W for each m/s of its speed")]
+    forces = {"bending": bending_resistance(drive), "compression": compression_losses(drive).sum()}
+    return [
+        (f"lost in {cause}", f"{force:.3g} N of the pull at the belt, {force:.3g} W for each m/s of its speed")
+        for cause, force in forces.items()
+        if force > 0.0
+    ]
 
 
 def _origin(drive: "Drive", installation: "Installation", asked_for: bool) -> str:

@@ -1,7 +1,7 @@
 """Generalised contact forces of one element against one pulley and their exact tangent (Eq. 24).
 
 The centreline is a Bezier curve given by its control points, whatever the belt discretisation; the forces belong to the
-vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + f_t t) dx.
+vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + (f_t + f_r) t) dx.
 """
 
 from typing import NamedTuple
@@ -33,6 +33,8 @@ class ContactTotals(NamedTuple):
     """Power lost in the contact dampers: f_n without its elastic part times dd/dt, over the touching length, W."""
     friction_power: float
     """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - arm omega), W."""
+    compression_power: float
+    """Power lost as the belt is pressed in and comes out, -f_r (t . dr/dt), W."""
 
 
 def contact_record(count: int, vectors: int) -> np.dtype[np.void]:
@@ -113,7 +115,7 @@ def contact_force(
         count = touching_intervals(curve.control, pulley, work.zone)
     else:
         count, intervals[0, 0], intervals[0, 1] = 1, 0.0, 1.0
-    totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     wanted = by_position != 0.0 or by_velocity != 0.0
     for interval in range(count):
         start, stop = intervals[interval, 0], intervals[interval, 1]
@@ -170,6 +172,7 @@ def _add_point(
         totals.penalty_energy + weight * force.normal.energy,
         totals.damping_power - weight * (force.normal.force - force.normal.elastic) * here.radial,
         totals.friction_power - weight * force.friction * (here.circumferential - force.arm * pulley.speed),
+        totals.compression_power - weight * force.rolling.force * here.circumferential,
     )
 
 

@@ -35,3 +35,5 @@ class PulleyState(NamedTuple):
     velocity_x: float = 0.0
     """Velocity of its shaft, m/s."""
     velocity_y: float = 0.0
+    rolling: float = 0.0
+    """Coefficient rho of rolling resistance."""

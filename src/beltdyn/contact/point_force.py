@@ -12,8 +12,9 @@ and change n by t db, t by -n db, p_n by dr_n + p_t db, p_t by dr_t - p_n db, an
     w by dv_n + v_t db + omega (dr_t - p_n db) + p_t d(omega),
     the slip velocity by dv_t - w db + omega p_t d(theta) - a d(omega), and the speed of the rim by R d(omega),
 
-from which the variations of f_n n + f_t t and of the moment f_n p_t - arm f_t follow.  On a smooth circle kappa p_n = 1
-and p_t = 0.
+from which the variations of f_n n + (f_t + f_r) t and of the moment f_n p_t - arm f_t follow.  Rolling resistance f_r
+goes by the velocity v_t against the shaft, which changes by dv_t - v_n db.  On a smooth circle kappa p_n = 1 and
+p_t = 0.
 """
 
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import NormalForce, normal_force
 from beltdyn.contact.penetration import Approach, slip_velocity
 from beltdyn.contact.pulley_moment import moment_arm, pulley_moment
+from beltdyn.contact.rolling_resistance import RollingResistance, rolling_resistance
 from beltdyn.kernel import kernel
 
 
@@ -33,8 +35,10 @@ class PointForce(NamedTuple):
     """f_n along n (Eq. 17)."""
     friction: float
     """f_t along t (Eq. 20)."""
+    rolling: RollingResistance
+    """f_r along t."""
     x: float
-    """The force f_n n + f_t t on the belt."""
+    """The force f_n n + (f_t + f_r) t on the belt."""
     y: float
     by_slip: float
     """df_t / d(slip velocity), N s/m^2."""
@@ -88,12 +92,15 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
     friction, by_slip, by_normal, by_rim = friction_force(
         law.friction, slip, normal.force, pulley.friction, pulley.speed * radius
     )
+    rolling = rolling_resistance(pulley.rolling, normal.force, here.circumferential)
+    along = friction + rolling.force
     arm, arm_slope = moment_arm(here, law)
     return PointForce(
         normal,
         friction,
-        normal.force * here.normal_x - friction * here.normal_y,
-        normal.force * here.normal_y + friction * here.normal_x,
+        rolling,
+        normal.force * here.normal_x - along * here.normal_y,
+        normal.force * here.normal_y + along * here.normal_x,
         by_slip,
         by_normal,
         by_rim * radius,
@@ -127,10 +134,13 @@ def point_tangent(
     drag = by_velocity - here.radial * tilt
     friction_n = force.by_normal * sink
     friction_t = force.by_normal * sweep + force.by_slip * drag
-    nn, nt = sink, sweep - force.friction * tilt
-    tn, tt = friction_n, friction_t + force.normal.force * tilt
+    rolling = force.rolling
+    roll = rolling.by_normal * sweep + rolling.by_velocity * (drag + speed * here.offset * tilt)
+    turned = sweep - force.friction * tilt
+    nn, nt = sink, turned - rolling.force * tilt
+    tn, tt = friction_n + rolling.by_normal * sink, friction_t + roll + force.normal.force * tilt
     moment_n = sink * here.offset - by_position * force.arm_slope * force.friction - force.arm * friction_n
-    moment_t = nt * here.offset + push * here.turn - force.arm * friction_t
+    moment_t = turned * here.offset + push * here.turn - force.arm * friction_t
     nx, ny = here.normal_x, here.normal_y
     xn, xt, yn, yt = nx * nn - ny * tn, nx * nt - ny * tt, ny * nn + nx * tn, ny * nt + nx * tt
     return PointTangent(
@@ -155,7 +165,9 @@ def point_turn(here: Approach, force: PointForce, speed: float, by_angle: float,
     along += force.by_slip * (speed * lift - here.radial * tilt) + force.by_normal * normal
     arm = here.offset * tilt - (1.0 - force.arm_slope) * lift
     moment = normal * here.offset - force.normal.force * here.lever * tilt - along * force.arm - force.friction * arm
-    across = normal - force.friction * tilt
+    rolling = force.rolling
+    across = normal - (force.friction + rolling.force) * tilt
+    along += rolling.by_normal * normal - rolling.by_velocity * (here.radial - speed * here.offset) * tilt
     along += force.normal.force * tilt
     nx, ny = here.normal_x, here.normal_y
     return PointTurn(across * nx - along * ny, across * ny + along * nx, moment)

@@ -111,6 +111,12 @@ class Belt(Part):
         description="the loss factor (tan delta) of bending: hysteresis whatever the speed, "
         "in place of bending_damping_time",
     )
+    compression_loss_factor: Ratio = Field(
+        0.0,
+        ge=0,
+        le=2,
+        description="the loss factor of the belt as pulleys press it in and it comes out; needs contact_stiffness",
+    )
     axial_factor: Ratio = Field(1.0, gt=0, description="the factor α₁ on the axial stiffness")
     bending_factor: Ratio = Field(1.0, gt=0, description="the factor α₂ on the bending and shear stiffness")
     shear_correction: Ratio | None = Field(
@@ -185,6 +191,16 @@ class Belt(Part):
                     f"{time} = {getattr(self, time):g} s and {factor} = {getattr(self, factor):g} exclude each other: "
                     "a loss grows with the speed, or it does not. Keep one of them"
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _has_what_compression_needs(self) -> Self:
+        if self.compression_loss_factor > 0 and self.contact_stiffness is None:
+            raise ValueError(
+                f"compression_loss_factor = {self.compression_loss_factor:g} needs contact_stiffness, how hard the "
+                "belt is: without it the energy of compression is not known. Give it, or set "
+                "compression_loss_factor = 0"
+            )
         return self
 
     @model_validator(mode="after")

@@ -36,9 +36,10 @@ _POWERS: dict[str, dict[str, int]] = {
 DAMPING_TIMES = ("stretch_damping_time", "bending_damping_time")
 LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 """In the order of `DAMPING_TIMES`: of each strain a belt has the one or the other."""
+LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
 _STRETCH = ("stretch_law", "stretch_curve")
-_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *DAMPING_TIMES, *LOSS_FACTORS)
+_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *LOSSES)
 
 
 class Stiffnesses(Part):

@@ -62,6 +62,7 @@ class Entry(Part):
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")
     stretch_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of stretch")
     bending_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of bending")
+    compression_loss_factor: Ratio = Field(0.0, ge=0, le=2, description="the loss factor of compression in grooves")
     pulley_diameter: Literal["datum", "effective", "outside"] = Field(
         "outside", description="which diameter is twice the radius of a pulley: datum, effective or outside"
     )

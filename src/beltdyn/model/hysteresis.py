@@ -4,11 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import pulling
 from beltdyn.model.installation import install
 from beltdyn.model.resolution import layer_lengths
-from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss
+from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss, compression_loss
 
 SMOOTHED = 2.0
 """Length over which slow rates of bending are smoothed, over that on which the curvature changes."""
@@ -66,3 +67,42 @@ def bending_resistance(drive: Drive) -> float:
     """
     belt = drive.belt
     return float(bending_loss(belt.bending_stiffness, belt.bending_loss_factor, drive.radii).sum())
+
+
+def rolling_resistances(drive: Drive) -> FloatArray:
+    """Give the coefficients of rolling resistance that take what compression of the belt loses.
+
+    Per metre of belt, rho times the normal force along an arc of the angle phi takes rho phi T.  T is that at rest.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        rho of each pulley.
+    """
+    if drive.belt.compression_loss_factor == 0.0:
+        return np.zeros(len(drive.pulleys))
+    return np.asarray(compression_losses(drive) / (install(drive).tension * np.abs(drive.path.wrap_angles)))
+
+
+def compression_losses(drive: Drive) -> FloatArray:
+    """Give the force that compression holds the belt of a drive back with on each pulley, at the tension at rest, N.
+
+    Parameters
+    ----------
+    drive : Drive
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Zero where the back of the belt touches, which no groove presses.
+    """
+    belt = drive.belt
+    if belt.contact_stiffness is None or belt.compression_loss_factor == 0.0:
+        return np.zeros(len(drive.pulleys))
+    stiffness, tension = belt.contact_stiffness, install(drive).tension
+    losses = compression_loss(tension, belt.bending_stiffness, stiffness, belt.compression_loss_factor, drive.radii)
+    return np.asarray(losses * np.array([pulley.side == "inside" for pulley in drive.pulleys]))

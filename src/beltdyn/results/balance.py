@@ -14,6 +14,7 @@ LOSSES: Mapping[str, str] = {
     "damping_loss": "contact damping",
     "stretch_loss": "belt stretch",
     "bending_loss": "belt bending",
+    "compression_loss": "belt compression",
     "tensioner_loss": "tensioners",
     "coupling_loss": "couplings",
     "numerical_loss": "time integration",

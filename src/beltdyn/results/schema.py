@@ -129,6 +129,7 @@ _OUTPUTS = {
     "material_loss": Variable(_OVER_TIME, "J", "Loss in the belt's material"),
     "stretch_loss": Variable(_OVER_TIME, "J", "Loss in the belt's stretch", core=False),
     "bending_loss": Variable(_OVER_TIME, "J", "Loss in the belt's bending", core=False),
+    "compression_loss": Variable(_OVER_TIME, "J", "Loss in the belt's compression on pulleys", core=False),
     "tensioner_loss": Variable(_OVER_TIME, "J", "Loss in tensioners"),
     "coupling_loss": Variable(_OVER_TIME, "J", "Loss in couplings"),
     "numerical_loss": Variable(_OVER_TIME, "J", "Loss in time integration"),

@@ -30,7 +30,7 @@ class EnergyAccount:
             E in those that are shown, J; the first state of all is one of them.
         potential : ndarray, shape (k, 2)
             V of springs and of weight, J.
-        work : ndarray, shape (k, 8)
+        work : ndarray, shape (k, 10)
             In the order of `ENERGY_WORKS`: driver work, torque work, then losses, J.
         shown : ndarray of bool, shape (k,)
             Which m of them are.

@@ -24,6 +24,7 @@ PULLEY = record(
     center="2f8",  # m; where a tensioner carries the pulley, its place at coordinate zero
     radius="f8",  # effective radius, at which the belt's centreline runs, m
     friction="f8",  # coefficient of friction
+    rolling="f8",  # coefficient of rolling resistance
     shaft="i8",  # body that drivers and loads act on: the rim, or the last body of its hub chain
     carrier="i8",  # tensioner that carries the pulley, -1 where its centre is fixed
 )
@@ -194,7 +195,7 @@ class BodyForces(NamedTuple):
     force: FloatArray
     """Generalised force on each body, but the driver's reaction; N m, or N on a sliding tensioner; shape (D,)."""
     power: FloatArray
-    """Powers in the order of `POWERS`, W, shape (8,)."""
+    """Powers in the order of `POWERS`, W, shape (9,)."""
     stored: FloatArray
     """Energy in the penalty springs, and in the springs of hub chains and tensioners, J, shape (2,)."""
 
@@ -220,6 +221,7 @@ POWERS = (
     "damping_loss",
     "stretch_loss",
     "bending_loss",
+    "compression_loss",
     "tensioner_loss",
     "coupling_loss",
 )
@@ -228,9 +230,8 @@ POWERS = (
 ENERGY_WORKS = (*POWERS, "numerical_loss")
 """Their integrals, and what the damping of the time integrator takes."""
 
-DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, STRETCH_LOSS, BENDING_LOSS, TENSIONER_LOSS, COUPLING_LOSS = (
-    range(len(POWERS))
-)
+DRIVER_WORK, TORQUE_WORK, FRICTION_LOSS, DAMPING_LOSS, STRETCH_LOSS, BENDING_LOSS = range(6)
+COMPRESSION_LOSS, TENSIONER_LOSS, COUPLING_LOSS = range(6, len(POWERS))
 NUMERICAL_LOSS = len(POWERS)
 """Places of the works in these orders, and of their powers."""
 

@@ -9,6 +9,7 @@ from beltdyn.machines.links.registry import link_torque
 from beltdyn.machines.loads.shaft import shaft_torque, state_rate
 from beltdyn.machines.tensioners.registry import tensioner_center, tensioner_force
 from beltdyn.system.arrays import (
+    COMPRESSION_LOSS,
     COUPLING_LOSS,
     DAMPING_LOSS,
     DRIVER_WORK,
@@ -81,6 +82,7 @@ def add_contact(forces: BodyForces, pulley: int, totals: ContactTotals) -> None:
     forces.hub[pulley, 1] += totals.hub_y
     forces.friction[pulley] += totals.friction_power
     forces.damping[pulley] += totals.damping_power
+    forces.power[COMPRESSION_LOSS] += totals.compression_power
     forces.stored[PENALTY_ENERGY] += totals.penalty_energy
 
 

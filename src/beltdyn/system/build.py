@@ -14,7 +14,7 @@ from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
-from beltdyn.model.hysteresis import Passing, passing_strains
+from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
@@ -122,6 +122,7 @@ def _system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **m
         path=completed.path,
         gravity=drive.gravity,
         passing=passing_strains(drive) if belt.has_hysteresis else None,
+        rolling=rolling_resistances(drive),
         **more,
     )
 
@@ -141,6 +142,7 @@ def belt_system(
     moments: Sequence[tuple[int, float]] = (),
     masses: Sequence[tuple[int, float]] = (),
     passing: Passing | None = None,
+    rolling: FloatArray | None = None,
 ) -> System:
     """Arrays of any belt: closed or open, on pulleys or not, with nodes fixed, loaded or free.
 
@@ -173,6 +175,8 @@ def belt_system(
         Pairs (end, mass), kg: what moves with the first (0) or the last (-1) node of an open belt.
     passing
         How strains pass along a belt with loss factors; see `hysteresis_rows`.
+    rolling : ndarray, shape (pulleys,), optional
+        Coefficients of rolling resistance; by default there is none.
 
     Returns
     -------
@@ -204,7 +208,8 @@ def belt_system(
     radii = effective_radii(pulleys, belt)
     frictions = [friction_on(pulley, belt, contact) for pulley in pulleys] if contact else []
     machines = machine_arrays(pulleys, tensioners, path, gravity)
-    shafts = pulley_arrays(pulleys, radii, frictions, machines.tensioners)
+    resistances = np.zeros(len(pulleys)) if rolling is None else rolling
+    shafts = pulley_arrays(pulleys, radii, frictions, resistances, machines.tensioners)
     bodies = body_arrays(pulleys, radii, tensioners)
     supports = _supports(nodes, len(mesh.scale), fixed, forces, moments)
     return System(

@@ -68,9 +68,9 @@ def machine_arrays(
 
 
 def pulley_arrays(
-    pulleys: Sequence[Pulley], radii: FloatArray, frictions: Sequence[float], tensioners: Records
+    pulleys: Sequence[Pulley], radii: FloatArray, frictions: Sequence[float], rolling: FloatArray, tensioners: Records
 ) -> Records:
-    """Arrays of the pulleys: centers and radii (m), friction, shafts by their number among the bodies, tensioners."""
+    """Arrays of the pulleys: centers and radii (m), friction, rolling resistance, shafts among the bodies, carriers."""
     carrier = np.full(len(pulleys), -1, dtype=np.int64)
     carrier[tensioners.pulley] = np.arange(tensioners.size)
     return records(
@@ -78,6 +78,7 @@ def pulley_arrays(
         center=np.array([pulley.center for pulley in pulleys], dtype=float).reshape(-1, 2),
         radius=radii,
         friction=np.array(frictions, dtype=float),
+        rolling=rolling,
         shaft=shaft_bodies(pulleys),
         carrier=carrier,
     )

@@ -31,11 +31,11 @@ def pulley_state(system: System, pulley: int, position: FloatArray, velocity: Fl
     carrier, speed = item.carrier, velocity[body]
     surface = surface_at(system.rims, pulley, position[body])
     if carrier < 0:
-        return PulleyState(item.center[0], item.center[1], surface, speed, item.friction, 0.0, 0.0)
+        return PulleyState(item.center[0], item.center[1], surface, speed, item.friction, 0.0, 0.0, item.rolling)
     at = tensioner_coordinate(system, carrier)
     center = tensioner_center(system.tensioners[carrier], position[at])
     vx, vy = velocity[at] * center.dx, velocity[at] * center.dy
-    return PulleyState(center.x, center.y, surface, speed, item.friction, vx, vy)
+    return PulleyState(center.x, center.y, surface, speed, item.friction, vx, vy, item.rolling)
 
 
 def pulley_center(system: System, pulley: int, position: FloatArray) -> tuple[float, float]:

@@ -17,7 +17,7 @@ from beltdyn.records import records
 
 @pytest.fixture(scope="session")
 def pulley() -> PulleyState:
-    return PulleyState(0.3, -0.2, Round(0.1), speed=7.0, friction=0.5)
+    return PulleyState(0.3, -0.2, Round(0.1), speed=7.0, friction=0.5, rolling=0.02)
 
 
 @pytest.fixture(scope="session")
@@ -26,7 +26,8 @@ def eccentric() -> Callable[[float], PulleyState]:
     table = records(SHAPE, kind=[list(KINDS).index("eccentric")], eccentricity=[4e-3], eccentric_angle=[0.3])
 
     def at(angle: float) -> PulleyState:
-        return PulleyState(0.3, -0.2, surface_at(ShapedRims(np.array([0.1]), table), 0, angle), speed=7.0, friction=0.5)
+        surface = surface_at(ShapedRims(np.array([0.1]), table), 0, angle)
+        return PulleyState(0.3, -0.2, surface, speed=7.0, friction=0.5, rolling=0.02)
 
     return at
 

@@ -131,6 +131,7 @@ def test_an_eccentric_rim_acts_as_a_circle_about_its_own_centre(
 ) -> None:
     """Its forces are those of a circle there, which moves; its moment is theirs about the shaft."""
     aside = 4e-3 * np.array([np.cos(turn + 0.3), np.sin(turn + 0.3)])
+    pulley = pulley._replace(rolling=0.0)  # which goes by the velocity against the shaft
     moved = pulley._replace(
         center_x=pulley.center_x + aside[0],
         center_y=pulley.center_y + aside[1],
@@ -138,7 +139,7 @@ def test_an_eccentric_rim_acts_as_a_circle_about_its_own_centre(
         velocity_y=pulley.speed * aside[0],
     )
     vectors, rates = sunk(moved, 3)
-    one, by_rim = act(vectors, rates, np.eye(4), eccentric(turn), law)
+    one, by_rim = act(vectors, rates, np.eye(4), eccentric(turn)._replace(rolling=0.0), law)
     other, by_circle = act(vectors, rates, np.eye(4), moved, law)
     rounding = 1e-9 * np.abs(other.force).max()  # ends of intervals, to 1e-13
     np.testing.assert_allclose(one.force, other.force, atol=rounding)
@@ -164,6 +165,17 @@ def test_a_cubic_written_as_a_quintic(
     np.testing.assert_allclose(raised, totals, rtol=rounding)
 
 
+def test_rolling_resistance_takes_its_power_from_the_belt_alone(any_pulley: PulleyState, law: ContactLaw) -> None:
+    vectors, rates = sunk(any_pulley, 3)
+    rolling, lossy = act(vectors, rates, np.eye(4), any_pulley, law)
+    free, plain = act(vectors, rates, np.eye(4), any_pulley._replace(rolling=0.0), law)
+    lost = -float(np.sum((rolling.force - free.force) * rates))
+    assert lossy.compression_power == pytest.approx(lost)
+    assert lost > 0.0
+    assert lossy.moment == plain.moment
+    assert (lossy.friction_power, plain.compression_power) == (plain.friction_power, 0.0)
+
+
 @pytest.mark.parametrize("degree", DEGREES)
 def test_forces_on_the_vectors_add_up_to_that_on_the_pulley(pulley: PulleyState, law: ContactLaw, degree: int) -> None:
     work, totals = act(*sunk(pulley, degree), np.eye(degree + 1), pulley, law)
@@ -183,7 +195,10 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
     Lengths count in the unstretched belt, here 80 % of what lies there.  The published rule takes those of its points
     over the whole element that touch.
     """
-    pulley, law = pulley._replace(speed=speed), law._replace(arm_to_rim=arm_to_rim, follow_zone=follow_zone)
+    pulley, law = (
+        pulley._replace(speed=speed, rolling=0.0),
+        law._replace(arm_to_rim=arm_to_rim, follow_zone=follow_zone),
+    )
     height, ends, velocity = 0.097, np.array([-0.05, 0.06]), np.array([0.1, -0.5])
     work = contact_workspace(2, 2)
     control = np.stack([pulley.center_x + ends, np.full(2, pulley.center_y + height)], axis=1)
@@ -214,6 +229,7 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
         penalty_energy=share @ (0.5 * law.normal.stiffness * depth**2),
         damping_power=share @ (law.normal.damping * sinking**2),
         friction_power=share @ (friction * (arm * speed - tangent @ velocity)),
+        compression_power=0.0,
     )
     np.testing.assert_allclose(totals, expected, rtol=1e-9)
     np.testing.assert_allclose(

@@ -57,7 +57,8 @@ def test_force_is_made_of_normal_and_friction(state: FloatArray, pulley: PulleyS
     force = point_force(here, pulley, every_law)
     normal, tangent = (here.normal_x, here.normal_y), (-here.normal_y, here.normal_x)
     assert force.x * normal[0] + force.y * normal[1] == pytest.approx(force.normal.force, abs=1e-10)
-    assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(force.friction, abs=1e-10)
+    along = force.friction + force.rolling.force
+    assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(along, abs=1e-10)
     assert abs(force.friction) <= pulley.friction * abs(force.normal.force) * (1 + 1e-15)
 
 

@@ -16,9 +16,10 @@ Place = Callable[[PulleyState, float, float], tuple[float, float]]
 def test_is_the_moment_of_the_reaction(
     pulley: PulleyState, law: ContactLaw, place: Place, angle: float, velocity: tuple[float, float]
 ) -> None:
+    """But for rolling resistance, which acts on the shaft."""
     x, y = place(pulley, 2e-3, angle)
     here = approach(x, y, *velocity, pulley)
-    force = point_force(here, pulley, law)
+    force = point_force(here, pulley._replace(rolling=0.0), law)
     arm_x, arm_y = x - pulley.center_x, y - pulley.center_y
     moment = force.moment
     assert moment == pytest.approx(-(arm_x * force.y - arm_y * force.x), rel=1e-12)
@@ -34,3 +35,10 @@ def test_with_the_arm_to_the_rim_friction_never_gives_energy(
     moment = force.moment
     assert moment == -pulley.surface.radius * force.friction
     assert force.friction * here.circumferential + moment * pulley.speed <= 0.0
+
+
+def test_rolling_resistance_does_not_turn_the_pulley(pulley: PulleyState, law: ContactLaw, place: Place) -> None:
+    here = approach(*place(pulley, 2e-3, 1.0), 2.0, -1.0, pulley)
+    free, held = (point_force(here, pulley._replace(rolling=share), law) for share in (0.0, 0.02))
+    assert held.moment == free.moment
+    assert (held.x, held.y) != (free.x, free.y)

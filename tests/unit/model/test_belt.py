@@ -76,3 +76,9 @@ def test_a_belt_with_length_and_tension_keeps_both(drive: Drive) -> None:
 def test_a_belt_without_length_and_tension_is_refused(drive: Drive) -> None:
     with pytest.raises(ModelError, match=r"length is missing\. Give the unstretched length, or nominal_length or"):
         drive.belt.replace(length=None)
+
+
+def test_compression_needs_to_know_how_hard_the_belt_is(drive: Drive) -> None:
+    with pytest.raises(ModelError, match=r"compression_loss_factor = 0\.4 needs contact_stiffness"):
+        drive.belt.replace(compression_loss_factor=0.4)
+    assert drive.belt.replace(compression_loss_factor=0.4, contact_stiffness=1e7).compression_loss_factor == 0.4

@@ -5,8 +5,14 @@ import pytest
 
 from beltdyn.elements.hysteretic import CREEPING, hysteretic
 from beltdyn.model import Drive, install
-from beltdyn.model.hysteresis import SMOOTHED, bending_resistance, passing_strains
-from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, stretch_loss
+from beltdyn.model.hysteresis import (
+    SMOOTHED,
+    bending_resistance,
+    compression_losses,
+    passing_strains,
+    rolling_resistances,
+)
+from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, compression_loss, stretch_loss
 
 MakeDrive = Callable[..., Drive]
 
@@ -65,3 +71,21 @@ def test_bending_holds_the_belt_back_on_every_pulley(drive: Drive) -> None:
     expected = 0.05 * np.pi * belt.bending_stiffness * sum(1.0 / radius**2 for radius in drive.radii)
     assert bending_resistance(drive.replace(belt=belt)) == pytest.approx(expected)
     assert bending_resistance(drive) == 0.0
+
+
+def test_rolling_resistance_along_the_arc_takes_the_loss_of_compression(drive: Drive) -> None:
+    """A metre of belt that passes the arc under the tension at rest: rho T phi."""
+    belt, tension = drive.belt.replace(compression_loss_factor=0.5, contact_stiffness=2e7), install(drive).tension
+    pressed = drive.replace(belt=belt)
+    expected = compression_loss(tension, belt.bending_stiffness, 2e7, 0.5, drive.radii)
+    np.testing.assert_allclose(compression_losses(pressed), expected)
+    np.testing.assert_allclose(rolling_resistances(pressed) * tension * drive.path.wrap_angles, expected)
+    assert not rolling_resistances(drive).any()
+
+
+def test_only_grooves_compress(make_drive: MakeDrive) -> None:
+    drive = make_drive("flat")
+    pressed = drive.replace(belt=drive.belt.replace(compression_loss_factor=0.5, contact_stiffness=2e7))
+    inside = np.array([pulley.side == "inside" for pulley in drive.pulleys])
+    assert 0 < inside.sum() < inside.size
+    np.testing.assert_array_equal(rolling_resistances(pressed) > 0.0, inside)

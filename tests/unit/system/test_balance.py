@@ -70,6 +70,7 @@ def test_energy(system: System, joined: State) -> None:
 
 DAMPED = {"stretch_damping_time": 1e-5, "bending_damping_time": 1e-2}
 HYSTERETIC = {"stretch_loss_factor": 0.1, "bending_loss_factor": 0.3}
+PRESSED = {"compression_loss_factor": 1.0, "contact_stiffness": 1e6}
 MACHINES = [("rotary", DAMPED), ("sliding", DAMPED), ("rotary", HYSTERETIC), ("sliding", HYSTERETIC)]
 
 
@@ -78,7 +79,7 @@ def machines(request: pytest.FixtureRequest, with_machines: Callable[[str], Driv
     """A drive with losses in the belt, a tensioner on its stop, a hub chain and loads, disturbed."""
     tensioner, losses = request.param
     drive = with_machines(tensioner)
-    system = drive_system(drive.replace(belt=drive.belt.replace(**losses)))
+    system = drive_system(drive.replace(belt=drive.belt.replace(**losses, **PRESSED)))
     rest = laid(system, Path(system.pulleys.center, system.pulleys.radius - 1e-4), np.array([-2e-3])).position
     scale = np.concatenate([np.tile(1.0 / np.array(system.scale), system.nodes), 1.0 / system.bodies.reach])
     noise = np.random.default_rng(1).normal(size=(2, rest.size)) * scale
@@ -115,7 +116,11 @@ def test_momentum_of_the_belt(system: System, joined: State) -> None:
 
 
 def test_momentum_of_the_belt_of_a_drive_with_machines(machines: tuple[System, State]) -> None:
-    assert_momentum(*machines)
+    """Without rolling resistance, whose couple about the shaft goes to the frame."""
+    system, state = machines
+    pulleys = system.pulleys.copy()
+    pulleys.rolling = 0.0
+    assert_momentum(system._replace(pulleys=pulleys), state)
 
 
 def test_bodies_follow_their_torques(machines: tuple[System, State]) -> None:

@@ -39,6 +39,8 @@ BAR = Belt(
 )
 WAVE = np.sqrt(BAR.axial_stiffness / BAR.mass_per_length)
 NUMBER = np.pi / (2 * LENGTH)
+REFERENCE = 1e-5
+"""Tolerance of the run that others are compared with."""
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +147,7 @@ def short(small: Drive, change: Change) -> Drive:
 @pytest.fixture(scope="module")
 def converged(short: Drive, change: Change) -> xr.Dataset:
     """By the method of the highest order."""
-    return simulate(change(short, simulation={"integrator": "radau", "rtol": 1e-5})).dataset
+    return simulate(change(short, simulation={"integrator": "radau", "rtol": REFERENCE})).dataset
 
 
 @pytest.mark.parametrize(
@@ -179,7 +181,8 @@ def test_integrators_agree_and_approach_each_other(
         assert error < 2.0 * rtol, (
             f"{integrator} at {rtol}"
         )  # a local tolerance per unit of time, over a fraction of a second
-    assert errors[rtols[-1]] < 0.3 * errors[rtols[0]]
+    settled = 0.1 * REFERENCE  # where the error of the reference counts too: Radau is there at every tolerance
+    assert errors[rtols[-1]] < max(0.3 * errors[rtols[0]], settled)
 
 
 @pytest.mark.parametrize("start", ["laid", "equilibrium"])
