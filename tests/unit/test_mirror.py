@@ -56,6 +56,7 @@ ELSEWHERE = {
     "model/picture.py": "unit/model/test_notebook.py",
     "results/__init__.py": "unit/test_public_names.py",
     "results/static.py": "unit/solve/test_equilibrium.py",
+    "results/rest_sheet.py": "unit/cli/test_commands.py",
     "results/run_sheet.py": "unit/cli/test_screen.py",
     "results/means.py": "unit/results/test_summary.py",
     # Statements and runs of the paper, which take minutes.

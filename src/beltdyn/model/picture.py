@@ -1,11 +1,13 @@
 """A drive as a small vector picture: its pulleys and the path of its belt, as text in SVG."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from beltdyn.model.drive import Drive
+from beltdyn.model.path import Path
 
 _SIZE = 360.0
 """Longer side of the picture, pixels."""
@@ -71,6 +73,26 @@ def picture(drive: Drive) -> Picture:
         Circle(pulley.name, *place(*center), scale * pulley.radius, pulley.prescribed)
         for pulley, center in zip(drive.pulleys, path.centers.tolist(), strict=True)
     )
+    return Picture(width, height, circles, outline(path, place, scale))
+
+
+def outline(path: Path, place: Callable[[float, float], tuple[float, float]], scale: float) -> str:
+    """Draw the line of a path.
+
+    Parameters
+    ----------
+    path : Path
+        The path.
+    place : callable
+        Gives the place in the picture of a point in the plane of the drive, m; it turns y over.
+    scale : float
+        Pixels a metre.
+
+    Returns
+    -------
+    str
+        In the language of the attribute ``d``.
+    """
     x, y = place(*path.span_points[path.order[0], 0])
     steps = [f"M {x:.2f} {y:.2f}"]
     for span in path.order:
@@ -82,4 +104,4 @@ def picture(drive: Drive) -> Picture:
         radius, large = scale * abs(path.radii[arc]), int(path.wrap_angles[arc] > math.pi)
         x, y = place(*path.span_points[arc, 0])
         steps.append(f"A {radius:.2f} {radius:.2f} 0 {large} {int(path.radii[arc] < 0)} {x:.2f} {y:.2f}")
-    return Picture(width, height, circles, " ".join(steps))
+    return " ".join(steps)

@@ -44,12 +44,22 @@ class ErrorLocation:
         path : str
         schema : dict
         """
-        path, data = self._prefix, self._data
+        path, _, schema = self._follow(location)
+        return path, schema
+
+    def in_data(self, location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+        """Find the keys and positions that lead to the same place in the user's data: without kinds."""
+        return self._follow(location)[1]
+
+    def _follow(self, location: tuple[int | str, ...]) -> tuple[str, tuple[int | str, ...], dict[str, Any]]:
+        """The path, the location in the data, and the schema."""
+        path, data, steps = self._prefix, self._data, list[int | str]()
         schema = self._resolve(self._schema) | {"description": ""}
         for step in location:
             if isinstance(step, str) and step in schema.get("discriminator", {}).get("mapping", {}):
                 schema = self._resolve({"$ref": schema["discriminator"]["mapping"][step]})
                 continue
+            steps.append(step)
             data, schema = _item(data, step), self._option(schema, step)
             if isinstance(step, int):
                 path += f"[{entry_name(data) or step + 1}]"
@@ -58,7 +68,7 @@ class ErrorLocation:
             else:
                 path += f".{shorten(step)}" if path else shorten(step)
                 schema = self._resolve(schema.get("properties", {}).get(step, {}))
-        return path, schema
+        return path, tuple(steps), schema
 
     def keys(self, location: tuple[int | str, ...]) -> list[str]:
         """List the keys that are known at a location."""

@@ -3,7 +3,7 @@
 import difflib
 import json
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -35,6 +35,21 @@ _RULES = {
 }
 
 
+class Told(NamedTuple):
+    """An error in words.
+
+    Attributes
+    ----------
+    location : tuple of str or int
+        Keys and positions in lists that lead to what is wrong, as in the user's data; empty for the whole.
+    sentence : str
+        Value, rule and remedy.
+    """
+
+    location: tuple[int | str, ...]
+    sentence: str
+
+
 def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> str:
     """Say what is wrong with a drive or a part of it.
 
@@ -52,14 +67,33 @@ def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, A
     str
         One line for each error.
     """
+    return "\n".join(dict.fromkeys(one.sentence for one in told_apart(error, model, data)))
+
+
+def told_apart(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> list[Told]:
+    """Say what is wrong, each error with its place; arguments as for `explain`.
+
+    Returns
+    -------
+    list of Told
+        Those that do not follow from another one; at last how many more there are, if there are many.
+    """
     locations = ErrorLocation(model, data)
     details = error.errors(include_url=False)[:_MOST_ERRORS]
-    told = [detail for detail in details if not _follows_from_another(detail, details, locations)]
-    sentences = dict.fromkeys(shorten(_sentence(detail, locations).rstrip(". "), _LONGEST_SENTENCE) for detail in told)
+    kept = [detail for detail in details if not _follows_from_another(detail, details, locations)]
+    told = [
+        Told(
+            locations.in_data(detail["loc"]),
+            _ended(shorten(_sentence(detail, locations).rstrip(". "), _LONGEST_SENTENCE)),
+        )
+        for detail in kept
+    ]
     more = error.error_count() - len(details)
-    if more > 0:
-        sentences[f"There are {more} more errors, which are not shown"] = None
-    return "\n".join(sentence if sentence.endswith("?") else f"{sentence}." for sentence in sentences)
+    return [*told, Told((), f"There are {more} more errors, which are not shown.")] if more > 0 else told
+
+
+def _ended(sentence: str) -> str:
+    return sentence if sentence.endswith("?") else f"{sentence}."
 
 
 def _follows_from_another(detail: ErrorDetails, details: list[ErrorDetails], locations: ErrorLocation) -> bool:

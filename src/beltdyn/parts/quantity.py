@@ -65,6 +65,32 @@ def to_si(text: str, unit: str) -> float:
     return _convert(number, given, unit)
 
 
+def written_like(value: float, given: object, unit: str) -> float | str:
+    """Write a number with the unit that another one is written with, with seven digits.
+
+    Parameters
+    ----------
+    value : float
+        The number, in `unit`.
+    given : object
+        How the other one stands in a drive file: a number, or text such as ``"25 mm"``.
+    unit : str
+        The SI unit.
+
+    Returns
+    -------
+    float or str
+        A number in SI where `given` is no text with a unit.
+    """
+    match = _NUMBER.fullmatch(given) if isinstance(given, str) and len(given) <= _LONGEST_TEXT else None
+    if match is not None and match["unit"]:
+        try:
+            return f"{value / to_si('1 ' + match['unit'], unit):.7g} {match['unit']}"
+        except ValueError:
+            pass  # an unknown unit is no use
+    return float(f"{value:.7g}")
+
+
 def _convert(number: float, given: str, unit: str) -> float:
     try:
         parsed = _registry().parse_units(given)

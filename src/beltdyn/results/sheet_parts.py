@@ -28,9 +28,12 @@ class Facts(NamedTuple):
     ----------
     facts : tuple of (str, str)
         Such as ``("efficiency", "96.04%")``.
+    title : str
+        What stands above them, or nothing.
     """
 
     facts: tuple[tuple[str, str], ...]
+    title: str = ""
 
 
 class Sheet(NamedTuple):

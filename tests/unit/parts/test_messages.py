@@ -3,10 +3,11 @@
 from typing import Any, Literal
 
 import pytest
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.messages import reason, show
+from beltdyn.model import Drive
+from beltdyn.parts.messages import reason, show, told_apart
 from beltdyn.parts.part import Part
 
 
@@ -94,3 +95,14 @@ def test_long_values_are_cut() -> None:
 def test_the_system_says_why_a_file_cannot_be_used() -> None:
     assert reason(FileNotFoundError(2, "No such file or directory")) == "no such file or directory"
     assert reason(ValueError("Is a Directory")) == "is a directory"
+
+
+def test_each_error_is_told_with_its_place_in_the_data(drive: Drive) -> None:
+    data = drive.data
+    data["pulley"][1]["radius"] = -1.0
+    data["pulley"][0]["speed"] = {"kind": "constant", "value": "12 m"}
+    with pytest.raises(ValidationError) as caught:
+        Drive.model_validate(data)
+    told = {one.location: one.sentence for one in told_apart(caught.value, Drive, data)}
+    assert set(told) == {("pulley", 1, "radius"), ("pulley", 0, "speed", "value")}
+    assert told["pulley", 1, "radius"].startswith("pulley[driven].radius = -1.0 must be greater than 0.")

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.parts.quantity import to_si
+from beltdyn.parts.quantity import to_si, written_like
 
 
 @pytest.mark.parametrize(
@@ -35,3 +35,11 @@ def test_units(text: str, unit: str, value: float) -> None:
 def test_any_other_text_is_a_value_error(text: str) -> None:
     with contextlib.suppress(ValueError):
         to_si(text, "m")
+
+
+@pytest.mark.parametrize(
+    ("value", "like", "written"),
+    [(0.0351, "35 mm", "35.1 mm"), (0.0351, 0.035, 0.0351), (0.035, "x mm", 0.035), (0.02, "1 nonsense", 0.02)],
+)
+def test_a_number_is_written_with_the_unit_of_another(value: float, like: object, written: float | str) -> None:
+    assert written_like(value, like, "m") == written
