@@ -22,21 +22,20 @@ Kind = Literal["normal", "friction"]
 _KILO = 1e3
 
 
-def _pulleys(run: Result, choice: Choice) -> list[list[str]]:
+def _pulleys(choice: Choice) -> list[list[str]]:
     """Names of the chosen pulleys, in rows."""
-    names = [pulley.name for pulley in run.drive.pulleys]
-    return rows(names if choice.pulley is None else [names[choice.pulley]])
+    return rows(choice.pulleys if choice.pulley is None else [choice.pulleys[choice.pulley]])
 
 
 def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each kind of force and pulley."""
-    blocks = [(block, kind) for block in _pulleys(run, choice) for kind in get_args(Kind)]
+    blocks = [(block, kind) for block in _pulleys(choice) for kind in get_args(Kind)]
     return panels([[partial(draw, run, name, kind=kind) for name in block] for block, kind in blocks])
 
 
 def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each pulley, with one legend for all."""
-    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(run, choice)])
+    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(choice)])
     page.legend(*page.axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
     return page
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.registry import FIGURES, Choice, require_results
+from beltdyn.plot.registry import FIGURES, Choice, pulleys_of, require_results
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run, derived
@@ -63,13 +63,19 @@ def save_all(
         if name not in FIGURES:
             raise ModelError(f"figure {name!r} is not known. Choose out of {', '.join(known)}.")
         require_results(name, results)
-    choice = Choice(None if pulley is None else derived.pulley_number(results[0], pulley), variable)
+    choice = Choice(None if pulley is None else _number(results, pulley), variable)
     paths = {name: Path(folder) / f"{name}.png" for name in chosen}
     for path in paths.values():
         require_replaceable(path, is_marked, overwrite)
     drawn = {name: FIGURES[name].arrange(results, choice) for name in chosen}
     make_folder(Path(folder))
     return [save(figure, paths[name], overwrite) for name, figure in drawn.items()]
+
+
+def _number(results: Sequence[Result], pulley: str | int) -> int:
+    """Number of a pulley among those of all results."""
+    names = pulleys_of(results)
+    return names.index(pulley) if pulley in names else derived.pulley_number(results[0], pulley)
 
 
 def chosen_by_default(results: Sequence[Result]) -> tuple[str, ...]:

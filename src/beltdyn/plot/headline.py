@@ -1,6 +1,7 @@
 """What stands above a figure: the name of the drive, and the point at which it runs."""
 
 from collections.abc import Sequence
+from textwrap import fill
 
 from matplotlib.figure import Figure
 
@@ -9,10 +10,13 @@ from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import mean_window
 
 _SIZE = 11
+_AN_INCH = 11.5
+"""Letters of this size in an inch."""
 
 
 def write_headline(page: Figure, text: str) -> None:
-    """Write above all panels of a page, at the left."""
+    """Write above all panels of a page, at the left, in as many lines as it takes."""
+    text = fill(text, int(_AN_INCH * page.get_figwidth()))
     page.suptitle(text, x=0.01, horizontalalignment="left", fontsize=_SIZE)
 
 

@@ -91,10 +91,10 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     Axes
         The axes.
     """
-    ax = lines(run.dataset["span_tension"], axes_or_new(ax))
+    ax = axes_or_new(ax)
     if not run.resolution.resolves("tension"):
         reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.elements} elements")
-    return ax
+    return lines(run.dataset["span_tension"], ax)
 
 
 @figure(over_time)

@@ -49,7 +49,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     parts, summary = derived.slips(run), summarize(run)
     names = [f"{one.name} {one.slip:.3%}" if np.isfinite(one.slip) else one.name for one in summary.pulleys]
     ax = lines(parts["slip"], axes_or_new(ax), names)
-    notes = [f"numbers: means from {summary.start:.4g} to {summary.end:.4g} s"]
+    notes = [f"numbers: means at the end, from {summary.start:.4g} to {summary.end:.4g} s"]
     slides = bool((np.abs(parts["sliding"]) > 0.0).any())
     inner = parts["creep" if slides else "elastic_creep"]
     for number in range(parts.sizes["pulley"]):
@@ -212,7 +212,7 @@ def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
     ]
     ax = lines(loads, axes_or_new(ax), names)
     ax.set_ylim(bottom=0.0)
-    note(ax, f"numbers: from {over.start:.4g} to {over.end:.4g} s")
+    note(ax, f"numbers: means and largest values at the end, from {over.start:.4g} to {over.end:.4g} s")
     return ax
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from inspect import signature
 from typing import Any, NamedTuple, ParamSpec
 
@@ -31,10 +31,13 @@ class Choice(NamedTuple):
         Number of the pulley to show; None for all.
     variable : str
         Name of the variable whose spectra are shown.
+    pulleys : tuple of str
+        Names of all pulleys of the results on the page, those of the first result first; set by its figure.
     """
 
     pulley: int | None = None
     variable: str = "span_tension"
+    pulleys: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +126,10 @@ def figure(
             if len(results) == 1:
                 made = on(results[0], ax)
             else:
-                made = styled(compares)(results, ax) if callable(compares) else styled(overlay)(on, results, ax)
+                asked = bound.arguments.get("pulley")
+                shows = [not isinstance(asked, str) or asked in pulleys_of([result]) for result in results]
+                together = partial(overlay, on, shows=shows if any(shows) else None)
+                made = styled(compares if callable(compares) else together)(results, ax=ax)
             if ax is None:
                 write_headline(made.figure.figure, headlines(results))
             return made
@@ -135,7 +141,8 @@ def figure(
             def draw_all(_: Result, *args: Any, **kwargs: Any) -> Axes:
                 return drawn(results, *args, **kwargs)  # type: ignore[arg-type]
 
-            made = arrange(draw_all if len(results) > 1 else drawn, results[0], choice)
+            named = choice._replace(pulleys=pulleys_of(results))
+            made = arrange(draw_all if len(results) > 1 else drawn, results[0], named)
             write_headline(made, headlines(results))
             return made
 
@@ -143,6 +150,11 @@ def figure(
         return drawn
 
     return register
+
+
+def pulleys_of(results: Sequence[Result]) -> tuple[str, ...]:
+    """Names of the pulleys of results, each once: those of the first result, and then what others have besides."""
+    return tuple(dict.fromkeys(pulley.name for result in results for pulley in result.drive.pulleys))
 
 
 def require_results(name: str, given: Result | Sequence[Result]) -> list[Result]:

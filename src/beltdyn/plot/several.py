@@ -1,6 +1,6 @@
 """Several results in one figure: what each is called, and how its lines differ from those of the others."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import count
 from typing import Any
 
@@ -12,18 +12,25 @@ from matplotlib.text import Text
 
 from beltdyn.model import loads
 from beltdyn.plot.headline import file_name, name_of
-from beltdyn.plot.style import INK, dash, name_lines
+from beltdyn.plot.style import INK, NOTE, dash, name_lines
 from beltdyn.results import Result
 
 _PALER = 0.25
 """By how much the lines of a result are paler than those of the result before."""
 _PALEST = 0.6
 _MOST_KEYS = 2
+_SPELLED = 30
+"""Letters of a line's name with that of its result, up to which both are written behind each other."""
 _ROOMY = 50
 """Letters of a legend from which on the names of results stand below the figure."""
 
 
-def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Result], ax: Axes | None) -> Axes:
+def overlay(
+    draw: Callable[[Result, Axes | None], Axes],
+    results: Sequence[Result],
+    ax: Axes | None,
+    shows: Sequence[bool] | None = None,
+) -> Axes:
     """Draw results on one pair of axes: a color for each thing that is drawn, a line style for each result.
 
     Parameters
@@ -34,28 +41,36 @@ def overlay(draw: Callable[[Result, Axes | None], Axes], results: Sequence[Resul
         Two or more.
     ax : Axes or None
         Where to draw; a new figure by default.
+    shows : sequence of bool, optional
+        Which results have what is drawn, such as a pulley; by default all of them. The others leave out their lines.
 
     Returns
     -------
     Axes
         The axes.
     """
-    names, drawn, titles = names_of_results(results), list[list[Line2D]](), set[str]()
+    names, drawn, titles = names_of_results(results), dict[int, list[Line2D]](), list[str]()
+    notes = list[Text]()
     for number, result in enumerate(results):
+        if shows is not None and not shows[number]:
+            continue
         before = set(ax.get_children()) if ax is not None else set()
         ax = draw(result, ax)
-        titles.add(ax.get_title(loc="left"))
+        titles.append(ax.get_title(loc="left"))
         new = [artist for artist in ax.get_children() if artist not in before | {ax.patch, *ax.spines.values()}]
-        drawn.append([artist for artist in new if isinstance(artist, Line2D)])
+        drawn[number] = [artist for artist in new if isinstance(artist, Line2D)]
         _tell_apart(new, number)
         for one in new:
-            if isinstance(one, Patch) or (number and isinstance(one, Text)):  # areas would hide each other
+            if isinstance(one, Text) and one.get_gid() == NOTE:
+                notes.append(one)
+            if isinstance(one, Patch) or (len(drawn) > 1 and isinstance(one, Text)):  # areas would hide each other
                 one.remove()
     assert ax is not None
-    if len(titles) > 1:
-        ax.set_title("")
+    ax.set_title(_shared(titles))
+    if notes:
+        notes[0].set_text(_shared([note.get_text() for note in notes]))
     legend, page = _named(drawn, names), ax.figure.figure
-    styles = [line for line in legend if not any(line in lines for lines in drawn)]
+    styles = [line for line in legend if not any(line in lines for lines in drawn.values())]
     if not styles or (len(page.axes) == 1 and sum(len(str(line.get_label())) for line in legend) < _ROOMY):
         name_lines(ax, legend)
         return ax
@@ -120,6 +135,13 @@ def _keys(data: Any, path: str = "") -> Iterator[tuple[str, Any]]:
         yield path, data
 
 
+def _shared(texts: Sequence[str]) -> str:
+    """What texts have in common, line by line, of their parts between commas, such as the pulley of two instants."""
+    rows = zip(*(text.split("\n") for text in texts), strict=False)
+    parts = [[row.split(", ") for row in rows_of_all] for rows_of_all in rows]
+    return "\n".join(", ".join(part for part in one[0] if all(part in others for others in one)) for one in parts)
+
+
 def _tell_apart(artists: Sequence[Any], number: int) -> None:
     """Give what a result is drawn with its line style, paler than before; lines without a name keep their style."""
     for artist in artists:
@@ -135,17 +157,19 @@ def _paler(tint: Any, number: int) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _named(drawn: Sequence[Sequence[Line2D]], names: Sequence[str]) -> list[Line2D]:
+def _named(drawn: Mapping[int, Sequence[Line2D]], names: Sequence[str]) -> list[Line2D]:
     """Lines of a legend: what all results show once, what only some show with their names, and the line styles."""
-    named = [[line for line in lines if _has_name(line)] for lines in drawn]
-    shared = set.intersection(*({str(line.get_label()) for line in lines} for lines in named))
-    legend = [line for line in named[0] if line.get_label() in shared]
-    for lines, name in zip(named, names, strict=True):
-        for line in lines:
-            if line.get_label() not in shared:
-                line.set_label(f"{line.get_label()}, {name}")
-                legend.append(line)
-    if shared or not legend:
+    named = {number: [line for line in lines if _has_name(line)] for number, lines in drawn.items()}
+    shared = set.intersection(*({str(line.get_label()) for line in lines} for lines in named.values()))
+    legend = [line for line in next(iter(named.values())) if line.get_label() in shared]
+    rest = [(line, names[number]) for number, lines in named.items() for line in lines if line.get_label() not in shared]
+    spelled = {line: f"{line.get_label()}, {name}" for line, name in rest}
+    short = max(map(len, spelled.values()), default=0) <= _SPELLED
+    for line, text in spelled.items():
+        if short:
+            line.set_label(text)
+        legend.append(line)
+    if shared or not legend or not short:
         legend += [Line2D([], [], color=INK, linestyle=dash(n), label=name) for n, name in enumerate(names)]
     return legend
 

@@ -40,11 +40,18 @@ SIZE = (7.0, 3.8)
 POLAR_SIZE = (6.2, 4.6)
 """Those of a polar one."""
 
+NOTE = "note"
+"""Name of what is written into the corner of axes."""
+
 _IN_A_ROW = 4
 _ROW = 60
 """Letters of a legend that fit beside each other."""
+_BESIDE = 40
+"""Letters of a name that fit beside the axes."""
 _BEYOND_A_SCALE = 1.2
 """Where a legend begins beside axes with a second scale."""
+_RESERVATION, _BEYOND_WORDS = "reservation", 2.0
+"""Name of what is written along the right edge, and the distance of a legend beside it, in letters."""
 
 _RULES: dict[Any, Any] = {
     "figure.dpi": 110,
@@ -176,6 +183,7 @@ def reserve(ax: Axes, text: str) -> None:
     ax.annotate(
         text,
         (1.0, 0.5),
+        gid=_RESERVATION,
         xycoords="axes fraction",
         xytext=(4.0, 0.0),
         textcoords="offset points",
@@ -196,7 +204,7 @@ def note(ax: Axes, text: str) -> None:
     text : str
         In few lines.
     """
-    ax.annotate(text, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9)
+    ax.annotate(text, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9, gid=NOTE)
 
 
 def shade(ax: Axes, low: float, high: float, text: str) -> None:
@@ -207,16 +215,19 @@ def shade(ax: Axes, low: float, high: float, text: str) -> None:
 
 
 def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
-    """Write the legend of lines, by default all, above the axes, or beside them where the names are many."""
+    """Write the legend of lines, by default all, above the axes, beside them where the names are many, or below all."""
     lines = ax.get_legend_handles_labels()[0] if lines is None else lines
     names = [str(line.get_label()) for line in lines]
     if not names:
         return
     if len(names) <= _IN_A_ROW and sum(map(len, names)) < _ROW:
         ax.legend(handles=lines, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=_IN_A_ROW, borderaxespad=0.2)
+    elif max(map(len, names)) > _BESIDE and ax.figure.axes == [ax]:
+        ax.figure.figure.legend(handles=lines, loc="outside lower center")
     else:
         beside = _BEYOND_A_SCALE if ax.child_axes else 1.0
-        ax.legend(handles=lines, loc="center left", bbox_to_anchor=(beside, 0.5))
+        pad = _BEYOND_WORDS if any(text.get_gid() == _RESERVATION for text in ax.texts) else None
+        ax.legend(handles=lines, loc="center left", bbox_to_anchor=(beside, 0.5), borderaxespad=pad)
 
 
 def dash(number: int) -> Dash:

@@ -3,9 +3,10 @@
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 
 from beltdyn import plot
-from beltdyn.plot.headline import headline
+from beltdyn.plot.headline import headline, write_headline
 from beltdyn.results import Run
 
 
@@ -33,6 +34,12 @@ def test_own_figures_have_a_headline_and_axes_of_others_have_none(run: Run) -> N
     assert own.get_suptitle() == headline(run)
     plot.torques(run, own.add_subplot())
     assert own.get_suptitle() == headline(run)
+
+
+def test_long_headlines_take_several_lines() -> None:
+    page = Figure(figsize=(4.0, 3.0))
+    write_headline(page, "the drive of the paint shop, before and after the motor was changed")
+    assert page.get_suptitle() == "the drive of the paint shop, before and after\nthe motor was changed"
 
 
 @pytest.mark.parametrize("power", [29.25, 2925.0])

@@ -47,7 +47,7 @@ def test_a_figure_lays_itself_out_for_what_is_chosen(run: Run, monkeypatch: pyte
         raise AssertionError
 
     known["mine"].arrange(run, Choice(1, "belt_speed"))
-    assert asked == [Choice(1, "belt_speed")]
+    assert asked == [Choice(1, "belt_speed", ("driver", "driven"))]
 
 
 def test_what_is_drawn_where_nothing_is_chosen(run: Run) -> None:

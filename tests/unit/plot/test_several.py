@@ -116,3 +116,32 @@ def test_long_names_stand_below_the_figure(make_run: Callable[..., Run]) -> None
     assert legend(ax) == ["driver", "driven"]
     (below,) = ax.figure.figure.legends
     assert [text.get_text().rsplit(" ", 1)[1] for text in below.get_texts()] == ["before", "after"]
+
+
+def test_drives_of_different_pulleys_have_a_panel_for_each(run: Run, make_run: Callable[..., Run]) -> None:
+    """The second drive has one pulley in common with the first; each keeps its line style in all panels."""
+    other = Run(make_run().dataset, run.drive.with_({"pulley[driven].name": "fan"}), Path("other.nc"))
+    page = plot.FIGURES["contact_forces"].arrange([named(run, "one.nc"), other], plot.registry.Choice())
+    titles = [ax.get_title(loc="left").partition(",")[0] for ax in page.axes]
+    assert titles[:3] == ["driver", "driven", "fan"]
+    shown = [[line for line in ax.lines if line.get_label() in titles] for ax in page.axes[:3]]
+    assert [len(lines) for lines in shown] == [2, 1, 1]
+    assert [lines[0].get_linestyle() == "-" for lines in shown] == [True, True, False]
+    with pytest.raises(ModelError, match="'crank' is not in this drive"):
+        plot.contact_forces([run, other], "crank")  # type: ignore[arg-type]
+
+
+def test_titles_and_notes_keep_what_is_true_of_all(run: Run, make_run: Callable[..., Run], ax: Axes) -> None:
+    """A run that ends later has other means."""
+    time = run.dataset["time"]
+    later = named(Run(run.dataset.assign_coords(time=(2.0 * time).assign_attrs(time.attrs)), run.drive), "later.nc")
+    plot.hub_load_sizes([named(run, "one.nc"), later], ax)  # type: ignore[arg-type]
+    assert [text.get_text() for text in ax.texts] == ["numbers: means and largest values at the end"]
+
+
+def test_long_names_of_results_are_told_by_their_line_styles(pair: list[Run]) -> None:
+    for run, name in zip(pair, ("before", "after"), strict=True):
+        run.path = Path(f"a drive with a name as long as this one, {name}.nc")
+    ax = plot.slip(pair)  # type: ignore[arg-type]
+    assert all(len(name) < 20 for name in legend(ax))
+    assert len(ax.figure.figure.legends) == 1
