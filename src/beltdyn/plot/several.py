@@ -162,7 +162,9 @@ def _named(drawn: Mapping[int, Sequence[Line2D]], names: Sequence[str]) -> list[
     named = {number: [line for line in lines if _has_name(line)] for number, lines in drawn.items()}
     shared = set.intersection(*({str(line.get_label()) for line in lines} for lines in named.values()))
     legend = [line for line in next(iter(named.values())) if line.get_label() in shared]
-    rest = [(line, names[number]) for number, lines in named.items() for line in lines if line.get_label() not in shared]
+    rest = [
+        (line, names[number]) for number, lines in named.items() for line in lines if line.get_label() not in shared
+    ]
     spelled = {line: f"{line.get_label()}, {name}" for line, name in rest}
     short = max(map(len, spelled.values()), default=0) <= _SPELLED
     for line, text in spelled.items():
