@@ -186,7 +186,10 @@ def read_table(name: object, base: Path | None, width: int | None) -> list[list[
     """
     if not isinstance(name, str | Path):
         raise ValueError(f"file = {shorten(name)} must be the path of a CSV file, as text")
-    lines = _rows(name, base)
+    try:
+        lines = read_rows((base or Path()) / name, ". A relative path starts at the folder of the drive file")
+    except ValueError as error:
+        raise ValueError(f'file = "{shorten(name)}" {error}') from error
     if width is None and lines:
         lines[0][1][0] = "0"
         width = max(len(lines[0][1]), 2)
@@ -205,28 +208,36 @@ def read_table(name: object, base: Path | None, width: int | None) -> list[list[
     return rows
 
 
-def _rows(name: str | Path, base: Path | None) -> list[tuple[int, list[str]]]:
-    """Lines of the file that are not empty or comments, each with its number."""
-    reader = csv.reader(_text(name, base).splitlines())
-    try:
-        return [(reader.line_num, row) for row in reader if row and not row[0].startswith("#")]
-    except csv.Error as error:
-        raise ValueError(
-            f'file = "{shorten(name)}", line {reader.line_num}, is not CSV: {error}. Correct this line'
-        ) from error
+def read_rows(path: Path, hint: str = "") -> list[tuple[int, list[str]]]:
+    """Read the lines of a CSV file that are neither empty nor comments.
 
+    Parameters
+    ----------
+    path : Path
+        The file.
+    hint : str
+        What a message adds where there is no such file.
 
-def _text(name: str | Path, base: Path | None) -> str:
-    path = (base or Path()) / name
+    Returns
+    -------
+    list of tuple
+        Number and cells of each line.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read as CSV: what goes behind the name of the file.
+    """
     try:
-        return read_text(path, LONGEST_TABLE)
+        reader = csv.reader(read_text(path, LONGEST_TABLE).splitlines())
     except UnicodeDecodeError as error:
-        raise ValueError(f'file = "{shorten(name)}" is not a CSV text file. Save it as CSV in UTF-8') from error
+        raise ValueError("is not a CSV text file. Save it as CSV in UTF-8") from error
     except (OSError, ValueError) as error:
-        raise ValueError(
-            f'file = "{shorten(name)}" cannot be read: {reason(error)}. A relative path starts at the folder of '
-            "the drive file"
-        ) from error
+        raise ValueError(f"cannot be read: {reason(error)}{hint}") from error
+    try:
+        return [(reader.line_num, row) for row in reader if any(map(str.strip, row)) and not row[0].startswith("#")]
+    except csv.Error as error:
+        raise ValueError(f"is not CSV in line {reader.line_num}: {error}. Correct this line") from error
 
 
 def _numbers(cells: list[str], width: int | None) -> list[float] | None:

@@ -52,7 +52,8 @@ def _run_up(run: Run) -> list[tuple[str, str]]:
     with run.recorded() as recorded:
         said, left = recorded.attrs, attribute(recorded, "settling_left", math.nan)
         time, held = attribute(recorded, "settling_time", 0.0), str(said.get("held", ""))
-    before = f"{time:.3g} s at the first speed, not recorded: {left:.1%} of the tensions is left of the start"
+    part = "an unknown part" if math.isnan(left) else f"{left:.1%}"
+    before = f"{time:.3g} s at the first speed, not recorded: {part} of the tensions is left of the start"
     return [*([("settling", before)] if time else []), *([("held constant", held)] if held else [])]
 
 

@@ -3,6 +3,7 @@
 from math import floor
 
 from beltdyn.errors import ModelError
+from beltdyn.machines import Constant
 from beltdyn.machines.loads.load import Load
 from beltdyn.model import Drive, Pulley
 from beltdyn.solve.staying import bring_to_stand
@@ -68,7 +69,7 @@ def at_speed(drive: Drive, number: int, speed: float) -> Drive:
     speed
         rad/s.
     """
-    other = drive.pulleys[number].replace(speed=constant(speed), torque=None, load=(), harmonics=())
+    other = drive.pulleys[number].replace(speed=Constant(value=speed), torque=None, load=(), harmonics=())
     return with_pulley(drive, number, other)
 
 
@@ -80,7 +81,7 @@ def with_torque(drive: Drive, number: int, torque: float) -> Drive:
             f"{one.name} has a prescribed speed, and takes whatever torque it needs. Give the torque of another pulley."
         )
     motors = tuple(load for load in one.load if is_motor(load))
-    return with_pulley(drive, number, one.replace(torque=constant(torque), load=motors))
+    return with_pulley(drive, number, one.replace(torque=Constant(value=torque), load=motors))
 
 
 def with_load(drive: Drive, factor: float) -> Drive:
@@ -106,13 +107,8 @@ def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
     return drive.replace(pulley=[*drive.pulleys[:number], pulley, *drive.pulleys[number + 1 :]])
 
 
-def constant(value: float) -> dict[str, object]:
-    """A profile of one value."""
-    return {"kind": "constant", "value": value}
-
-
-def _scaled(pulley: Pulley, factor: float) -> dict[str, object] | None:
-    return None if pulley.torque is None else constant(factor * float(pulley.torque.at([0.0])[0]))
+def _scaled(pulley: Pulley, factor: float) -> Constant | None:
+    return None if pulley.torque is None else Constant(value=factor * float(pulley.torque.at([0.0])[0]))
 
 
 def _multiplied(loads: tuple[Load, ...], factor: float) -> tuple[Load, ...]:
@@ -120,5 +116,5 @@ def _multiplied(loads: tuple[Load, ...], factor: float) -> tuple[Load, ...]:
     for load in loads:
         whole, part = (1, 0.0) if is_motor(load) else (floor(factor), factor - floor(factor))
         given = 1.0 if load.schedule is None else float(load.schedule.at([0.0])[0])
-        found += [load] * whole + [load.replace(schedule=constant(part * given))] * (part > 0.0)
+        found += [load] * whole + [load.replace(schedule=Constant(value=part * given))] * (part > 0.0)
     return tuple(found)

@@ -1,6 +1,5 @@
 """An analysis: the operating points of a duty table, and means weighted by their durations."""
 
-import csv
 import re
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -14,7 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import to_si
-from beltdyn.parts.text_file import LONGEST_TABLE, read_text
+from beltdyn.parts.table_file import read_rows
 from beltdyn.results import Result, Variable
 from beltdyn.solve.changed_drive import at_speed, held_at, with_load, with_torque
 from beltdyn.solve.operating_points import VARIABLES, Axes, OperatingPoints
@@ -120,14 +119,11 @@ def read_duty(path: Path) -> list[Column]:
         If it cannot be read, or a heading, number or duration is wrong.
     """
     try:
-        lines = list(csv.reader(read_text(path, LONGEST_TABLE).splitlines()))
-    except (OSError, ValueError, csv.Error) as error:
-        raise ModelError(f"table = {str(path)!r} cannot be read: {reason(error)}. Give a CSV file in UTF-8.") from error
-    rows = [(number, line) for number, line in enumerate(lines, 1) if any(map(str.strip, line)) and line[0][:1] != "#"]
+        rows = read_rows(path)
+    except ValueError as error:
+        raise ModelError(f'table = "{path}" {error}.') from error
     if len(rows) < 2:
-        raise ModelError(
-            f"table = {str(path)!r} has no rows. Give a line of headings, and one for each operating point."
-        )
+        raise ModelError(f'table = "{path}" has no rows. Give a line of headings, and one for each operating point.')
     headings = rows[0][1]
     for number, line in rows[1:]:
         if len(line) != len(headings):

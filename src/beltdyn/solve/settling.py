@@ -10,7 +10,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.machines.profiles.functions import go_on
 from beltdyn.model import Drive, Pulley
 from beltdyn.model.instants import Instants
-from beltdyn.results.checks.ending import SETTLED
+from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.trajectory import Chunk, Integrator, Statistics, drive_task
 from beltdyn.system.arrays import System
@@ -18,11 +18,9 @@ from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
 
-_TURNS = 2.0
-"""Turns of the swept pulley, and waves of its slowest harmonic, that a window holds at least."""
 _WINDOWS = 20
 """Windows in the longest time, at most."""
-_LAST = 4
+_LAST = LEAST_WINDOWS - 1
 """Changes from window to window that tell how transients die."""
 _SLOWEST = 0.9
 """Largest part of a change that is taken to be left in the next one."""
@@ -112,9 +110,7 @@ class Settling:
 
     def _window(self, pulley: Pulley) -> float:
         """Time over which means are taken, s."""
-        slowest = min((1.0, *(wave.order for wave in pulley.harmonics)))
-        waves = _TURNS * 2.0 * np.pi / (slowest * abs(self.speed))
-        return float(min(max(waves, self.longest / _WINDOWS), self.longest))
+        return float(min(max(least_window(pulley, self.speed), self.longest / _WINDOWS), self.longest))
 
 
 class _Left:

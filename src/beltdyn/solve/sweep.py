@@ -92,7 +92,7 @@ def sweep(
     raised = run_up(steady, pulley, start, end, length)
     if not longest > 0.0:
         raise ModelError(f"settling = {longest:g} s must be above zero. Raise it, or leave it away.")
-    number = [one.name for one in drive.pulleys].index(pulley)
+    number = drive.number_of(pulley)
     return record_run(
         raised,
         output,
@@ -101,7 +101,7 @@ def sweep(
         begin=Settling(number, start, _LEAD * length, longest) if start != 0.0 else None,
         watch=None if drive.ends else SlipThrough(raised, number),
         swept_pulley=pulley,
-        held=", ".join(held),
+        held=", ".join(one for one in held if not one.startswith(f"{pulley}.speed = ")),
     )
 
 
@@ -128,7 +128,7 @@ def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]
         profiles = {key: value for key in type(part).model_fields if isinstance(value := getattr(part, key), Profile)}
         final = {key: float(profile.at([at])[0]) for key, profile in profiles.items()}
         held.extend(f"{name}.{key} = {final[key]:.4g}" for key in final if not isinstance(profiles[key], Constant))
-        values = {key: {"kind": "constant", "value": value} for key, value in final.items()}
+        values = {key: Constant(value=value) for key, value in final.items()}
         return part.replace(**values, **others) if values or others else part
 
     def all_constant(parts: Sequence[_Part], name: str) -> list[_Part]:
@@ -138,7 +138,7 @@ def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]
         for number, load in enumerate(one.load, 1):
             for key, value in load.held_at(at).items():
                 name = f"{one.name}.load[{number}]"
-                held.append(f"{name} without {key}" if value is None else f"{name}.{key} = {value['value']:.4g}")
+                held.append(f"{name} without {key}" if value is None else f"{name}.{key} = {value.value:.4g}")
             if isinstance(load, FunctionLoad):
                 held.append(f"{one.name}.load[{number}] not, a function that is given the time of the run-up")
     pulleys = [

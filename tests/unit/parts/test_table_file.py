@@ -47,7 +47,7 @@ def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
         ("0,1\n\n# x\n2,3,4\n", 'line 4: "2,3,4" is not two numbers'),
         ("time,torque\nt,T\n0,1\n", "line 2: is not two numbers"),
         (b"\xff\xfe0,1", "is not a CSV text file. Save it as CSV in UTF-8"),
-        ('0,1\n"' + "x" * 200_000 + '"\n', "line 2, is not CSV"),
+        ('0,1\n"' + "x" * 200_000 + '"\n', "is not CSV in line 2"),
     ],
 )
 def test_the_line_that_is_wrong_is_named(write: Any, text: str | bytes, message: str) -> None:

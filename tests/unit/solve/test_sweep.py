@@ -111,3 +111,10 @@ def test_a_pulley_that_slips_through_ends_the_sweep_with_one_warning(drive: Driv
         sweep(slippery, pulley="driver", from_=20.0, to=60.0, duration="1 s", settling="0.05 s", output=file)
     (warning,) = open_run(file).warnings
     assert "slips through" in warning
+
+
+def test_the_swept_speed_is_not_called_constant(drive: Drive) -> None:
+    """Without time for ten turns of the driver nobody knows what is left of the start: a warning names it."""
+    run = sweep(drive, pulley="driver", from_=20.0, to=30.0, duration="5 ms", settling="10 ms")
+    assert "driver.speed" not in run.dataset.attrs["held"]
+    assert "Give a settling of 3.1 s or more" in " ".join(run.warnings)

@@ -190,7 +190,7 @@ class InductionMotor(Load):
         """It runs in delta after its start in star, and in star before, as by a schedule."""
         if self.star_until is None:
             return {}
-        star = {"schedule": {"kind": "constant", "value": _STAR}} if at < self.star_until else {}
+        star = {"schedule": Constant(value=_STAR)} if at < self.star_until else {}
         return {"star_until": None, **star}
 
     def values(self) -> Mapping[str, Any]:

@@ -1,13 +1,19 @@
 """How the run ended, and how a run-up began."""
 
 from collections.abc import Iterator
+from math import isnan, tau
 
+from beltdyn.model import Pulley
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.recorded import attribute
 
 SETTLED = 0.01
 """What may be left of the start of a run-up in the span tensions, over the largest mean one."""
+LEAST_WINDOWS = 5
+"""Windows of means from which on it is known what is left."""
+_TURNS = 2.0
+"""Turns of the swept pulley, and waves of its slowest harmonic, that a window holds at least."""
 
 NOTHING_RECORDED = Finding(
     "nothing was recorded: the run ended before its first output.",
@@ -29,13 +35,23 @@ def unfinished(evidence: Evidence) -> Iterator[Finding]:
         )
 
 
+def least_window(pulley: Pulley, speed: float) -> float:
+    """Shortest time over which means are taken while a pulley stays at the first speed (rad/s) of a run-up, s."""
+    slowest = min((1.0, *(wave.order for wave in pulley.harmonics)))
+    return _TURNS * tau / (slowest * abs(speed))
+
+
 def unsettled(evidence: Evidence) -> Iterator[Finding]:
     """Say that a run-up began before the transients of its start had died."""
     left = attribute(evidence.recorded, "settling_left", 0.0)
     if not left < SETTLED:
-        much = f"{left:.1%} of the largest mean span tension is" if left > 0.0 else "an unknown part of the tensions is"
+        much, longer = f"{left:.1%} of the largest mean span tension is", "a longer settling"
+        swept = [one for one in evidence.drive.pulleys if one.name == evidence.recorded.attrs.get("swept_pulley")]
+        if isnan(left) and swept and swept[0].speed is not None:
+            window = least_window(swept[0], float(swept[0].speed.at(evidence.time[:1])[0]))
+            much, longer = "an unknown part of the tensions is", f"a settling of {LEAST_WINDOWS * window:.2g} s or more"
         yield Finding(
             f"the run-up begins before the start is over: {much} still on its way to the steady state.",
             "It spoils spectra at the lowest speeds.",
-            "Give a longer settling, or begin at a higher speed.",
+            f"Give {longer}, or begin at a higher speed.",
         )
