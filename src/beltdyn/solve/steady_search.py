@@ -11,6 +11,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
+from beltdyn.solve.continuation import go_on
 from beltdyn.solve.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_newton import FOUND, find_steady, steady_work
 from beltdyn.solve.steady_slip import slips_through
@@ -29,13 +30,9 @@ from beltdyn.system.state import State
 
 _MOST = 25
 """Iterations of a step."""
-_SHORTEST = 1e-3
-"""Part of a way, below which there is no going on."""
 _FIRST_LOAD = 0.05
 _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
-_PUSHES = (1.0,), (0.25, 0.5, 0.75, 1.0)
-"""Parts of the dry friction of tensioners on the way to the ends of their bands: at once, or where that fails."""
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
@@ -166,24 +163,47 @@ class SteadySearch:
             "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
             they may stand: where the path had become longer before, and shorter. Nothing without friction.
         """
-        place, moments, own = self.state, self._moments, self.constant.tensioners.push
-        given, found = own.copy(), dict[str, FloatArray]()
+        begin, moments, own = self._unknowns(), self._moments, self.constant.tensioners.push
+        given, count, found = own.copy(), own.size, dict[str, FloatArray]()
+        ends = list[tuple[FloatArray, FloatArray]]()
         for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
-            friction = dry_friction_of(self._tensioners, f"{name}_friction")
-            self.state = State(place.position.copy(), place.velocity.copy(), place.acceleration)
-            speed = self.belt_parameter
-            pushes = ([given + part * sense * friction for part in parts] for parts in _PUSHES)
-            if np.any(friction) and any(all(self._pushed(own, push) for push in some) for some in pushes):
-                count = self.state.position.size
-                found[f"tensioner_position_after_{name}"] = self.state.position[count - friction.size :].copy()
-            self.constant.frame.speed[0] = speed
-        own[:], self.state, self._moments = given, place, moments
+            push = sense * dry_friction_of(self._tensioners, f"{name}_friction")
+
+            def solve(part: float, guess: FloatArray, push: FloatArray = push) -> FloatArray | None:
+                own[:] = given + part * push
+                return self._solve(self.setting, guess)
+
+            square = float(push @ push)
+            if square == 0.0:
+                continue
+            shares = [(float(other @ push) / square, other, end) for other, end in ends]
+            passed = [(share, end) for share, other, end in shares if np.allclose(other, share * push)]
+            end = go_on(solve, *passed, (0.0, begin))
+            if end is not None:
+                ends.append((push, end))
+                found[f"tensioner_position_after_{name}"] = end[self.state.position.size - count :][:count]
+        own[:], self._moments = given, moments
+        self._place(begin)
         return found
 
-    def _pushed(self, own: FloatArray, push: FloatArray) -> bool:
-        """Whether there is steady running with other forces on the tensioners."""
-        own[:] = push
-        return self._try(self.setting)
+    def _unknowns(self) -> FloatArray:
+        """All that steady running consists of, as one vector: position, velocity, speed of the belt."""
+        return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
+
+    def _place(self, unknowns: FloatArray) -> None:
+        """Put the search in its place."""
+        size = self.state.position.size
+        self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
+        self.constant.frame.speed[:] = unknowns[2 * size :]
+
+    def _solve(self, setting: Setting, guess: FloatArray) -> FloatArray | None:
+        """Steady running at a setting from a guess; None, and all as it was, if it is not found."""
+        before = self._unknowns()
+        self._place(guess)
+        if self._try(setting):
+            return self._unknowns()
+        self._place(before)
+        return None
 
     def _gentle(self, speed: float, tension: float) -> float:
         """Smoothing with which friction is not fully used anywhere."""
@@ -209,16 +229,11 @@ class SteadySearch:
 
     def _reach(self, target: Setting) -> bool:
         """Go on to another setting; False if the way ends before."""
-        begin, reached, step = self.setting, 0.0, 1.0
-        while reached < 1.0:
-            ahead = min(1.0, reached + step)
-            if self._try(_between(begin, target, ahead)):
-                reached, step = ahead, 2.0 * step
-                continue
-            step = 0.5 * (ahead - reached)
-            if step < _SHORTEST:
-                return False
-        return True
+        begin = self.setting
+        return (
+            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess), (0.0, self._unknowns()))
+            is not None
+        )
 
     def _release(self, driver: int) -> None:
         """Let a driver turn as its torque says."""
@@ -232,8 +247,7 @@ class SteadySearch:
     def _try(self, setting: Setting) -> bool:
         """Look for steady running at a setting from the state that there is, which stays where that fails."""
         state, system = self.state, self._at(setting)
-        speed: FloatArray = system.frame.speed
-        before = state.position.copy(), state.velocity.copy(), speed.copy()
+        before = self._unknowns()
         drive_shafts(system, state.velocity)
         tolerance = TOLERANCE * float(np.min(self.drive.radii))
         anchor = anchor_at(system, state, False)
@@ -242,7 +256,7 @@ class SteadySearch:
         if status == FOUND:
             self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
             return True
-        state.position[:], state.velocity[:], speed[:] = before
+        self._place(before)
         return False
 
     def _at(self, setting: Setting) -> System:
