@@ -1,6 +1,8 @@
 """Figures of a run: ``f(run, ax=None) -> Axes``; labels and units come from its dataset. And the layout of a drive."""
 
 from beltdyn.plot.animation import animate as animate
+from beltdyn.plot.campbell import campbell as campbell
+from beltdyn.plot.campbell import mode_damping as mode_damping
 from beltdyn.plot.configuration import configuration as configuration
 from beltdyn.plot.contact import contact_forces as contact_forces
 from beltdyn.plot.contact import contact_pressure as contact_pressure

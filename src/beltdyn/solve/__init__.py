@@ -1,6 +1,7 @@
 """Analyses: a simulation over time, of one drive or many, a run-up, steady running, and rest; and their solvers."""
 
 from beltdyn.solve.batch import simulate_all
+from beltdyn.solve.campbell import campbell
 from beltdyn.solve.duty import duty
 from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.generalized_alpha import GeneralizedAlpha
@@ -32,6 +33,7 @@ __all__ = [
     "StepError",
     "Stepwise",
     "bring_to_rest",
+    "campbell",
     "duty",
     "equilibrium",
     "find_equilibrium",

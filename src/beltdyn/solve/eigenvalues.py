@@ -25,6 +25,8 @@ _BAND = 0.5
 """Half of the band of frequencies around a shift whose eigenvalues are taken, over the radius within which all are."""
 _SWINGS = 0.1
 """Least imaginary part of an eigenvalue that swings, over its magnitude: a damping ratio up to 0.995."""
+_SLOWEST = 1e-6
+"""Least magnitude of an eigenvalue that swings, 1/s: those below are of motions without force, and of rounding."""
 _RATE = 1000.0
 """w, rad/s."""
 _MOST_SHIFTS = 400
@@ -191,8 +193,8 @@ def swinging(given: Pencil, count: int, first: float = 10.0) -> tuple[ComplexArr
 
 
 def swings(values: ComplexArray) -> BoolArray:
-    """Which eigenvalues swing, and have a positive imaginary part."""
-    return np.asarray(values.imag > _SWINGS * np.abs(values))
+    """Which eigenvalues swing: those with a positive imaginary part, but for rounding."""
+    return np.asarray((values.imag > _SWINGS * np.abs(values)) & (np.abs(values) > _SLOWEST))
 
 
 def _band_by_band(given: Pencil, count: int, first: float) -> tuple[ComplexArray, ComplexArray]:

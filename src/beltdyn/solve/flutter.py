@@ -60,6 +60,11 @@ def growth_rates(eigenvalues: ComplexArray) -> FloatArray:
     return np.asarray(np.where(swinging, eigenvalues.real, 0.0))
 
 
+def flutter_shift(system: System) -> complex:
+    """Where to look for flutter, 1/s: near the frequency of the belt on its penalty springs."""
+    return _SHIFT * sqrt(system.law.normal.stiffness / system.element.section.mass)
+
+
 class FlutterWatch:
     """Notes when a belt slides, and a few states in which it does; at the end it finds how vibrations grow there.
 
@@ -70,10 +75,8 @@ class FlutterWatch:
     """
 
     def __init__(self, system: System) -> None:
-        angular_frequency = sqrt(system.law.normal.stiffness / system.element.section.mass)
-        self._system = system
-        self._memory = _PERIODS * 2.0 * np.pi / angular_frequency
-        self._shift = _SHIFT * angular_frequency
+        self._system, self._shift = system, flutter_shift(system)
+        self._memory = _PERIODS * 2.0 * np.pi / self._shift.imag
         self._time: list[FloatArray] = []
         self._transit: list[FloatArray] = []
         self._last = -np.inf

@@ -14,7 +14,7 @@ from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.solve.eigenvalues import pencil, swinging
-from beltdyn.solve.mode_shapes import Points, Shapes, belt_points, kind_of_mode, parts_of_mode, shapes_of
+from beltdyn.solve.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.solve.progress import Report
 from beltdyn.solve.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
 from beltdyn.solve.steady import steady_state
@@ -62,6 +62,7 @@ class _Found(NamedTuple):
 
     values: ComplexArray
     shapes: Shapes
+    shares: Shares
     dry: str
 
 
@@ -174,33 +175,60 @@ def _running(run: Run) -> str:
     return f"in steady running with {name} at {RPM * speed:.4g} rpm"
 
 
-def _find(motions: SmallMotions, points: Points, count: int, dry: str) -> _Found:
-    """Modes of a drive about a state."""
+def eigenmodes(motions: SmallMotions, count: int) -> tuple[ComplexArray, ComplexArray]:
+    """Modes of a drive about a state, from the lowest frequency on.
+
+    Parameters
+    ----------
+    motions
+        The drive about the state.
+    count
+        How many, at most.
+
+    Returns
+    -------
+    values : ndarray, shape (k,)
+        Growth rate and angular frequency, 1/s.
+    coordinates : ndarray, shape (n, k)
+        Unknowns of the eigenvectors.
+
+    Raises
+    ------
+    ConvergenceError
+        If nothing swings.
+    """
     given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
     values, vectors = swinging(given, count)
     if not values.size:
         raise ConvergenceError("the drive has no mode that swings. Check its masses, stiffnesses and damping.")
-    return _Found(values, shapes_of(motions, points, values, given.coordinates(values, vectors)), dry)
+    return values, given.coordinates(values, vectors)
+
+
+def _find(motions: SmallMotions, points: Points, count: int, dry: str) -> _Found:
+    """Modes of a drive about a state."""
+    values, coordinates = eigenmodes(motions, count)
+    shapes = shapes_of(motions, points, coordinates)
+    return _Found(values, shapes, shares_of(motions, points, values, coordinates), dry)
 
 
 def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Result:
     """Modes as a result, sliding tensioners before stuck ones."""
     drive, values = motions.drive, np.concatenate([one.values for one in found])
     shapes = Shapes(*(np.concatenate(parts) for parts in zip(*(one.shapes for one in found), strict=True)))
-    pulleys, spans = [one.name for one in drive.pulleys], [f"{a}-{b}" for a, b in drive.spans]
-    tensioners = [pulleys[number] for number in motions.system.tensioners.pulley]
-    numbers = range(values.size)
+    shares = Shares(*(np.concatenate(parts) for parts in zip(*(one.shares for one in found), strict=True)))
+    each, names = [shares.of(number) for number in range(values.size)], part_names(drive)
+    tensioners = [one.pulley for one in drive.moving_tensioners]
     arrays: dict[str, ArrayLike] = {
         "frequency": values.imag / (2.0 * np.pi),
         "damping_ratio": -values.real / np.abs(values),
         "growth_rate": values.real,
-        "kind": [kind_of_mode(shapes, number) for number in numbers],
-        "moving_parts": [parts_of_mode(shapes, number, spans, pulleys, tensioners) for number in numbers],
+        "kind": [one.kind for one in each],
+        "moving_parts": [one.parts(names) for one in each],
         "dry_tensioners": [one.dry for one in found for _ in one.values],
-        "span_share": shapes.span_share,
-        "pulley_share": shapes.pulley_share,
-        "belt_share": shapes.belt_share[:, None],
-        "tensioner_share": shapes.tensioner_share,
+        "span_share": shares.span,
+        "pulley_share": shares.pulley,
+        "belt_share": shares.belt[:, None],
+        "tensioner_share": shares.tensioner,
         "belt_shape": _parts(shapes.belt),
         "rim_shape": _parts(shapes.rims),
         "tensioner_shape": _parts(shapes.tensioners),
@@ -212,8 +240,8 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         "mode": np.arange(1, values.size + 1),
         "part": ["real", "imaginary"],
         "axis": list(AXIS_NAMES),
-        "pulley": pulleys,
-        "span": spans,
+        "pulley": [one.name for one in drive.pulleys],
+        "span": ["-".join(span) for span in drive.spans],
         "tensioner": tensioners,
         "point_coordinate": points.along,
     }

@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -97,6 +97,8 @@ class OperatingPoints:
         Called after each point with a `Progress`.
     overwrite
         Replace any regular file by the results.
+    names
+        Which of `VARIABLES` are kept; all by default.
 
     Raises
     ------
@@ -112,6 +114,8 @@ class OperatingPoints:
         output: Path | str | None = None,
         progress: Report | None = None,
         overwrite: bool = False,
+        *,
+        names: Collection[str] = VARIABLES.keys(),
     ) -> None:
         self._kind, self._drive, self._axes = kind, drive, axes
         self._path, self._overwrite = Path(output) if output is not None else None, overwrite
@@ -120,7 +124,8 @@ class OperatingPoints:
         self._progress = progress
         self._sizes = labels_of(drive)
         self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
-        self.arrays = {name: self._blank(variable) for name, variable in VARIABLES.items() if self._holds(variable)}
+        kept = {name: one for name, one in VARIABLES.items() if name in names and self._holds(one)}
+        self.arrays = {name: self._blank(variable) for name, variable in kept.items()}
         self._warned: dict[str, list[tuple[str, str]]] = {}
         self._done, self._written, self._status = 0, time.perf_counter(), "running"
         self._near: Run | None = None
@@ -130,6 +135,8 @@ class OperatingPoints:
         """Gives variables that an analysis adds, from the arrays of the table."""
         self.attributes: dict[str, str] = {}
         """Global attributes that it adds."""
+        self.notes = list[str]()
+        """Warnings that it adds."""
 
     def __enter__(self) -> Self:
         """Begin."""
@@ -160,7 +167,7 @@ class OperatingPoints:
         with suppress(ConvergenceError):
             self._near = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
 
-    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> None:
+    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> Run | None:
         """Find an operating point, from the one that was found before.
 
         Parameters
@@ -171,12 +178,17 @@ class OperatingPoints:
             The drive there, with constant speeds, torques and schedules.
         force_tolerance
             As for `steady_state`.
+
+        Returns
+        -------
+        Run or None
+            Steady running there; None where there is none.
         """
+        run = None
         try:
             run = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
         except ConvergenceError as error:
-            self.arrays["failure"][index] = str(error)
-            self._warn(index, f"no operating point: {error}")
+            self.fail(index, "no operating point", str(error))
         else:
             self._take(index, run, summarize(run))
             self._near = run
@@ -184,6 +196,12 @@ class OperatingPoints:
         self._tell()
         if time.perf_counter() - self._written > _OFTEN:
             self._save()
+        return run
+
+    def fail(self, index: tuple[int, ...], what: str, reason: str) -> None:
+        """Mark a point by the reason why something is not found there, and warn of it."""
+        self.arrays["failure"][index] = reason
+        self._warn(index, f"{what}: {reason}")
 
     def result(self) -> Result:
         """The table as it is now.
@@ -198,7 +216,7 @@ class OperatingPoints:
         kept = {name: (self._labelled(VARIABLES[name]), values) for name, values in self.arrays.items()}
         coordinates = {**self._axes, **self.more, **self._named()}
         variables = {**kept, **self._extremes(), **self.derive(self.arrays)}
-        result = build_result(self._kind, self._drive, variables, coordinates, list(self._warnings()))
+        result = build_result(self._kind, self._drive, variables, coordinates, [*self._warnings(), *self.notes])
         result.dataset.attrs |= {"status": self._status, "axes": " ".join(self._axes), "points": self._done}
         result.dataset.attrs |= self.attributes
         return result
@@ -218,7 +236,11 @@ class OperatingPoints:
             "smallest_safety": (Variable(_PULLEY, "1", "Least slip safety"), np.fmin.reduce, "slip_safety"),
             "largest_hub_load": (Variable(_PULLEY, "N", "Largest hub load"), np.fmax.reduce, "hub_load"),
         }
-        return {name: (variable, worst(self.arrays[of], over)) for name, (variable, worst, of) in found.items()}
+        return {
+            name: (variable, worst(self.arrays[of], over))
+            for name, (variable, worst, of) in found.items()
+            if of in self.arrays
+        }
 
     def _holds(self, variable: Variable) -> bool:
         """Whether the drive has what a variable is of."""
@@ -239,7 +261,8 @@ class OperatingPoints:
     def _take(self, index: tuple[int, ...], run: Run, summary: Summary) -> None:
         """Note an operating point."""
         for name, values in values_by_name(run, summary).items():
-            self.arrays[name][index] = values
+            if name in self.arrays:
+                self.arrays[name][index] = values
         for warning in run.warnings:
             self._warn(index, warning)
 

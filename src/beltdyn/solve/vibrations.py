@@ -23,8 +23,11 @@ if TYPE_CHECKING:
 
 _BATCHES = 2
 """Batches of steps of the Arnoldi method, at most."""
-_TOLERANCE = 1e-3
-"""Residual of an eigenvalue that counts as found, relative."""
+_TOLERANCE = 1e-6
+"""Residual of an eigenvalue that counts as found, relative; with 1e-3 some would be none, as matrices are far from
+normal."""
+_ENOUGH = 24
+"""Eigenvalues around a shift after which no more are looked for."""
 
 
 class Vibrations:
@@ -99,11 +102,12 @@ class Vibrations:
             Its eigenvalue s, 1/s; NaN where none is found.
         """
         solve = self._shifted_inverse(self.tangents(time, position, velocity), shift)
+        found = np.zeros(0, complex)
         for ritz in arnoldi(solve, 2 * self.size, _BATCHES) if solve else ():
-            found = ritz.values[ritz.residuals < _TOLERANCE]
-            if found.size:
-                return complex(max(shift + 1.0 / found, key=lambda value: value.real))
-        return complex(np.nan)
+            found = shift + 1.0 / ritz.values[ritz.residuals < _TOLERANCE]
+            if found.size >= _ENOUGH:
+                break
+        return complex(max(found, key=lambda value: value.real, default=np.nan))
 
     def _shifted_inverse(
         self, tangents: tuple[FloatArray, FloatArray, FloatArray], shift: complex

@@ -3,14 +3,9 @@
 import numpy as np
 import pytest
 
-from beltdyn.solve.mode_shapes import Shapes, kind_of_mode, parts_of_mode
+from beltdyn.solve.mode_shapes import Shares
 
-NONE = np.zeros((1, 0), complex)
-NAMES = ["a-b", "b-a"], ["a", "b"], ["b"]
-
-
-def shares(spans: list[float], pulleys: list[float], along: float, arm: float) -> Shapes:
-    return Shapes(NONE, NONE, NONE, np.array([spans]), np.array([pulleys]), np.array([along]), np.array([[arm]]))
+NAMES = ["a-b", "b-a", "a", "b", "arm of b"]
 
 
 @pytest.mark.parametrize(
@@ -25,6 +20,7 @@ def shares(spans: list[float], pulleys: list[float], along: float, arm: float) -
     ],
 )
 def test_kind_and_parts(given: tuple[list[float], list[float], float, float], kind: str, parts: str) -> None:
-    shapes = shares(*given)
-    assert kind_of_mode(shapes, 0) == kind
-    assert parts_of_mode(shapes, 0, *NAMES) == parts
+    spans, pulleys, along, arm = given
+    shares = Shares(*(np.array(one) for one in (spans, pulleys, along, [arm])))
+    assert shares.kind == kind
+    assert shares.parts(NAMES) == parts

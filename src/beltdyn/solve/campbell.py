@@ -1,0 +1,123 @@
+"""An analysis: modes about steady running over speed, and the critical speeds at which orders excite them."""
+
+from pathlib import Path
+
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.number_range import numbers_in
+from beltdyn.results import Result, Variable
+from beltdyn.solve.campbell_diagram import CampbellDiagram
+from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
+from beltdyn.solve.excitation import given_excitations, own_excitations
+from beltdyn.solve.modes import SLIDING, STUCK
+from beltdyn.solve.operating_points import Axes, OperatingPoints
+from beltdyn.solve.progress import Report
+
+_KEPT = (
+    *("belt_speed", "largest_tension", "least_slip_safety"),
+    *("pulley_speed", "span_tension", "tensioner_position", "failure"),
+)
+"""Variables of operating points that are kept."""
+
+
+def campbell(
+    drive: Drive,
+    *,
+    speed: str,
+    pulley: str | None = None,
+    points: int = 40,
+    count: int = 8,
+    orders: str | None = None,
+    dry_tensioners: str = SLIDING,
+    at: float | None = None,
+    force_tolerance: float = 0.01,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Find the modes of a drive over speed, and the critical speeds at which orders excite them: a Campbell diagram.
+
+    Modes are those of `modes`, about steady running. They are followed from speed to speed by their shapes. Loads are
+    those of the drive file at one instant; those over speed follow the speed. A speed without steady running is marked,
+    and the others stay.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    speed
+        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in the sense in
+        which it turns.
+    pulley
+        The pulley whose speed is prescribed, in place of its motor; by default the one that drives.
+    points
+        Number of speeds of a range.
+    count
+        How many modes to follow at each speed, from the lowest frequency on.
+    orders
+        Orders of the pulley's rotation that excite, such as "1, 2, 4". By default the harmonics of speeds and loads in
+        the drive file, the turns of all pulleys, and that of the belt.
+    dry_tensioners
+        "sliding" for tensioners whose dry friction is left out, as in large vibrations, or "stuck" for those that it
+        holds, as in small ones.
+    at
+        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+    output
+        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
+
+    Returns
+    -------
+    Result
+        Variables along ``speed`` (rad/s, of the pulley in the attribute ``pulley``) and ``mode``; ``critical`` speeds,
+        and the frequencies of each ``excitation``.
+
+    Raises
+    ------
+    ModelError
+        If options make no sense, or the drive cannot run steadily.
+    ConvergenceError
+        If no speed has steady running.
+
+    Examples
+    --------
+    >>> found = bd.campbell(drive, speed="80, 120 rpm", count=2)
+    >>> found.dataset.frequency.dims
+    ('speed', 'mode')
+    """
+    if count < 1:
+        raise ModelError(f"count = {count} modes are none. Give 1 or more.")
+    if dry_tensioners not in (SLIDING, STUCK):
+        raise ModelError(f'dry_tensioners = {dry_tensioners!r} is neither "{SLIDING}" nor "{STUCK}". Give one of them.')
+    held = held_at(drive, at)
+    number = driver_of(held) if pulley is None else held.number_of(pulley)
+    name, sense = held.pulleys[number].name, sense_of(held, number)
+    excitations = own_excitations(held) if orders is None else given_excitations(orders, held, number)
+    speeds = numbers_in("speed", speed, "rad/s", points)
+    if speeds[0] <= 0.0:
+        raise ModelError(f"speed = {speed!r} must be above zero. Begin at a higher speed.")
+    axes: Axes = {"speed": (Variable(("speed",), "rad/s", f"Speed of {name}"), speeds)}
+    with OperatingPoints("campbell", held, axes, output, progress, overwrite, names=_KEPT) as table:
+        title = f"Campbell diagram of {drive.title} over the speed of {name}"
+        table.attributes = {
+            "title": title,
+            "drive_as_given": drive.text,
+            "pulley": name,
+            "dry_tensioners": dry_tensioners,
+        }
+        diagram = CampbellDiagram(held, speeds, excitations, count, dry_tensioners == STUCK)
+        for row, value in enumerate(speeds):
+            run = table.find((row,), at_speed(held, number, sense * float(value)), force_tolerance)
+            try:
+                diagram.take(run)
+            except ConvergenceError as error:
+                table.fail((row,), "no modes", str(error))
+                diagram.take(None)
+            if diagram.found:
+                table.more, table.derive, table.notes = diagram.coordinates, diagram.variables, diagram.warnings
+    return table.result()
