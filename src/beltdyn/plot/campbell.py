@@ -21,6 +21,8 @@ _ABOVE = 1.08
 _LEAST_DAMPING = 1e-5
 _STRONG = 0.1
 """Damping ratio below which a critical speed is marked by a filled circle."""
+_FINE = 200
+"""Speeds at which it is looked where a line leaves the axes."""
 _EXCITED = "0.6"
 """Color of excitations."""
 
@@ -31,7 +33,9 @@ def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     above, below = page.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
     draw(result, ax=above)
     mode_damping(result, ax=below)
-    below.legend().remove()
+    twice = below.get_legend()
+    assert twice is not None
+    twice.remove()
     above.set_xlabel("")
     return page
 
@@ -115,13 +119,14 @@ def _draw_modes(ax: Axes, result: Result, speed: FloatArray, values: FloatArray)
 
 def _name_line(ax: Axes, speed: FloatArray, line: FloatArray, top: float, name: str) -> None:
     """Write the name of an excitation along its line, where it leaves the axes."""
-    inside = np.flatnonzero(line <= top)
-    if inside.size > 1:
-        last = inside[-1]
+    known = np.isfinite(line)
+    fine = np.linspace(speed[0], speed[-1], _FINE)
+    along = np.interp(fine, speed[known], line[known])
+    inside = np.flatnonzero(along <= top)
+    if inside.size:
+        place = fine[inside[-1]], along[inside[-1]]
         slope = float(np.nanmean(line / speed))
-        text = ax.annotate(
-            name, (speed[last], line[last]), (-2, 2), textcoords="offset points", fontsize=7, ha="right", color="0.35"
-        )
+        text = ax.annotate(name, place, (-2, 2), textcoords="offset points", fontsize=7, ha="right", color="0.35")
         text.set(rotation=np.degrees(np.arctan(slope)), rotation_mode="anchor", transform_rotates_text=True)
 
 

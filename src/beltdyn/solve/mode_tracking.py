@@ -13,8 +13,9 @@ from beltdyn.solve.mode_shapes import Shares, even_points, shares_of, speeds_of
 from beltdyn.solve.modes import eigenmodes
 from beltdyn.solve.small_motions import SmallMotions
 
-_LEAST = 0.3
-"""Assurance times the ratio of frequencies, the lower over the higher, with which a mode goes on as another one."""
+_LEAST, _LEAST_OF_PAUSED = 0.3, 0.6
+"""Assurance times the ratio of frequencies, the lower over the higher, with which a mode goes on as another one; and
+with which one goes on that was not found in the state before."""
 
 
 class SeenModes(NamedTuple):
@@ -72,6 +73,7 @@ class Tracks:
         self._lowest = lowest
         self._last = list[ComplexArray]()
         self._frequency = list[float]()
+        self._paused = np.zeros(0, dtype=bool)
         self._seen = list[SeenModes | None]()
         self._places = list[IntArray]()
         self._agreed = list[FloatArray]()
@@ -86,14 +88,16 @@ class Tracks:
                 table = assurance(np.array(self._last), seen.speeds)
                 ratio = np.array(self._frequency)[:, None] / seen.values.imag
                 score = table * np.minimum(ratio, 1.0 / ratio)
+                score[score < np.where(self._paused, _LEAST_OF_PAUSED, _LEAST)[:, None]] = 0.0
                 columns, modes = linear_sum_assignment(-score)
-                good = score[columns, modes] >= _LEAST
+                good = score[columns, modes] > 0.0
                 places[columns[good]] = modes[good]
                 agreed[columns[good]] = table[columns[good], modes[good]]
             begun = np.setdiff1d(np.arange(seen.values.size), places)
             places, agreed = np.append(places, begun), np.append(agreed, np.full(begun.size, np.nan))
             self._last.extend(seen.speeds[begun])
             self._frequency.extend(seen.values.imag[begun])
+            self._paused = places < 0
             for column in np.flatnonzero(places >= 0):
                 self._last[column] = seen.speeds[places[column]]
                 self._frequency[column] = seen.values.imag[places[column]]

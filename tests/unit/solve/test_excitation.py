@@ -41,9 +41,14 @@ def test_harmonics_turns_and_belt(loaded: Drive) -> None:
     frequencies = [one.frequency(run) for one in found]
     np.testing.assert_allclose(frequencies[:4], [2.0 * turns[0], 3.0 * turns[1], *turns], rtol=1e-12)
     assert frequencies[4] == pytest.approx(belt, rel=0.01)
-    names, lines = one_line_each(found, np.array([frequencies, np.full(5, np.nan)]))
-    assert names[2] == "turn of driver; turn of driven"
-    assert lines.shape == (2, 4)
+
+
+def test_what_differs_by_less_than_a_per_cent_is_one_line(loaded: Drive) -> None:
+    found = own_excitations(loaded)[2:]
+    names, lines = one_line_each(found, np.array([[10.0, 9.95, 3.0], [np.nan] * 3, [20.0, 19.9, 6.0]]))
+    assert names == ["turn of driver; turn of driven", "turn of the belt"]
+    np.testing.assert_array_equal(lines, [[10.0, 3.0], [np.nan, np.nan], [20.0, 6.0]])
+    assert len(one_line_each(found, np.array([[10.0, 9.8, 3.0]]))[0]) == 3
 
 
 def test_orders_by_hand(loaded: Drive) -> None:
