@@ -105,6 +105,7 @@ _ALL = (
         "sensitivity", "beltdyn.solve.sensitivity:sensitivity", "Find what results owe to each number of a drive."
     ),
     Analysis("modes", "beltdyn.solve.modes:modes", "Find the modes of a drive: frequencies, damping, shapes."),
+    Analysis("optimize", "beltdyn.solve.optimize:optimize", "Find the numbers of a drive that are best for a goal."),
     Analysis("campbell", "beltdyn.solve.campbell:campbell", "Find modes over speed, and critical speeds."),
     # one line for each
 )

@@ -91,10 +91,11 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
 
 
 def _in_words(annotation: Any) -> Any:
-    """The type of an option, without results in a union, which no word of a command line gives."""
+    """The type of an option, without results and studies in a union, which no word of a command line gives."""
+    from beltdyn.parts.part import Part
     from beltdyn.results import Result
 
-    kept = [one for one in get_args(annotation) if not (isinstance(one, type) and issubclass(one, Result))]
+    kept = [one for one in get_args(annotation) if not (isinstance(one, type) and issubclass(one, (Result, Part)))]
     return Union[tuple(kept)] if isinstance(annotation, UnionType) else annotation  # noqa: UP007
 
 

@@ -26,8 +26,9 @@ _PHASES = {
     "settling": "settling at the first speed",
     "integrating": "simulating",
     "operating points": "finding operating points",
+    "designs": "trying designs",
 }
-_COUNTED = "integrating", "operating points"
+_COUNTED = "integrating", "operating points", "designs"
 """Phases of which it is known how far they are."""
 
 
@@ -70,8 +71,8 @@ def _long(what: str, remaining: float, bound: str) -> str:
 
 
 def _state(progress: "SolverProgress") -> str:
-    if progress.phase == "operating points":
-        return f"{progress.time:.0f} of {progress.duration:.0f}"
+    if progress.phase != "integrating":
+        return f"{progress.time:.0f} of {'at most ' * (progress.phase == 'designs')}{progress.duration:.0f}"
     return f"{progress.time:.4g} of {progress.duration:.4g} s, step {progress.step_size:.1e} s"
 
 

@@ -42,7 +42,9 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.simulation import Simulation
+from beltdyn.model.study import OptimizationStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
+from beltdyn.model.toml_editor import edited
 from beltdyn.model.toml_reader import json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
 
@@ -74,6 +76,7 @@ __all__ = [
     "Motor",
     "MovingTensioner",
     "OneWayClutch",
+    "OptimizationStudy",
     "Path",
     "Profile",
     "PulledEnd",
@@ -94,6 +97,7 @@ __all__ = [
     "describe",
     "describe_time",
     "dumps",
+    "edited",
     "elements_needed",
     "install",
     "json_schema",

@@ -4,6 +4,7 @@ from itertools import combinations
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model.path import Path
@@ -83,6 +84,35 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
             if np.linalg.norm(nearest) < _extent(path, around, pulley, -nearest) + facing:
                 return Obstacle("span", span, pulley)
     return None
+
+
+def distance_from_belt(path: Path, around: Surroundings, center: ArrayLike, radius: float) -> float:
+    """Least distance of a round part from the surfaces of the belt, m; below zero where they overlap.
+
+    Parameters
+    ----------
+    path : Path
+    around : Surroundings
+    center : array_like, shape (2,)
+        Center of the part, m.
+    radius : float
+        Its radius, m.
+    """
+    found, place = list[float](), np.asarray(center, dtype=float)
+    for start, direction, length in zip(
+        path.span_points[:, 0], path.span_directions, path.span_lengths.tolist(), strict=True
+    ):
+        across = place - start
+        nearest = across - np.clip(across @ direction, 0.0, length) * direction
+        surface = around.inside if _cross(direction, across) > 0.0 else around.back
+        found.append(float(np.linalg.norm(nearest)) - surface)
+    for arc in range(path.count):
+        between = place - path.centers[arc]
+        if _covers(path, arc, between):
+            above = float(np.linalg.norm(between)) - abs(float(path.radii[arc]))
+            outwards = (above > 0.0) == (path.radii[arc] > 0.0)
+            found.append(abs(above) - (around.back if outwards else around.inside))
+    return min(found) - radius
 
 
 def _extent(path: Path, around: Surroundings, pulley: int, direction: FloatArray) -> float:

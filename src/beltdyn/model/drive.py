@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 import tomli_w
@@ -44,6 +44,8 @@ class Drive(Part):
     pulleys; `elements`, `contact_stiffness`, `contact_damping` and `friction_parameters`, also where the numbers of
     computation are left open. `completed.choices` has their values and the reasons.
     """
+
+    fills_a_file: ClassVar[bool] = True
 
     name: Title | None = Field(
         None, description="the name of the drive, which titles and summaries show, in place of that of a file"

@@ -2,7 +2,7 @@
 
 import pathlib
 import tomllib
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
@@ -10,7 +10,10 @@ from beltdyn.errors import ModelError
 from beltdyn.model.drive import Drive
 from beltdyn.parts.error_location import shorten
 from beltdyn.parts.messages import explain, reason
+from beltdyn.parts.part import Part
 from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
+
+Study = TypeVar("Study", bound=Part)
 
 _LONGEST_REASON = 200
 
@@ -40,13 +43,49 @@ def load(path: str | pathlib.Path) -> Drive:
     20
     """
     path = pathlib.Path(path)
+    return loads(_text_of(path, "A drive file is TOML: `beltdyn new` writes one."), base=path.parent)
+
+
+def read_study(path: str | pathlib.Path, kind: type[Study]) -> Study:
+    """Read a study file.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        A TOML file.
+    kind : type
+        The kind of study.
+
+    Returns
+    -------
+    Part
+        The study.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be read, or does not describe such a study.
+    """
+    path = pathlib.Path(path)
+    text = _text_of(path, "A study file is TOML.")
     try:
-        text = read_text(path, LONGEST_TOML)
+        data = _parse(text, "the study file")
+        return kind.model_validate(data)
+    except ValidationError as error:
+        lines = explain(error, kind, data).splitlines()
+    except ModelError as error:
+        lines = str(error).splitlines()
+    raise ModelError("\n".join(f"{path}: {line}" for line in lines))
+
+
+def _text_of(path: pathlib.Path, remedy: str) -> str:
+    """The text of a file."""
+    try:
+        return read_text(path, LONGEST_TOML)
     except UnicodeDecodeError as error:
-        raise ModelError(f"{path} is not a text in UTF-8. A drive file is TOML: `beltdyn new` writes one.") from error
+        raise ModelError(f"{path} is not a text in UTF-8. {remedy}") from error
     except (OSError, ValueError) as error:
         raise ModelError(f"{path} cannot be read: {reason(error)}. Check its name.") from error
-    return loads(text, base=path.parent)
 
 
 def loads(text: str, base: pathlib.Path | None = None) -> Drive:
@@ -74,7 +113,7 @@ def loads(text: str, base: pathlib.Path | None = None) -> Drive:
     >>> [pulley.name for pulley in drive.pulleys]
     ['driver', 'driven']
     """
-    data = _parse(text)
+    data = _parse(text, "the drive file")
     try:
         drive = Drive.model_validate(data, context={"base": base})
     except ValidationError as error:
@@ -84,14 +123,14 @@ def loads(text: str, base: pathlib.Path | None = None) -> Drive:
     return drive
 
 
-def _parse(text: str) -> dict[str, Any]:
+def _parse(text: str, file: str) -> dict[str, Any]:
     try:
         return parse_toml(text)
     except tomllib.TOMLDecodeError as error:
         told = shorten(error, _LONGEST_REASON)
-        raise ModelError(f"the drive file is not valid TOML: {told}. Correct the file there.") from error
+        raise ModelError(f"{file} is not valid TOML: {told}. Correct the file there.") from error
     except ValueError as error:
-        raise ModelError(f"the drive file is not valid TOML: {error}.") from error
+        raise ModelError(f"{file} is not valid TOML: {error}.") from error
 
 
 def _refers_to_files(data: Any) -> bool:

@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from beltdyn.errors import ModelError
 from beltdyn.parts.error_location import entry_name
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import unit_of
 
 _STEP = re.compile(r"\.?([^.\[\]]+)|\[([^\[\]]+)\]")
 
@@ -35,13 +36,118 @@ def changed_arguments(part: Part, changes: Mapping[str, Any]) -> dict[str, Any]:
     ModelError
         If a path leads nowhere, or one leads into what another one replaces.
     """
-    arguments = _changed(part, {_steps(path): value for path, value in changes.items()}, "")
+    arguments = _changed(part, {steps_of(path): value for path, value in changes.items()}, "")
     assert isinstance(arguments, dict)
     return arguments
 
 
-def _steps(path: str) -> Steps:
-    """The steps of a path."""
+def value_at(part: Part, path: str) -> Any:
+    """What stands at a path.
+
+    Parameters
+    ----------
+    part
+        The part.
+    path
+        As for `changed_arguments`.
+
+    Returns
+    -------
+    object
+        None where an argument is left open.
+
+    Raises
+    ------
+    ModelError
+        If the path leads nowhere.
+    """
+    return _followed(part, path)[-1][1]
+
+
+def converted(part: Part, path: str, value: Any) -> Any:
+    """A value as it would stand at a path, such as ``"25 mm"`` in m, checked by the innermost part alone.
+
+    Parameters
+    ----------
+    part
+        The part; it stays as it is.
+    path
+        As for `changed_arguments`.
+    value
+        A number, or text with a unit.
+
+    Raises
+    ------
+    ModelError
+        If the path leads nowhere, or the value cannot stand there.
+    """
+    inner, steps = _innermost(part, path)
+    rest = f"{steps[0]}{''.join(f'[{one}]' for one in steps[1:])}"
+    return value_at(type(inner)(**changed_arguments(inner, {rest: value})), rest)
+
+
+def unit_at(part: Part, path: str) -> str:
+    """The SI unit of the number at a path; empty for a pure number.
+
+    Parameters
+    ----------
+    part
+        The part.
+    path
+        As for `changed_arguments`.
+
+    Raises
+    ------
+    ModelError
+        If the path leads nowhere, or to no number.
+    """
+    inner, steps = _innermost(part, path)
+    fields = {field.alias or name: field for name, field in type(inner).model_fields.items()}
+    field = (fields | dict(type(inner).alternatives()))[steps[0]]
+    unit = next((unit for one in (*field.metadata, field.annotation) if (unit := unit_of(one)) is not None), None)
+    if unit is None:
+        raise ModelError(f"{path} is no number that could change.")
+    return unit
+
+
+def _innermost(part: Part, path: str) -> tuple[Part, Steps]:
+    """The innermost part on a path, and the steps from there."""
+    followed = _followed(part, path)
+    number, inner = next((k, one) for k, (_, one) in reversed(list(enumerate(followed[:-1]))) if isinstance(one, Part))
+    return inner, steps_of(path)[number:]
+
+
+def _followed(part: Part, path: str) -> list[tuple[str, Any]]:
+    """The part, and what each step of a path leads to, with the path up to there."""
+    found: list[tuple[str, Any]] = [("", part)]
+    for step in steps_of(path):
+        place, value = found[-1]
+        if isinstance(value, Part):
+            known = value.keys()
+            if step not in known:
+                raise ModelError(f"{_joined(place, step)} is not a known key. {_sentence(suggest(step, known))}")
+            found.append((_joined(place, step), value.arguments.get(step)))
+        elif isinstance(value, Sequence) and not isinstance(value, str):
+            number = _place_of(value, step, place)
+            found.append((f"{place}[{entry_name(value[number]) or number + 1}]", value[number]))
+        else:
+            _refuse_inside(value, step, place)
+    return found
+
+
+def steps_of(path: str) -> Steps:
+    """The steps of a path: keys, and names or numbers of entries.
+
+    Parameters
+    ----------
+    path
+        Such as "pulley[driven].load[1].torque".
+
+    Raises
+    ------
+    ModelError
+        If it is no path.
+    """
     found = list(_STEP.finditer(path))
     if "".join(match[0] for match in found) != path or path.startswith((".", "[")) or not path:
         raise ModelError(f'"{path}" is no path. Write for example "belt.length" or "pulley[driven].load[1].torque".')
@@ -61,9 +167,14 @@ def _changed(value: Any, changes: Mapping[Steps, Any], path: str) -> Any:
         return _in_part(value, groups, path)
     if isinstance(value, Sequence) and not isinstance(value, str):
         return _in_list(value, groups, path)
+    return _refuse_inside(value, next(iter(groups)), path)
+
+
+def _refuse_inside(value: Any, step: str, path: str) -> NoReturn:
+    """Say that there is nothing in a value."""
     if value is None:
         raise ModelError(f"{path} is not given, so that there is nothing in it to change. Give it as a whole.")
-    raise ModelError(f"{path} = {value!r} holds nothing to change by .{next(iter(groups))}. Change it as a whole.")
+    raise ModelError(f"{path} = {value!r} holds nothing to change by .{step}. Change it as a whole.")
 
 
 def _in_part(part: Part, groups: Mapping[str, Mapping[Steps, Any]], path: str) -> dict[str, Any]:
@@ -75,16 +186,22 @@ def _in_part(part: Part, groups: Mapping[str, Mapping[Steps, Any]], path: str) -
 
 
 def _in_list(entries: Sequence[Any], groups: Mapping[str, Mapping[Steps, Any]], path: str) -> list[Any]:
-    names = [entry_name(entry) or str(number) for number, entry in enumerate(entries, 1)]
     changed = list(entries)
     for step, inner in groups.items():
-        place = names.index(step) if step in names else int(step) - 1 if step.isdecimal() else -1
-        if not 0 <= place < len(entries):
-            known = suggest(step, names) if names else "There is none"
-            counted = "; entries count from 1" if step.isdecimal() else ""
-            raise ModelError(f"{path}[{step}] is not there{counted}. {_sentence(known)}")
-        changed[place] = _changed(entries[place], inner, f"{path}[{names[place]}]")
+        place = _place_of(entries, step, path)
+        changed[place] = _changed(entries[place], inner, f"{path}[{entry_name(entries[place]) or place + 1}]")
     return changed
+
+
+def _place_of(entries: Sequence[Any], step: str, path: str) -> int:
+    """Where an entry of a list is, by its name or its number counted from 1."""
+    names = [entry_name(entry) or str(number) for number, entry in enumerate(entries, 1)]
+    place = names.index(step) if step in names else int(step) - 1 if step.isdecimal() else -1
+    if not 0 <= place < len(entries):
+        known = suggest(step, names) if names else "There is none"
+        counted = "; entries count from 1" if step.isdecimal() else ""
+        raise ModelError(f"{path}[{step}] is not there{counted}. {_sentence(known)}")
+    return place
 
 
 def _joined(path: str, key: str) -> str:

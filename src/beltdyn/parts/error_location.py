@@ -29,7 +29,7 @@ class ErrorLocation:
     def __init__(self, model: type[BaseModel], data: Mapping[str, Any]) -> None:
         self._schema = _schema_of(model)
         self._data = data
-        self._prefix = "" if "belt" in model.model_fields else model.__name__.lower()
+        self._prefix = "" if getattr(model, "fills_a_file", False) else model.__name__.lower()
 
     def locate(self, location: tuple[int | str, ...]) -> tuple[str, dict[str, Any]]:
         """Find the path as a user writes it, ``pulley[driven].radius``, and the schema of the key there.

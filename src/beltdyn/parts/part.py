@@ -19,6 +19,8 @@ class Part(BaseModel):
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True, defer_build=True
     )
+    fills_a_file: ClassVar[bool] = False
+    """Whether its keys are those of a file, so that paths in messages begin with them."""
     either: ClassVar[tuple[str, str] | None] = None
     """Two arguments, of which one determines the other."""
     in_place_of: ClassVar[Mapping[str, str]] = MappingProxyType({})

@@ -2,10 +2,10 @@
 
 import math
 import re
-from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, get_args
 
 from pydantic import BeforeValidator, Strict, StringConstraints
 
@@ -107,16 +107,35 @@ def _convert(number: float, given: str, unit: str) -> float:
     return value
 
 
-def _reader(unit: str, smallest: float) -> Callable[[object], object]:
-    def read(value: object) -> object:
+@dataclass(frozen=True)
+class _Reader:
+    """Reads numbers, and texts with units."""
+
+    unit: str
+    smallest: float
+
+    def __call__(self, value: object, /) -> object:
+        """A number in SI units."""
         if isinstance(value, bool):
-            raise ValueError(f"must be a number{f' in {unit}' if unit else ''}")
-        number = to_si(value, unit) if isinstance(value, str) else value
+            raise ValueError(f"must be a number{f' in {self.unit}' if self.unit else ''}")
+        number = to_si(value, self.unit) if isinstance(value, str) else value
         if isinstance(number, int | float):
-            _check_size(number, smallest)
+            _check_size(number, self.smallest)
         return number
 
-    return read
+
+def unit_of(annotation: object) -> str | None:
+    """The SI unit of a field, or of the numbers in a list; None where it holds none.
+
+    Parameters
+    ----------
+    annotation : object
+        What the field is annotated with, or an entry of its metadata.
+    """
+    if isinstance(annotation, BeforeValidator) and isinstance(annotation.func, _Reader):
+        return annotation.func.unit
+    inner = (*getattr(annotation, "__metadata__", ()), *get_args(annotation))
+    return next((unit for one in inner if (unit := unit_of(one)) is not None), None)
 
 
 def _check_size(number: float, smallest: float) -> None:
@@ -148,7 +167,7 @@ def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
     BeforeValidator
         What goes into the annotation of the field.
     """
-    return BeforeValidator(_reader(unit, smallest), json_schema_input_type=float | str if unit else float)
+    return BeforeValidator(_Reader(unit, smallest), json_schema_input_type=float | str if unit else float)
 
 
 Coordinate = Annotated[float, quantity("m", smallest=0)]

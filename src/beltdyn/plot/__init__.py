@@ -19,6 +19,7 @@ from beltdyn.plot.modes import mode_shape as mode_shape
 from beltdyn.plot.operating_points import efficiency_map as efficiency_map
 from beltdyn.plot.operating_points import operating_points as operating_points
 from beltdyn.plot.operating_points import traction_curve as traction_curve
+from beltdyn.plot.optimize import optimization as optimization
 from beltdyn.plot.pulleys import capstan_margins as capstan_margins
 from beltdyn.plot.pulleys import hub_load_sizes as hub_load_sizes
 from beltdyn.plot.pulleys import hub_loads as hub_loads

@@ -8,7 +8,7 @@ from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.run_sheet import run_sheet
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
-from beltdyn.results.shown import in_words, shown_unit
+from beltdyn.results.shown import VARIOUS, in_words, shown_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -61,7 +61,9 @@ def _heading(variable: "xr.DataArray") -> str:
 
 
 def _column(variable: "xr.DataArray") -> list[str]:
-    """The numbers of a variable, with as many decimals each, or its words."""
+    """The numbers of a variable, with as many decimals each where they have one unit, or its words."""
     if variable.dtype.kind != "f":
         return [str(one) for one in variable.values.ravel()]
+    if variable.attrs.get("units") == VARIOUS:
+        return [f"{one:.{_DIGITS}g}" for one in variable.values.ravel()]
     return aligned((shown_unit(variable)[1] * variable.values.ravel()).tolist(), _DIGITS)

@@ -7,9 +7,11 @@ from beltdyn.parts.quantity import SHOWN_UNITS
 if TYPE_CHECKING:
     import xarray as xr
 
+VARIOUS = "various"
+"""Unit of a variable whose numbers have different ones, which another variable names."""
 _MILLIMETRES = 0.1
 """Size of lengths, m, below which they are written in mm."""
-_SHOWN = {**SHOWN_UNITS, "1": ("", 1.0)}
+_SHOWN = {**SHOWN_UNITS, **dict.fromkeys(("1", VARIOUS), ("", 1.0))}
 
 
 def shown_unit(variable: "xr.DataArray") -> tuple[str, float]:

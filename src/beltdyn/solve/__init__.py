@@ -8,6 +8,7 @@ from beltdyn.solve.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.installation import Rest, bring_to_rest
 from beltdyn.solve.modes import modes
 from beltdyn.solve.operating_map import operating_map
+from beltdyn.solve.optimize import optimize
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.simulate import simulate
@@ -39,6 +40,7 @@ __all__ = [
     "find_equilibrium",
     "modes",
     "operating_map",
+    "optimize",
     "sensitivity",
     "simulate",
     "simulate_all",

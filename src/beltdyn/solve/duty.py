@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import reason
@@ -93,8 +94,8 @@ def duty(
     """
     columns = read_duty(Path(table))
     held = held_at(drive, at)
-    rows = [_changed(held, columns, number) for number in range(len(columns[0].values))]
-    durations = np.array(next(one.values for one in columns if one.what == "duration"))
+    rows = [at_row(held, columns, number) for number in range(len(columns[0].values))]
+    durations = durations_of(columns)
     axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, len(rows) + 1))}
     with OperatingPoints("duty", held, axes, output, progress, overwrite) as points:
         points.more = {"duration": (Variable(("row",), "s", "Duration"), durations)}
@@ -161,8 +162,23 @@ def _number(path: Path, line: int, cell: str, given: str, unit: str) -> float:
     return number
 
 
-def _changed(held: Drive, columns: list[Column], row: int) -> Drive:
-    """The drive in a row of the table."""
+def durations_of(columns: list[Column]) -> FloatArray:
+    """Durations of the rows of a table, s."""
+    return np.array(next(one.values for one in columns if one.what == "duration"))
+
+
+def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
+    """The drive at the operating point of a row of a table.
+
+    Parameters
+    ----------
+    held
+        The drive, with constant speeds and torques.
+    columns
+        The table.
+    row
+        Number of the row, from 0.
+    """
     loads = [one.values[row] for one in columns if one.what == "load"]
     if loads and loads[0] < 0.0:
         raise ModelError(f"row {row + 1}: load = {loads[0]:g} is below zero, with which loads would drive.")

@@ -1,5 +1,6 @@
 """An analysis: operating points over speed, over load, or over both."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from beltdyn.arrays import FloatArray
@@ -80,25 +81,47 @@ def operating_map(
         raise ModelError('a map is over speed, load or both. Give speed = "700..6000 rpm", or load = "0.2..1.2".')
     held = held_at(drive, at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
-    name, sense = held.pulleys[number].name, sense_of(held, number)
+    name = held.pulleys[number].name
     axes = dict[str, tuple[Variable, FloatArray]]()
     if speed is not None:
         axes["speed"] = Variable(("speed",), "rad/s", f"Speed of {name}"), numbers_in("speed", speed, "rad/s", points)
     if load is not None:
-        axes["load"] = Variable(("load",), "1", "Load"), _factors(load, load_points)
+        axes["load"] = Variable(("load",), "1", "Load"), load_factors(load, load_points)
     with OperatingPoints("map", held, axes, output, progress, overwrite) as table:
         table.attributes = {"drive_as_given": drive.text, "pulley": name}
         for index in serpentine(table.shape):
             there = {axis: float(values[k]) for k, (axis, (_, values)) in zip(index, axes.items(), strict=True)}
-            changed = with_load(held, there.get("load", 1.0))
-            if "speed" in there:
-                changed = at_speed(changed, number, sense * there["speed"])
-            table.find(index, changed, force_tolerance)
+            table.find(index, at_point(held, number, there), force_tolerance)
     return table.result()
 
 
-def _factors(load: str, count: int) -> FloatArray:
+def at_point(held: Drive, pulley: int, there: Mapping[str, float]) -> Drive:
+    """The drive at an operating point of a map.
+
+    Parameters
+    ----------
+    held
+        The drive, with constant speeds and torques.
+    pulley
+        Number of the pulley whose speed is prescribed.
+    there
+        Its "speed" in the sense in which it turns, rad/s, and the "load", a factor; either may be missing.
+    """
+    changed = with_load(held, there.get("load", 1.0))
+    if "speed" not in there:
+        return changed
+    return at_speed(changed, pulley, sense_of(held, pulley) * there["speed"])
+
+
+def load_factors(load: str, count: int) -> FloatArray:
     """Factors on loads.
+
+    Parameters
+    ----------
+    load
+        A range or a list.
+    count
+        How many to take out of a range.
 
     Raises
     ------

@@ -14,20 +14,18 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.model.completion import take_up
 from beltdyn.parts.error_location import entry_name
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
-from beltdyn.results import Result, Run, Variable, build_result, summarize
+from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES
-from beltdyn.solve.operating_points import VARIABLES, labels_of, values_by_name
+from beltdyn.solve.named_results import listed, names_in, unit_of, values_of
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.staying import Standing, bring_to_stand, stand_like
+from beltdyn.solve.small_changes import CHANGE, SmallChanges
+from beltdyn.solve.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.sweep import without_schedules
 
-_CHANGE = 1e-5
-"""Of a number, and of the length of the belt, relative."""
 _PART = 0.01
 """Of a number, for which effects are told."""
 _MOVE = 1e-3
@@ -106,15 +104,15 @@ def sensitivity(
     chosen = _chosen(given, numbers)
     rest = bring_to_stand(given)
     run = steady_state(rest.drive, force_tolerance=force_tolerance)
-    values = _values(run)
-    wanted = {name: values[name] for name in _named(values, of)}
-    neighbours = _Neighbours(given, rest, run)
+    values = values_of(run)
+    wanted = {name: values[name] for name in names_in(values, of)}
+    changes = SmallChanges(given, rest)
     derivatives, warnings = np.full((len(wanted), len(chosen)), np.nan), list(run.warnings)
     for place, number in enumerate(chosen):
         if progress is not None:
             progress(Progress(place, float(len(chosen)), 0.0, place, "operating points"))
         try:
-            derivatives[:, place] = neighbours.derivatives(number, list(wanted))
+            derivatives[:, place] = _derivatives(changes, run, number, list(wanted))
         except (ConvergenceError, ModelError) as error:
             warnings.append(f"no derivative with respect to {number.path}: {error}")
     return _result(drive, wanted, chosen, derivatives, warnings)
@@ -156,7 +154,7 @@ def _chosen(drive: Drive, numbers: str | None) -> list[Number]:
     known = {one.path: one for one in numbers_of(drive)}
     if numbers is None:
         return list(known.values())
-    wanted = _listed(numbers)
+    wanted = listed(numbers)
     for path in wanted:
         if path not in known:
             raise ModelError(
@@ -165,87 +163,36 @@ def _chosen(drive: Drive, numbers: str | None) -> list[Number]:
     return [known[path] for path in wanted]
 
 
-def _listed(text: str) -> list[str]:
-    """Names with commas between."""
-    return [name.strip() for name in text.split(",") if name.strip()]
+def _derivatives(changes: SmallChanges, run: Run, number: Number, names: Sequence[str]) -> FloatArray:
+    """Derivatives of results with respect to a number, by central differences of the steady states."""
+    change = CHANGE * number.step / _PART
+
+    def at(value: float) -> dict[str, float]:
+        return values_of(steady_neighbour(changes.drive(number.path, value), run))
+
+    up, down = at(number.value + change), at(number.value - change)
+    return np.array([(up[name] - down[name]) / (2.0 * change) for name in names])
 
 
-def _values(run: Run) -> dict[str, float]:
-    """Results of steady running by name, such as "efficiency" and "pulley_slip[driven]"."""
-    summary, found = summarize(run), dict[str, float]()
-    labels = labels_of(run.drive)
-    for name, values in values_by_name(run, summary).items():
-        dims, numbers = VARIABLES[name].dims, np.asarray(values)
-        if numbers.dtype.kind == "f" and len(dims) < 2:
-            inner = labels[dims[0]] if dims else []
-            parts = [f"{name}[{label}]" for label in inner] if dims else [name]
-            found |= {part: float(value) for part, value in zip(parts, np.atleast_1d(numbers), strict=True)}
-    return found
-
-
-def _named(values: dict[str, float], of: str) -> list[str]:
-    """The results that are asked for."""
-    if of == "all":
-        return list(values)
-    found = list[str]()
-    for wanted in _listed(of):
-        known = [name for name in values if wanted in (name, name.partition("[")[0])]
-        if not known:
-            raise ModelError(f"of = {wanted!r} is no result of steady running. {suggest(wanted, list(values))}")
-        found += known
-    return list(dict.fromkeys(found))
-
-
-class _Neighbours:
-    """Steady running of drives with one number changed a little, on the mesh of the given one.
+def steady_neighbour(drive: Drive, run: Run) -> Run:
+    """Steady running of a drive that differs a little from another one, on the mesh of that one.
 
     Parameters
     ----------
-    given
-        The drive, with constant speeds and torques.
-    rest
-        It at rest, with the length, or the take-up, that its installed tension asks for.
+    drive
+        The drive.
     run
-        Its steady running.
+        Steady running of the other one.
+
+    Raises
+    ------
+    ConvergenceError
+        If Newton's method does not get there from it.
     """
-
-    def __init__(self, given: Drive, rest: Standing, run: Run) -> None:
-        self._given, self._rest, self._run = given, rest, run
-        self._tightening = np.inf
-        if given.belt.installed_tension is not None:
-            change = _CHANGE * rest.drive.belt_length
-            shorter, longer = (self._tension(self._shortened(rest.drive, sense * change)) for sense in (1.0, -1.0))
-            self._tightening = (shorter - longer) / (2.0 * change)
-
-    def derivatives(self, number: Number, names: Sequence[str]) -> FloatArray:
-        """Derivatives of results with respect to a number, by central differences of the steady states."""
-        change = _CHANGE * number.step / _PART
-        up, down = (_values(self._at(number.path, number.value + sense * change)) for sense in (1.0, -1.0))
-        return np.array([(up[name] - down[name]) / (2.0 * change) for name in names])
-
-    def _at(self, path: str, value: float) -> Run:
-        """Steady running with another value of a number."""
-        wanted, drive = self._rest.tension, self._rest.drive
-        if path == "belt.installed_tension":
-            wanted *= value / float(self._given.belt.installed_tension or value)
-        else:
-            drive = drive.with_({path: value})
-        if np.isfinite(self._tightening):
-            drive = self._shortened(drive, (wanted - self._tension(drive)) / self._tightening)
-        run = steady_state(drive, force_tolerance=_ANY_MESH, start=self._run)
-        if run.dataset.sizes["node"] != self._run.dataset.sizes["node"]:
-            raise ConvergenceError("Newton's method does not follow so small a change.")
-        return run
-
-    def _shortened(self, drive: Drive, distance: float) -> Drive:
-        """A drive with a shorter belt or, where its length is given, with more take-up, m; see `Drive.tightened`."""
-        if self._given.belt.length is None:
-            return drive.with_({"belt.length": drive.belt_length - distance})
-        return drive.replace(tensioner=take_up(drive.completed, distance))
-
-    def _tension(self, drive: Drive) -> float:
-        """At rest, on the same mesh."""
-        return stand_like(drive, self._rest).tension
+    found = steady_state(drive, force_tolerance=_ANY_MESH, start=run)
+    if found.dataset.sizes["node"] != run.dataset.sizes["node"]:
+        raise ConvergenceError("Newton's method does not follow so small a change.")
+    return found
 
 
 def _result(
@@ -256,7 +203,7 @@ def _result(
     warnings: Sequence[str],
 ) -> Result:
     """The table, with the numbers of largest effect first."""
-    found, units = np.array(list(values.values())), [VARIABLES[name.partition("[")[0]].units for name in values]
+    found = np.array(list(values.values()))
     effects = derivatives * np.array([number.step for number in numbers])
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(found[:, None] == 0.0, np.nan, 100.0 * effects / found[:, None])
@@ -275,6 +222,6 @@ def _result(
     coordinates: dict[str, tuple[Variable, ArrayLike]] = {
         "result": (Variable(("result",), "1", "Result", "str"), list(values)),
         "number": (Variable(("number",), "1", "1 % or 1 mm more of", "str"), [numbers[k].path for k in order]),
-        "unit": (Variable(("result",), "1", "Unit", "str"), ["" if unit == "1" else unit for unit in units]),
+        "unit": (Variable(("result",), "1", "Unit", "str"), [unit_of(name, drive) for name in values]),
     }
     return build_result("sensitivity", drive, variables, coordinates, warnings)

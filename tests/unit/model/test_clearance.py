@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Path
-from beltdyn.model.clearance import Obstacle, Surroundings, crossings, obstacle
+from beltdyn.model.clearance import Obstacle, Surroundings, crossings, distance_from_belt, obstacle
 
 
 def path(*circles: tuple[float, float, float]) -> Path:
@@ -54,3 +54,17 @@ def test_belt_on_one_pulley_and_on_another(gap: float, found: Obstacle | None) -
     half = gap * (radius + 2 * offset)
     laid = path((-0.5, 0, 0.2), (0, -half, -(radius + offset)), (0.5, 0, 0.2), (0, half, -(radius + offset)))
     assert obstacle(laid, around(laid, offset)) == found
+
+
+@pytest.mark.parametrize(
+    ("center", "distance"),
+    [
+        ((0.5, 0.2), 0.2 - 0.1 - 0.003),  # over the upper span, beside its back
+        ((0.5, 0.05), 0.1 - 0.05 - 0.002),  # below it, beside its inside
+        ((-0.3, 0.0), 0.3 - 0.1 - 0.003),  # behind the first pulley
+    ],
+)
+def test_distance_of_a_part_from_the_belt(center: tuple[float, float], distance: float) -> None:
+    laid = path((0, 0, 0.1), (1, 0, 0.1))
+    surroundings = Surroundings(np.array([0.09, 0.09]), inside=0.002, back=0.003)
+    assert distance_from_belt(laid, surroundings, center, 0.01) == pytest.approx(distance - 0.01)

@@ -6,6 +6,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads, read_catalogue
+from beltdyn.parts.change import converted, unit_at, value_at
 
 MOTOR = """
 [[pulley.load]]
@@ -109,3 +110,37 @@ def test_a_belt_takes_the_form_of_the_change(drive: Drive) -> None:
     assert sold.axial_stiffness == pytest.approx(6 * entry.axial_stiffness)
     with pytest.raises(ModelError, match=r"belt\.profile is missing"):
         drive.with_({"belt.ribs": 6})
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "unit"),
+    [
+        ("belt.width", 0.01, "m"),
+        ("pulley[driven].center[1]", 0.191441, "m"),
+        ("pulley[driven].load[2].constant", 2.0, "N*m"),
+        ("tensioner[driven].preload", 60.0, "N"),
+        ("contact.friction", None, ""),
+    ],
+)
+def test_what_stands_at_a_path(loaded: Drive, path: str, value: float | None, unit: str) -> None:
+    assert unit_at(loaded, path) == unit
+    assert value is None or value_at(loaded, path) == value
+
+
+def test_a_value_with_a_unit_is_converted(loaded: Drive) -> None:
+    assert converted(loaded, "pulley[driven].center[1]", "25 mm") == 0.025
+    with pytest.raises(ModelError, match="must be in units of m"):
+        converted(loaded, "belt.width", "2 kg")
+    with pytest.raises(ModelError, match="must be greater than 0"):
+        converted(loaded, "belt.width", -1.0)
+
+
+@pytest.mark.parametrize("path", ["belt.widht", "pulley[idler].radius", "belt.width.more"])
+def test_nothing_stands_at_a_wrong_path(loaded: Drive, path: str) -> None:
+    with pytest.raises(ModelError):
+        value_at(loaded, path)
+
+
+def test_a_name_has_no_unit(loaded: Drive) -> None:
+    with pytest.raises(ModelError, match="is no number that could change"):
+        unit_at(loaded, "pulley[driven].name")
