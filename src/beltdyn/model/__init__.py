@@ -44,7 +44,6 @@ from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, lay
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.study import OptimizationStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
-from beltdyn.model.toml_editor import edited
 from beltdyn.model.toml_reader import json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
 
@@ -97,7 +96,6 @@ __all__ = [
     "describe",
     "describe_time",
     "dumps",
-    "edited",
     "elements_needed",
     "install",
     "json_schema",

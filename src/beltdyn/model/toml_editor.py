@@ -41,7 +41,8 @@ def edited(drive: Drive, changes: Mapping[str, float]) -> str:
 
     Examples
     --------
-    >>> text = bd.model.edited(drive, {"belt.width": 0.012})
+    >>> from beltdyn.model.toml_editor import edited
+    >>> text = edited(drive, {"belt.width": 0.012})
     >>> bd.loads(text).belt.width
     0.012
     """

@@ -3,7 +3,8 @@
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, edited, loads
+from beltdyn.model import Drive, loads
+from beltdyn.model.toml_editor import edited
 
 
 def test_the_rest_stays_as_its_author_wrote_it(drive: Drive, drive_text: str) -> None:
