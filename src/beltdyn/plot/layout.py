@@ -12,7 +12,7 @@ from matplotlib.path import Path as Outline
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.machines import FixedTensioner, Tensioner
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
@@ -40,7 +40,7 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     drive : Drive
         The drive.
     installation : Installation, optional
-        Its belt at rest; computed by default.
+        Its belt at rest; by default in static equilibrium, or as estimated by hand where there is none.
     ax : Axes, optional
         Where to draw; a new figure by default, as high as the drive needs.
 
@@ -49,7 +49,8 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     Axes
         The axes.
     """
-    installation = installation or install(drive)
+    if installation is None:
+        drive, installation = _at_rest(drive)
     path = installation.path
     extent = extent_of(drive, path)
     ax = axes_or_new(ax, size_of(drive))
@@ -89,7 +90,7 @@ def save_layout(
     path : Path or str
         The file: PNG, SVG, PDF or another format of matplotlib.
     installation : Installation, optional
-        Its belt at rest; computed by default.
+        Its belt at rest; by default in static equilibrium, or as estimated by hand where there is none.
     overwrite : bool
         Replace any regular file, and not only figures of beltdyn.
 
@@ -113,6 +114,17 @@ def save_layout(
         )
     layout(drive, installation, figure.add_subplot())
     return save(figure, path, overwrite)
+
+
+def _at_rest(drive: Drive) -> tuple[Drive, Installation]:
+    """The drive, with the length or take-up that was found, and its belt at rest."""
+    from beltdyn.solve import bring_to_rest
+
+    try:
+        rest = bring_to_rest(drive)
+    except ConvergenceError:
+        return drive, install(drive)
+    return rest.drive, rest.installation
 
 
 def _draw_pulley(ax: Axes, drive: Drive, path: Path, number: int) -> None:

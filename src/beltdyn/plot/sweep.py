@@ -23,6 +23,10 @@ _RANGE = 60.0
 """Levels below the highest that are told apart, dB."""
 _MAP = "viridis"
 _STRONGEST = 5
+_ROWS, _ROW = 4, 0.08
+"""Rows of names in a waterfall, and the part of a line from one to the next."""
+_LOW = 0.1
+"""Part of the highest frequency below which names stand right of their lines."""
 _HARMONICS = (1, 2, 3)
 """Multiples of the frequency at which elements pass that are marked."""
 _DISTANCE = 0.4
@@ -140,11 +144,11 @@ def waterfall(
         page = ax.get_figure()
         assert page is not None
         page.colorbar(mesh, ax=ax, label=f"Amplitude (peak) [dB re 1 {unit(amplitude)}]")
-    for order in which:
-        _mark(ax, order, amplitude, f"{order:.3g}", "-")
     elements = derived.element_order(run.drive, number)
-    for k in _HARMONICS:
-        _mark(ax, k * elements, amplitude, "elements pass" if k == 1 else f"{k} ×", "--")
+    marks = [(order, f"{order:.3g}", "-") for order in which]
+    marks += [(k * elements, "elements pass" if k == 1 else f"{k} ×", "--") for k in _HARMONICS]
+    for place, (order, words, style) in enumerate(sorted(marks)):
+        _mark(ax, order, amplitude, words, style, place % _ROWS)
     ax.set(xlabel=label(amplitude["frequency"]), ylabel=f"Speed of {run.drive.pulleys[number].name} [rpm]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.grid(visible=False)
@@ -239,12 +243,14 @@ def _multiple(order: float, elements: float) -> bool:
     return any(abs(order - k * elements) < _DISTANCE for k in _HARMONICS)
 
 
-def _mark(ax: Axes, order: float, amplitude: xr.DataArray, words: str, style: str) -> None:
-    """Draw a line where an order lies, with its name at its upper end, if it is seen."""
+def _mark(ax: Axes, order: float, amplitude: xr.DataArray, words: str, style: str, row: int) -> None:
+    """Draw a line where an order lies, if it is seen, with its name near its upper end, in one of a few rows."""
     speed, highest = amplitude["speed"].values, float(amplitude["frequency"][-1])
     frequency = order * speed / (2.0 * np.pi)
     shown = frequency <= highest
     if np.any(shown):
         ax.plot(frequency[shown], RPM * speed[shown], color="w", linestyle=style, linewidth=0.6, alpha=0.7)
-        place = frequency[shown][-1], RPM * speed[shown][-1]
-        ax.annotate(words, place, (-3, -3), "data", "offset points", color="w", fontsize=8, ha="right", va="top")
+        named = int((1.0 - _ROW * row) * (np.count_nonzero(shown) - 1))
+        place = frequency[shown][named], RPM * speed[shown][named]
+        side, ha = (-3, "right") if place[0] > _LOW * highest else (3, "left")
+        ax.annotate(words, place, (side, -3), "data", "offset points", color="w", fontsize=8, ha=ha, va="top")

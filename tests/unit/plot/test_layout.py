@@ -12,8 +12,9 @@ from matplotlib.patches import Circle, FancyArrowPatch, Wedge
 from matplotlib.text import Annotation
 
 from beltdyn import plot
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, install
+from beltdyn.solve import bring_to_rest
 
 
 @pytest.fixture(autouse=True)
@@ -45,7 +46,7 @@ def belt_lines(ax: Axes) -> list[np.ndarray]:
 
 def test_the_belt_is_drawn_along_its_path(idler_drive: Drive, ax: Axes) -> None:
     installation = install(idler_drive)
-    assert plot.layout(idler_drive, ax=ax) is ax
+    assert plot.layout(idler_drive, install(idler_drive), ax) is ax
     lines, path = belt_lines(ax), installation.path
     assert len(lines) == 6
     for number, (arc, span) in enumerate(zip(lines[:3], lines[3:], strict=True)):
@@ -56,7 +57,7 @@ def test_the_belt_is_drawn_along_its_path(idler_drive: Drive, ax: Axes) -> None:
 
 
 def test_pulleys_show_wrap_name_and_sense(idler_drive: Drive, ax: Axes) -> None:
-    plot.layout(idler_drive, ax=ax)
+    plot.layout(idler_drive, install(idler_drive), ax)
     wraps = np.degrees(install(idler_drive).path.wrap_angles)
     wedges = [patch for patch in ax.patches if isinstance(patch, Wedge)]
     np.testing.assert_allclose([wedge.theta2 - wedge.theta1 for wedge in wedges], wraps)
@@ -78,7 +79,7 @@ def test_pulleys_show_wrap_name_and_sense(idler_drive: Drive, ax: Axes) -> None:
 
 
 def test_arm_and_pivot_of_a_tensioner(idler_drive: Drive, ax: Axes) -> None:
-    plot.layout(idler_drive, ax=ax)
+    plot.layout(idler_drive, install(idler_drive), ax)
     arm = next(line for line in ax.lines if line.get_linewidth() == 2.0)
     np.testing.assert_allclose(np.array(arm.get_xydata()), [(-0.1, -0.15), install(idler_drive).path.centers[1]])
 
@@ -178,3 +179,15 @@ def test_numbers_below_a_narrow_drive_do_not_meet(drive: Drive) -> None:
     boxes = [tick.label1.get_window_extent() for tick in ax.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
     assert len(boxes) > 1
     assert all(one.x1 < other.x0 for one, other in itertools.pairwise(boxes))
+
+
+def test_the_tension_is_that_of_equilibrium(drive: Drive, ax: Axes) -> None:
+    """Of what is asked for, and of what a length gives; by hand where there is no equilibrium."""
+    tight = drive.replace(belt=drive.belt.replace(installed_tension=40.0))
+    found = bring_to_rest(tight).drive
+    for one in (tight, found):
+        assert plot.layout(one, ax=ax).get_title(loc="left").endswith(" m, 40 N at rest")
+    soft = drive.replace(contact=drive.contact.replace(stiffness=10.0))
+    with pytest.raises(ConvergenceError):
+        bring_to_rest(soft)
+    assert plot.layout(soft, ax=ax) is ax

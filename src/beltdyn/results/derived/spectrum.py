@@ -162,8 +162,8 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     turns = (turned[-1] - turned[0]) / (2.0 * np.pi)
     if turns < 2 * revolutions:
         raise ModelError(
-            f"the pulley makes {turns:.3g} turns above a tenth of its largest speed: orders need "
-            f"{2 * revolutions} or more. Simulate longer, or take fewer revolutions."
+            f"the pulley makes {turns:.3g} turns above a tenth of its largest speed: orders need {2 * revolutions} or "
+            "more. Make the run longer (`--duration` of a sweep), or in Python take fewer revolutions."
         )
     each = int(np.ceil(max(2.0 * np.pi / np.diff(turned).min(), 2.0 * largest)))
     steps = np.arange(turned[0], turned[-1], 2.0 * np.pi / each)
