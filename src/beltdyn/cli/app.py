@@ -15,6 +15,7 @@ from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error
 from beltdyn.cli.demo import demo
 from beltdyn.cli.new import new
+from beltdyn.cli.page import app as page
 from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
 from beltdyn.cli.report import report
@@ -35,7 +36,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, check),
     *ANALYSES.values(),
-    *(plot, report, demo, paper, catalogue, schema),
+    *(plot, report, page, demo, paper, catalogue, schema),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

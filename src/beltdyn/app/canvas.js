@@ -1,0 +1,266 @@
+// The canvas of the page: an SVG in millimetres, y down. Python gives the scene; this file draws it, and tells of drags
+// and keys. While something is dragged the browser draws it where the pointer is, and the rest follows from Python.
+
+const NICE = [1, 2, 5, 10];
+
+function niceStep(length) {
+  const power = 10 ** Math.floor(Math.log10(length));
+  return power * NICE.find((one) => one * power >= length * 0.999);
+}
+
+export default {
+  template: `
+    <svg ref="svg" class="bd-canvas" role="application" :viewBox="viewBox" preserveAspectRatio="xMidYMid meet"
+         :aria-label="'Layout of the drive with ' + pulleys.length + ' pulleys. Tab reaches each pulley.'"
+         @pointerdown="down($event, null)" @pointermove="moved" @pointerup="up" @pointercancel="up"
+         @wheel.prevent="wheel" @dblclick="add">
+      <path class="bd-grid" :d="grid" />
+      <path class="bd-axis" :d="axes" />
+      <path v-if="scene.rest" class="bd-rest" :d="scene.rest" />
+      <circle v-for="(one, i) in scene.ghosts || []" :key="'g' + i" class="bd-ghost" :cx="one.x" :cy="one.y" :r="one.r" />
+      <path v-if="scene.belt" :class="scene.valid ? 'bd-belt' : 'bd-belt bd-sketch'" :d="scene.belt"
+            :stroke-width="Math.max(scene.thickness || 0, 3 * px)" />
+      <g v-for="one in scene.tensioners || []" :key="'t' + one.number" class="bd-tensioner">
+        <template v-if="one.pivot">
+          <path class="bd-arm" :d="'M' + at('pivot', one).join(' ') + 'L' + one.x + ' ' + one.y" />
+          <circle class="bd-handle" :cx="at('pivot', one)[0]" :cy="at('pivot', one)[1]" :r="6 * px" tabindex="0" role="button"
+                  :aria-label="'pivot of tensioner ' + (one.number + 1) + ', arrow keys move it'"
+                  @pointerdown.stop="down($event, { kind: 'pivot', number: one.number, from: one.pivot })"
+                  @keydown="pivotKey($event, one)" />
+        </template>
+        <template v-if="one.direction">
+          <path class="bd-arm" :d="arrow(one)" />
+          <circle class="bd-handle" :cx="tip(one)[0]" :cy="tip(one)[1]" :r="5 * px"
+                  @pointerdown.stop="down($event, { kind: 'direction', number: one.number, from: tip(one) })" />
+        </template>
+      </g>
+      <g v-for="one in pulleys" :key="one.number" tabindex="0" role="button" :data-pulley="one.name"
+         :class="['bd-pulley', { 'bd-chosen': one.number === selected, 'bd-back': one.outside, 'bd-wrong': one.wrong }]"
+         :aria-label="spoken(one)" :aria-pressed="one.number === selected"
+         @pointerdown.stop="down($event, { kind: 'move', number: one.number, from: [one.x, one.y] })"
+         @focus="choose(one.number)" @keydown="key($event, one)">
+        <circle class="bd-rim" :cx="one.x" :cy="one.y" :r="one.r" />
+        <circle v-if="one.outside" class="bd-inner" :cx="one.x" :cy="one.y" :r="0.82 * one.r" />
+        <circle v-if="one.drives" class="bd-drives" :cx="one.x" :cy="one.y" :r="Math.min(0.3 * one.r, 9 * px)" />
+        <path v-else class="bd-hub" :d="cross(one)" />
+        <text :x="one.x" :y="one.y - Math.min(0.35 * one.r, 12 * px)" :font-size="13 * px" text-anchor="middle">{{ one.name }}</text>
+        <text class="bd-small" :x="one.x" :y="one.y + Math.min(0.35 * one.r, 12 * px) + 9 * px" :font-size="11 * px"
+              text-anchor="middle">{{ one.wrap }}</text>
+      </g>
+      <text v-for="(one, i) in scene.spans || []" :key="'s' + i" class="bd-small bd-span" :x="one.x" :y="one.y"
+            :font-size="11 * px" text-anchor="middle">{{ one.label }}</text>
+      <rect v-for="(end, i) in scene.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
+            :width="10 * px" :height="10 * px" />
+      <circle v-if="chosen" class="bd-handle bd-size" :cx="chosen.x + 0.7071 * chosen.r" :cy="chosen.y + 0.7071 * chosen.r"
+              :r="6 * px" @pointerdown.stop="down($event, { kind: 'size', number: chosen.number, from: null })">
+        <title>drag to size</title>
+      </circle>
+      <text v-if="pulleys.length === 0" class="bd-hint" :x="view.x + view.w / 2" :y="view.y + view.h / 2" :font-size="16 * px"
+            text-anchor="middle">Double-click to place a pulley</text>
+    </svg>`,
+  props: { scene: Object, selected: Number },
+  data: () => ({
+    view: { x: -250, y: -150, w: 500, h: 300 },
+    size: { w: 800, h: 450 },
+    drag: null, // what is dragged, and where it is
+    waiting: false, // Python has been asked, and has not answered yet
+    fitted: true,
+  }),
+  computed: {
+    px() {
+      return Math.max(this.view.w / this.size.w, this.view.h / this.size.h);
+    },
+    viewBox() {
+      return [this.view.x, this.view.y, this.view.w, this.view.h].join(" ");
+    },
+    pulleys() {
+      return (this.scene.pulleys || []).map((one) => {
+        if (!this.drag || this.drag.number !== one.number || !this.drag.to) return one;
+        if (this.drag.kind === "move") return { ...one, x: this.drag.to[0], y: this.drag.to[1] };
+        if (this.drag.kind === "size") return { ...one, r: this.drag.radius };
+        return one;
+      });
+    },
+    chosen() {
+      return this.pulleys.find((one) => one.number === this.selected);
+    },
+    snap() {
+      return 10 ** Math.ceil(Math.log10(this.px));
+    },
+    grid() {
+      const step = niceStep(50 * this.px);
+      const lines = [];
+      for (let x = Math.ceil(this.view.x / step) * step; x < this.view.x + this.view.w; x += step)
+        lines.push(`M${x} ${this.view.y}v${this.view.h}`);
+      for (let y = Math.ceil(this.view.y / step) * step; y < this.view.y + this.view.h; y += step)
+        lines.push(`M${this.view.x} ${y}h${this.view.w}`);
+      return lines.join("");
+    },
+    axes() {
+      return `M0 ${this.view.y}v${this.view.h}M${this.view.x} 0h${this.view.w}`;
+    },
+  },
+  watch: {
+    scene() {
+      this.waiting = false;
+      if (this.fitted && !this.drag && !this.fits()) this.fit();
+      this.ask();
+    },
+  },
+  mounted() {
+    this.observer = new ResizeObserver(() => {
+      const box = this.$refs.svg.getBoundingClientRect();
+      if (box.width > 0 && box.height > 0) this.size = { w: box.width, h: box.height };
+      this.fit();
+    });
+    this.observer.observe(this.$refs.svg);
+    this.fit();
+  },
+  unmounted() {
+    this.observer.disconnect();
+  },
+  methods: {
+    fit() {
+      const [left, top, right, bottom] = this.scene.extent || [-250, -150, 250, 150];
+      const aspect = this.size.w / this.size.h;
+      const width = Math.max(right - left, (bottom - top) * aspect) * 1.25;
+      const height = width / aspect;
+      this.view = { x: (left + right - width) / 2, y: (top + bottom - height) / 2, w: width, h: height };
+      this.fitted = true;
+    },
+    fits() {
+      const [left, top, right, bottom] = this.scene.extent;
+      const { x, y, w, h } = this.view;
+      const inside = left >= x && top >= y && right <= x + w && bottom <= y + h;
+      return inside && Math.max((right - left) / w, (bottom - top) / h) > 0.5;
+    },
+    world(event) {
+      const svg = this.$refs.svg;
+      const point = new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse());
+      return [point.x, point.y];
+    },
+    snapped(point) {
+      return point.map((one) => Math.round(one / this.snap) * this.snap);
+    },
+    at(kind, one) {
+      const dragged = this.drag && this.drag.kind === kind && this.drag.number === one.number && this.drag.to;
+      return dragged ? this.drag.to : one[kind];
+    },
+    tip(one) {
+      if (this.drag && this.drag.kind === "direction" && this.drag.number === one.number && this.drag.to) return this.drag.to;
+      const carried = this.pulleys.find((each) => Math.abs(each.x - one.x) < 1e-6 && Math.abs(each.y - one.y) < 1e-6);
+      const far = (carried ? carried.r : 0) + 30 * this.px;
+      return [one.x + far * one.direction[0], one.y + far * one.direction[1]];
+    },
+    arrow(one) {
+      const [x, y] = this.tip(one);
+      return `M${one.x} ${one.y}L${x} ${y}`;
+    },
+    cross(one) {
+      const a = Math.min(0.15 * one.r, 6 * this.px);
+      return `M${one.x - a} ${one.y}h${2 * a}M${one.x} ${one.y - a}v${2 * a}`;
+    },
+    spoken(one) {
+      const side = one.outside ? "on the back of the belt" : "on the inside of the belt";
+      const wrap = one.wrap ? `, wrapped by ${one.wrap}` : "";
+      return `${one.name}, radius ${one.r.toFixed(1)} mm, ${side}${wrap}. Arrow keys move, plus and minus size, B turns it to the other side, Delete removes.`;
+    },
+    choose(number) {
+      if (number !== this.selected) this.$emit("choose", { number });
+    },
+    down(event, what) {
+      if (event.button !== 0) return;
+      this.$refs.svg.setPointerCapture(event.pointerId);
+      const start = this.world(event);
+      if (what === null) {
+        this.drag = { kind: "pan", start: [event.clientX, event.clientY], view: { ...this.view }, moved: false };
+        return;
+      }
+      if (what.kind === "move") this.choose(what.number);
+      const offset = what.from ? [what.from[0] - start[0], what.from[1] - start[1]] : [0, 0];
+      this.drag = { ...what, start, offset, to: null, radius: 0, moved: false };
+      if (what.kind === "move" && event.currentTarget.focus) event.currentTarget.focus({ preventScroll: true });
+    },
+    moved(event) {
+      const drag = this.drag;
+      if (!drag) return;
+      if (drag.kind === "pan") {
+        const [dx, dy] = [event.clientX - drag.start[0], event.clientY - drag.start[1]];
+        if (Math.hypot(dx, dy) < 4) return;
+        drag.moved = true;
+        this.fitted = false;
+        this.view = { ...drag.view, x: drag.view.x - dx * this.px, y: drag.view.y - dy * this.px };
+        return;
+      }
+      const here = this.world(event);
+      if (!drag.moved && Math.hypot(here[0] - drag.start[0], here[1] - drag.start[1]) < 3 * this.px) return;
+      drag.moved = true;
+      drag.to = this.snapped([here[0] + drag.offset[0], here[1] + drag.offset[1]]);
+      if (drag.kind === "size") {
+        const one = this.scene.pulleys.find((each) => each.number === drag.number);
+        const away = Math.hypot(here[0] - one.x, here[1] - one.y);
+        drag.radius = Math.max(Math.round(away / this.snap) * this.snap, this.snap);
+      }
+      drag.pending = true;
+      this.ask();
+    },
+    ask() {
+      if (!this.drag || !this.drag.pending || this.waiting) return;
+      this.drag.pending = false;
+      this.waiting = true;
+      setTimeout(() => (this.waiting = false), 400);
+      this.tell(false);
+    },
+    up() {
+      const drag = this.drag;
+      if (!drag) return;
+      if (drag.kind !== "pan" && drag.moved) this.tell(true);
+      if (drag.kind === "pan" && !drag.moved) this.$emit("choose", { number: null });
+      if (drag.kind === "pan" || !drag.moved) this.drag = null;
+      else setTimeout(() => (this.drag = null), 150); // Python's answer comes within this time, and nothing jumps back
+    },
+    tell(done) {
+      const { kind, number, to, radius } = this.drag;
+      this.$emit("act", { action: kind, number, x: to[0] / 1000, y: -to[1] / 1000, radius: radius / 1000, done });
+    },
+    act(action, number, more = {}) {
+      this.$emit("act", { action, number, done: true, ...more });
+    },
+    add(event) {
+      if (event.target.closest(".bd-pulley, .bd-handle")) return;
+      const [x, y] = this.snapped(this.world(event));
+      this.act("add", null, { x: x / 1000, y: -y / 1000 });
+    },
+    step(event) {
+      const far = this.snap * (event.shiftKey ? 10 : 1);
+      return { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, -far], ArrowDown: [0, far] }[event.key];
+    },
+    key(event, one) {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const step = this.step(event);
+      const size = { "+": 1, "=": 1, "-": -1 }[event.key];
+      if (step) this.act("move", one.number, { x: (one.x + step[0]) / 1000, y: -(one.y + step[1]) / 1000 });
+      else if (size) this.act("size", one.number, { radius: Math.max(one.r + size * this.snap, this.snap) / 1000 });
+      else if (event.key === "b" || event.key === "B") this.act("flip", one.number);
+      else if (event.key === "Delete" || event.key === "Backspace") this.act("remove", one.number);
+      else return;
+      event.preventDefault();
+    },
+    pivotKey(event, one) {
+      const step = this.step(event);
+      if (!step) return;
+      this.act("pivot", one.number, { x: (one.pivot[0] + step[0]) / 1000, y: -(one.pivot[1] + step[1]) / 1000 });
+      event.preventDefault();
+    },
+    wheel(event) {
+      const factor = 1.2 ** Math.sign(event.deltaY);
+      if (this.view.w * factor > 1e6 || this.view.w * factor < 1) return;
+      const [x, y] = this.world(event);
+      this.fitted = false;
+      this.view = {
+        x: x - (x - this.view.x) * factor, y: y - (y - this.view.y) * factor,
+        w: this.view.w * factor, h: this.view.h * factor,
+      };
+    },
+  },
+};

@@ -1,0 +1,42 @@
+"""The canvas in the browser: shows a scene, and tells what is done on it."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from nicegui.element import Element
+from nicegui.events import GenericEventArguments
+
+
+class Canvas(Element, component="canvas.js"):
+    """An SVG on which pulleys are placed, dragged and sized.
+
+    Parameters
+    ----------
+    on_act : callable
+        Is given what is done: an action, the number of a pulley or tensioner, numbers in m, and whether it is done or
+        still going on.
+    on_choose : callable
+        Is given the number of the pulley that is chosen, or None.
+    """
+
+    def __init__(self, on_act: Callable[[Mapping[str, Any]], None], on_choose: Callable[[object], None]) -> None:
+        super().__init__()
+        self._props["scene"] = {}
+        self._props["selected"] = -1
+        self.on("act", lambda event: on_act(_told(event)))
+        self.on("choose", lambda event: on_choose(_told(event).get("number")))
+
+    def show(self, scene: Mapping[str, Any], selected: int | None) -> None:
+        """Show a scene, with a pulley marked."""
+        self._props["scene"] = dict(scene)
+        self._props["selected"] = -1 if selected is None else selected
+        self.update()
+
+    def fit(self) -> None:
+        """Show the whole drive."""
+        self.run_method("fit")
+
+
+def _told(event: GenericEventArguments) -> Mapping[str, Any]:
+    """What the browser sent, if it is a mapping."""
+    return event.args if isinstance(event.args, Mapping) else {}

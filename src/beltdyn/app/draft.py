@@ -1,0 +1,87 @@
+"""What the data of a drive file say: a drive, or what is wrong and where."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from pydantic import ValidationError
+
+from beltdyn.app.document import Location
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.messages import Told, told_apart
+
+_FILES = ("file", "catalogue")
+"""Keys whose values are paths of files that are read."""
+
+
+class Draft(NamedTuple):
+    """A drive file that may be wrong.
+
+    Attributes
+    ----------
+    data : dict
+        What it holds.
+    drive : Drive or None
+        The drive; none where something is wrong.
+    told : list of Told
+        What is wrong, in the words of the command line.
+    """
+
+    data: Mapping[str, Any]
+    drive: Drive | None
+    told: list[Told]
+
+    def told_at(self, location: Location) -> list[str]:
+        """What is wrong with a value, or with a group as a whole."""
+        return [one.sentence for one in self.told if one.location == location]
+
+    def told_below(self, location: Location) -> list[str]:
+        """What is wrong with a value, or with anything in it."""
+        return [one.sentence for one in self.told if one.location[: len(location)] == location]
+
+
+def draft(data: Mapping[str, Any], folder: Path) -> Draft:
+    """Find out what is wrong with a drive file.
+
+    Parameters
+    ----------
+    data : mapping
+        What it holds.
+    folder : Path
+        Where relative paths in it start; files outside are not read.
+
+    Returns
+    -------
+    Draft
+    """
+    outside = [
+        Told(
+            location,
+            f"{'.'.join(map(str, location))} = {value!r} lies outside {folder}, where this page reads files. "
+            "Copy it there.",
+        )
+        for location, value in _paths((), data)
+        if not (folder / value).resolve().is_relative_to(folder.resolve())
+    ]
+    if outside:
+        return Draft(data, None, outside)
+    try:
+        return Draft(data, Drive.model_validate(data, context={"base": folder}), [])
+    except ValidationError as error:
+        return Draft(data, None, told_apart(error, Drive, data))
+    except ModelError as error:
+        return Draft(data, None, [Told((), line) for line in str(error).splitlines()])
+
+
+def _paths(location: Location, value: Any) -> Iterator[tuple[Location, str]]:
+    """Places of paths of files, and the paths."""
+    if isinstance(value, Mapping):
+        for key, one in value.items():
+            if key in _FILES and isinstance(one, str):
+                yield (*location, key), one
+            else:
+                yield from _paths((*location, key), one)
+    elif isinstance(value, list):
+        for place, one in enumerate(value):
+            yield from _paths((*location, place), one)

@@ -1,0 +1,189 @@
+"""A form on the page: a widget for each row, values and messages that follow the drive file."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from nicegui import ui
+from nicegui.elements.mixins.validation_element import ValidationElement
+
+from beltdyn.app.document import Edit, Location
+from beltdyn.app.form_rows import Row, edits_of_entry, edits_of_kind, edits_of_value, rows
+from beltdyn.app.forms import Field, as_value, value_at
+from beltdyn.app.session import Session
+
+_TYPED = ("number", "text", "point", "numbers")
+
+
+class FormView:
+    """The form of a group of the drive file.
+
+    Parameters
+    ----------
+    session : Session
+        The drive.
+    apply : callable
+        Is given the edits of what a user enters.
+    """
+
+    def __init__(self, session: Session, apply: Callable[[list[Edit]], None]) -> None:
+        self._session, self._apply = session, apply
+        self._opened: set[Location] = set()
+        self._rows: list[Row] = []
+        self._widgets: dict[Location, Any] = {}
+        self._location: Location | None = None
+        self._filling = False
+        self._messages = ui.column().classes("w-full gap-0")
+        self._box = ui.column().classes("w-full gap-1")
+
+    def show(self, location: Location | None) -> None:
+        """Show the group at a location, with values and messages as they stand; nothing with None."""
+        data = self._session.document.data
+        found = [] if location is None else list(rows(data, location, self._opened))
+        same = location == self._location and [one.shape for one in found] == [one.shape for one in self._rows]
+        self._location, self._rows, self._filling = location, found, True
+        try:
+            if not same:
+                self._build()
+            self._fill()
+        finally:
+            self._filling = False
+
+    def _build(self) -> None:
+        self._box.clear()
+        self._widgets = {}
+        with self._box:
+            for row in self._rows:
+                holder = ui.element("div").classes("bd-field").style(f"padding-left: {14 * row.depth}px")
+                with holder:
+                    getattr(self, f"_build_{row.what}")(row)
+
+    def _fill(self) -> None:
+        """Bring values and messages up to date, and keep the widgets: whoever types goes on typing."""
+        draft = self._session.draft
+        for row in self._rows:
+            widget = self._widgets.get(row.location)
+            if widget is None or row.what in ("add", "more"):
+                continue
+            if row.what == "field":
+                assert row.field is not None
+                widget.value = self._shown(row.field)
+                told = draft.told_below(row.location)
+            else:
+                group = value_at(draft.data, row.location)
+                widget.value = _kind_of(group) if row.kinds else group is not None
+                told = draft.told_at(row.location)
+            if isinstance(widget, ValidationElement):
+                widget.error = "\n".join(told) or None
+        self._messages.clear()
+        if self._location is not None:
+            with self._messages:
+                for sentence in draft.told_at(self._location):
+                    ui.label(sentence).classes("bd-message")
+
+    def _shown(self, field: Field) -> Any:
+        if field.form == "flag":
+            return field.value if isinstance(field.value, bool) else field.default == "true"
+        if field.form == "choice":
+            return field.value if field.value in field.choices else None
+        return field.text
+
+    def _build_field(self, row: Row) -> None:
+        field = row.field
+        assert field is not None
+        label = f"{field.key} [{field.unit}]" if field.unit else field.key
+        if field.form == "flag":
+            widget: Any = ui.checkbox(label, on_change=lambda event: self._enter(field, event.value))
+        elif field.form == "choice":
+            shown = self._shown(field)
+            label = f"{label} ({field.default} unless chosen)" if field.default else label
+            widget = ui.select(
+                list(field.choices),
+                label=label,
+                value=shown,
+                clearable=True,
+                with_input=len(field.choices) > 8,
+                on_change=lambda event: self._enter(field, event.value),
+            )
+            widget.props("dense options-dense hide-bottom-space").classes("w-full")
+        else:
+            widget = ui.input(label=label, value=field.text, placeholder=field.default)
+            widget.props('dense stack-label hide-bottom-space autocomplete="off"').classes("w-full")
+            widget.on("change", lambda: self._enter(field, as_value(field.form, widget.value or "")))
+        widget.mark(".".join(map(str, field.location)))
+        with widget:
+            ui.tooltip(field.hint + (f" Default: {field.default}." if field.default else "")).props(
+                "max-width=320px delay=600"
+            )
+        self._widgets[row.location] = widget
+
+    def _build_group(self, row: Row) -> None:
+        assert row.field is not None
+        if not row.kinds:
+            widget: Any = ui.checkbox(row.field.key, on_change=lambda event: self._give(row.location, event.value))
+        else:
+            widget = self._kinds(row, row.field.key, clearable=True)
+        with widget:
+            ui.tooltip(row.field.hint).props("max-width=320px delay=600")
+        self._widgets[row.location] = widget.mark(".".join(map(str, row.location)))
+
+    def _build_entry(self, row: Row) -> None:
+        *_, key, number = row.location
+        with ui.row().classes("w-full no-wrap items-center gap-1"):
+            if row.kinds:
+                self._widgets[row.location] = self._kinds(row, f"{key} {int(number) + 1}", clearable=False)
+            else:
+                ui.label(f"{key} {int(number) + 1}").classes("grow")
+            button = ui.button(icon="delete", on_click=lambda: self._apply([Edit("remove", row.location)]))
+            button.props(f'flat dense round aria-label="remove {key} {int(number) + 1}"').tooltip("Remove")
+
+    def _kinds(self, row: Row, label: str, clearable: bool) -> Any:
+        def choose(kind: str | None) -> None:
+            if not self._filling:
+                self._apply(edits_of_kind(self._session.document.data, row.location, kind))
+
+        group = value_at(self._session.document.data, row.location)
+        widget = ui.select(
+            list(row.kinds),
+            label=label,
+            value=_kind_of(group) if _kind_of(group) in row.kinds else None,
+            clearable=clearable,
+            on_change=lambda event: choose(event.value),
+        )
+        return widget.props("dense options-dense hide-bottom-space").classes("w-full grow")
+
+    def _build_add(self, row: Row) -> None:
+        def add(kind: str | None = None) -> None:
+            self._apply(edits_of_entry(self._session.document.data, row.location, kind))
+
+        key = str(row.location[-1])
+        button = ui.button(f"add {key}", icon="add").props("flat dense no-caps size=sm").mark(f"add:{key}")
+        if not row.kinds:
+            button.on_click(lambda: add())
+            return
+        with button, ui.menu():
+            for kind in row.kinds:
+                ui.menu_item(kind, on_click=lambda kind=kind: add(kind)).mark(f"add:{key}:{kind}")
+
+    def _build_more(self, row: Row) -> None:
+        def toggle() -> None:
+            self._opened ^= {row.location}
+            self.show(self._location)
+
+        opened = row.location in self._opened
+        button = ui.button(
+            "fewer keys" if opened else "more keys", icon="expand_less" if opened else "expand_more", on_click=toggle
+        )
+        button.props("flat dense no-caps size=sm")
+
+    def _enter(self, field: Field, value: Any) -> None:
+        if not self._filling:
+            self._apply(edits_of_value(self._session.document.data, field.location, value))
+
+    def _give(self, location: Location, given: bool) -> None:
+        if not self._filling and given != (value_at(self._session.document.data, location) is not None):
+            self._apply([Edit("set", location, {})] if given else [Edit("remove", location)])
+
+
+def _kind_of(group: Any) -> str | None:
+    kind = group.get("kind") if isinstance(group, Mapping) else None
+    return kind if isinstance(kind, str) else None

@@ -1,0 +1,236 @@
+"""The forms beside the canvas: the keys of a group of the drive file, from the schema of the model."""
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from typing import Any, Literal, NamedTuple
+
+from beltdyn.app.document import Location
+from beltdyn.app.scene import groups
+from beltdyn.model import Drive, read_catalogue
+from beltdyn.parts.error_location import ErrorLocation
+
+Form = Literal["text", "number", "choice", "flag", "point", "numbers", "group", "groups"]
+
+_NOT_IN_FILES = frozenset({"function"})
+"""Kinds that a drive file cannot hold."""
+_IN_UNIT = re.compile(r", in ((?:rad|m|s|N|Pa|kg|Hz|W)(?:[ *^/\d]+(?:rad|m|s|kg)\^?\d?)*)(?=$|[;,])")
+_NUMERIC = frozenset({"number", "integer"})
+_SHORT_OF: Mapping[str, tuple[str, ...]] = {
+    "belt": ("profile", "ribs", "width", "installed_tension", "length", "nominal_length"),
+    "pulley": ("name", "center", "radius", "side", "speed", "inertia", "torque", "load"),
+    "contact": ("friction",),
+    "simulation": ("duration", "output_interval", "start"),
+    "limits": ("largest_slip", "largest_hub_load", "largest_tension", "least_margin"),
+    "tensioner": ("pulley", "direction", "pivot", "preload", "rate", "mass", "inertia", "stops", "take_up"),
+}
+"""Keys of each group that are shown from the start, in this order; the others are shown where they are given."""
+
+
+class Field(NamedTuple):
+    """A key of a group, as a form shows it.
+
+    Attributes
+    ----------
+    location : tuple
+        Where it stands in the drive file.
+    form : str
+        What is given: a text, a number with or without unit, one of some choices, yes or no, a point, several numbers,
+        a group of keys, or a list of groups.
+    unit : str
+        SI unit of bare numbers; empty without one.
+    hint : str
+        What it means.
+    choices : tuple of str
+        Of a choice; kinds of a group, or of the groups of a list.
+    default : str
+        What holds where it is left open; empty where nothing does, or it is chosen.
+    first : bool
+        Whether it is shown from the start.
+    value : Any
+        What the file gives; None where it is left open.
+    """
+
+    location: Location
+    form: Form
+    unit: str
+    hint: str
+    choices: tuple[str, ...]
+    default: str
+    first: bool
+    value: Any
+
+    @property
+    def key(self) -> str:
+        """Its name in the file."""
+        return str(self.location[-1])
+
+    @property
+    def text(self) -> str:
+        """What the file gives, as it is typed."""
+        return as_text(self.value)
+
+
+def as_text(value: Any) -> str:
+    """Write a value as it is typed into a form; several numbers with commas between."""
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list):
+        return ", ".join(as_text(one) for one in value)
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def as_value(form: Form, text: str) -> Any:
+    """Read what was typed: a number where it is one, and else text, which the model judges; None for nothing."""
+    text = text.strip()
+    if not text:
+        return None
+    if form in ("point", "numbers"):
+        return [_number_or_text(one.strip()) for one in text.strip("[]").split(",") if one.strip()]
+    if form == "flag":
+        return text == "true"
+    return _number_or_text(text) if form == "number" else text
+
+
+def _number_or_text(text: str) -> int | float | str:
+    for read in (int, float):
+        try:
+            return read(text)
+        except ValueError:
+            continue
+    return text
+
+
+def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
+    """List the keys of a group of the drive file, those first that are shown from the start.
+
+    Parameters
+    ----------
+    data : mapping
+        The drive file.
+    location : tuple
+        Where the group stands; empty for the drive itself, of which the keys that are no groups are listed.
+
+    Returns
+    -------
+    list of Field
+    """
+    locations, group = ErrorLocation(Drive, data), value_at(data, location)
+    group = group if isinstance(group, Mapping) else {}
+    tagged = _tagged(locations, data, location)
+    schema = locations.locate(tagged)[1]
+    required = schema.get("required") or []
+    short = _SHORT_OF.get(_group_name(location), ())
+    of_values = _unit(str(locations.locate(_tagged(locations, data, location[:-1]) + location[-1:])[1]["description"]))
+    found = []
+    for key in schema.get("properties", {}):
+        own = locations.locate((*tagged, key))[1]
+        if key == "kind" or (not location and _form(own) in ("group", "groups")):
+            continue
+        first = key in short or key in required or key in group or not short
+        given_unit = of_values if key in ("value", "values") else ""
+        found.append(_field(data, (*location, key), own, first, given_unit))
+    order = {key: place for place, key in enumerate(short)}
+    return sorted(found, key=lambda one: (not one.first, order.get(one.key, len(order))))
+
+
+def kinds(data: Mapping[str, Any], location: Location) -> tuple[str, ...]:
+    """Kinds of what may stand at a location; none where there are no kinds."""
+    locations = ErrorLocation(Drive, data)
+    parent = _tagged(locations, data, location[:-1])
+    return _kinds(locations.locate((*parent, location[-1]))[1])
+
+
+def value_at(data: Any, location: Location) -> Any:
+    """What stands at a location; None where nothing does."""
+    for step in location:
+        try:
+            data = data[step]
+        except (LookupError, TypeError):
+            return None
+    return data
+
+
+def _tagged(locations: ErrorLocation, data: Mapping[str, Any], location: Location) -> Location:
+    """The location as errors have it: with the kind behind each group that has one."""
+    tagged: Location = ()
+    for depth, step in enumerate(location, 1):
+        tagged = (*tagged, step)
+        known = locations.kinds(tagged)
+        group = value_at(data, location[:depth])
+        if known and isinstance(group, Mapping) and group.get("kind") in known:
+            tagged = (*tagged, str(group["kind"]))
+    return tagged
+
+
+def _group_name(location: Location) -> str:
+    """The name of a group that stands in the drive itself."""
+    return str(location[0]) if 1 <= len(location) <= 2 and all(isinstance(one, int) for one in location[1:]) else ""
+
+
+def _field(
+    data: Mapping[str, Any], location: Location, schema: Mapping[str, Any], first: bool, given_unit: str
+) -> Field:
+    hint, form = str(schema.get("description", "")), _form(schema)
+    choices = tuple(schema.get("enum", ())) or _kinds(schema if form != "groups" else _entries(schema))
+    if location == ("belt", "profile"):
+        form, choices = "choice", _profiles()
+    elif location[-1] == "pulley" and location[0] == "tensioner":
+        form, choices = "choice", tuple(str(one.get("name")) for one in groups(data, "pulley"))
+    default = "" if form in ("group", "groups") else as_text(schema.get("default"))
+    numeric = form in ("number", "point", "numbers")
+    hint = hint if form in ("group", "groups") else hint[:1].upper() + hint[1:]
+    return Field(
+        location,
+        form,
+        _unit(hint) or given_unit if numeric else "",
+        hint,
+        choices,
+        default,
+        first,
+        value_at(data, location),
+    )
+
+
+def _unit(description: str) -> str:
+    """The unit that a description ends with; empty without one."""
+    found = _IN_UNIT.search(description)
+    return found[1] if found else ""
+
+
+def _form(schema: Mapping[str, Any]) -> Form:
+    if "enum" in schema:
+        return "choice"
+    if "discriminator" in schema or "properties" in schema:
+        return "group"
+    if "prefixItems" in schema:
+        return "point"
+    options = [schema, *schema.get("anyOf", ())]
+    for option in options:
+        if option.get("type") == "array":
+            entries = option.get("items", {})
+            return "groups" if {"$ref", "discriminator", "properties"} & set(entries) else "numbers"
+    types = {option.get("type") for option in options}
+    if types & _NUMERIC:
+        return "number"
+    return "flag" if "boolean" in types else "text"
+
+
+def _entries(schema: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The schema of the entries of a list."""
+    for option in (schema, *schema.get("anyOf", ())):
+        if option.get("type") == "array":
+            entries: Mapping[str, Any] = option.get("items", {})
+            return entries
+    return {}
+
+
+def _kinds(schema: Mapping[str, Any]) -> tuple[str, ...]:
+    return tuple(kind for kind in schema.get("discriminator", {}).get("mapping", {}) if kind not in _NOT_IN_FILES)
+
+
+@cache
+def _profiles() -> tuple[str, ...]:
+    return tuple(read_catalogue())

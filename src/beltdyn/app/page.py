@@ -1,0 +1,248 @@
+"""The page: canvas, forms, messages and numbers of one tab."""
+
+from collections.abc import Callable, Mapping
+from importlib.resources import files
+from typing import Any
+
+from nicegui import app, ui
+from nicegui.events import KeyEventArguments
+
+from beltdyn.app.canvas import Canvas
+from beltdyn.app.document import Edit
+from beltdyn.app.file_menu import FileMenu
+from beltdyn.app.form_view import FormView
+from beltdyn.app.numbers_view import NumbersView
+from beltdyn.app.scene import groups, scene
+from beltdyn.app.session import Session
+from beltdyn.app.workspace import Workspace
+from beltdyn.errors import BeltdynError
+
+_TABS = ("drive", "belt", "pulley", "tensioner", "contact", "simulation", "limits")
+_LISTS = ("pulley", "tensioner")
+_TENSIONER_KINDS = ("rotary", "sliding", "fixed")
+
+
+class Page:
+    """The page of one tab.
+
+    Parameters
+    ----------
+    workspace : Workspace
+        What all tabs share.
+    session : Session, optional
+        The drive of the tab; by default a new one.
+    """
+
+    def __init__(self, workspace: Workspace) -> None:
+        self.session = Session(workspace)
+        self._tab = "belt"
+        self._tensioner = 0
+
+    async def build(self) -> None:
+        """Make the page, with the drive that the tab had before it was loaded again."""
+        ui.add_css(files("beltdyn.app").joinpath("page.css").read_text(encoding="utf-8"))
+        await ui.context.client.connected()
+        kept = app.storage.tab.get("session")
+        if isinstance(kept, Session):
+            self.session = kept
+        else:
+            self._begin()
+        app.storage.tab["session"] = self.session
+        self._build()
+        self.update()
+
+    def _begin(self) -> None:
+        first = self.session.workspace.first
+        if first is not None:
+            try:
+                self.session.open(first)
+            except BeltdynError as error:
+                ui.notify(str(error), type="negative", multi_line=True, timeout=0, close_button="Close")
+
+    def _build(self) -> None:
+        self._dark = ui.dark_mode(None)
+        with ui.header().classes("items-center q-py-xs gap-1 no-wrap").props("elevated=false"):
+            ui.label("beltdyn").classes("text-weight-bold q-mr-sm")
+            self._title = ui.label().classes("ellipsis grow").mark("title")
+            self._undo = self._icon("undo", "Undo (Ctrl+Z)", self.undo)
+            self._redo = self._icon("redo", "Redo (Ctrl+Y)", self.redo)
+            self._files = FileMenu(self.session, self.update)
+            self._icon("contrast", "Light or dark", self._turn_dark)
+        with ui.element("main").classes("bd-main"):
+            with ui.element("div").classes("bd-left"):
+                self._build_toolbar()
+                self._canvas = Canvas(self.act, self.choose)
+                self._messages = ui.column().classes("w-full gap-0").props('role="status" aria-live="polite"')
+                self._numbers = NumbersView(self.session)
+            with ui.element("div").classes("bd-right"):
+                self._build_forms()
+        ui.keyboard(on_key=self._key, ignore=[])
+
+    def _icon(self, icon: str, says: str, on_click: Callable[[], None]) -> Any:
+        button = ui.button(icon=icon, on_click=on_click).props(f'flat dense round color=white aria-label="{says}"')
+        return button.tooltip(says).mark(icon)
+
+    def _build_toolbar(self) -> None:
+        def tool(text: str, icon: str, on_click: Callable[[], None]) -> Any:
+            return ui.button(text, icon=icon, on_click=on_click).props("flat dense no-caps size=sm").mark(text)
+
+        with ui.row().classes("w-full items-center gap-1"):
+            tool("Add pulley", "add_circle_outline", self.add_pulley)
+            self._of_pulley = [
+                tool("Other side", "flip", lambda: self._on_chosen("flip")),
+                tool("Earlier", "arrow_back", lambda: self._on_chosen("earlier")),
+                tool("Later", "arrow_forward", lambda: self._on_chosen("later")),
+                tool("Remove", "delete_outline", lambda: self._on_chosen("remove")),
+            ]
+            tool("Fit", "fit_screen", lambda: self._canvas.fit())
+
+    def _build_forms(self) -> None:
+        with ui.tabs(on_change=lambda event: self._open_tab(event.value)) as self._tabs:
+            self._tabs.props("dense no-caps inline-label mobile-arrows outside-arrows").classes("w-full")
+            for name in _TABS:
+                ui.tab(name).mark(f"tab:{name}")
+        self._lists = ui.row().classes("w-full gap-1 q-py-xs")
+        self._form = FormView(self.session, self.apply)
+        self._tabs.value = self._tab
+
+    def update(self) -> None:
+        """Bring everything in line with the drive."""
+        session = self.session
+        self._title.text = session.title
+        self._undo.set_enabled(session.document.can_undo)
+        self._redo.set_enabled(session.document.can_redo)
+        for button in self._of_pulley:
+            button.set_enabled(session.selected is not None)
+        self._canvas.show(scene(session.draft), session.selected)
+        self._update_messages()
+        self._update_forms()
+        self._numbers.update()
+
+    def _update_messages(self) -> None:
+        self._messages.clear()
+        with self._messages:
+            for one in self.session.draft.told:
+                label = ui.label(one.sentence).classes("bd-message cursor-pointer")
+                label.on("click", lambda one=one: self._go_to(one.location))
+        if self.session.document.lost_comments:
+            self.session.document.lost_comments = False
+            ui.notify("The file had to be written anew, without its comments. Undo brings them back.", type="warning")
+
+    def _go_to(self, location: tuple[int | str, ...]) -> None:
+        """Open the form in which an error stands."""
+        if not location or location[0] not in _TABS:
+            return
+        if location[0] == "pulley" and len(location) > 1:
+            self.session.choose(location[1])
+        if location[0] == "tensioner" and len(location) > 1:
+            self._tensioner = int(location[1])
+        self._tabs.value = str(location[0])
+        self.update()
+
+    def _update_forms(self) -> None:
+        self._lists.clear()
+        if self._tab in _LISTS:
+            with self._lists:
+                (self._list_pulleys if self._tab == "pulley" else self._list_tensioners)()
+        self._form.show(self._location())
+
+    def _location(self) -> tuple[int | str, ...] | None:
+        """Where the group of the form stands."""
+        if self._tab == "drive":
+            return ()
+        if self._tab == "pulley":
+            return None if self.session.selected is None else ("pulley", self.session.selected)
+        if self._tab == "tensioner":
+            count = len(groups(self.session.document.data, "tensioner"))
+            self._tensioner = min(self._tensioner, count - 1) if count else 0
+            return ("tensioner", self._tensioner) if count else None
+        return (self._tab,)
+
+    def _list_pulleys(self) -> None:
+        for number, one in enumerate(groups(self.session.document.data, "pulley")):
+            chosen = number == self.session.selected
+            button = ui.button(str(one.get("name", number + 1)), on_click=lambda number=number: self.choose(number))
+            button.props(f"dense no-caps size=sm {'' if chosen else 'outline'}")
+        if self.session.selected is None:
+            ui.label("Choose a pulley, here or on the canvas.").classes("text-caption")
+
+    def _list_tensioners(self) -> None:
+        listed = groups(self.session.document.data, "tensioner")
+        for number, one in enumerate(listed):
+            name = f"{one.get('kind', '?')}: {one.get('pulley', '?')}"
+            button = ui.button(name, on_click=lambda number=number: self._choose_tensioner(number))
+            button.props(f"dense no-caps size=sm {'' if number == self._tensioner else 'outline'}")
+        with ui.button("add tensioner", icon="add").props("flat dense no-caps size=sm"), ui.menu():
+            for kind in _TENSIONER_KINDS:
+                ui.menu_item(kind, on_click=lambda kind=kind: self.add_tensioner(kind)).mark(f"add:tensioner:{kind}")
+        if listed:
+            button = ui.button("remove", icon="delete_outline", on_click=self._remove_tensioner)
+            button.props("flat dense no-caps size=sm").mark("remove:tensioner")
+
+    def _choose_tensioner(self, number: int) -> None:
+        self._tensioner = number
+        self.update()
+
+    def add_tensioner(self, kind: str) -> None:
+        """Add a tensioner that carries the chosen pulley."""
+        self._tensioner = len(groups(self.session.document.data, "tensioner"))
+        self.apply(self.session.new_tensioner(kind))
+
+    def _remove_tensioner(self) -> None:
+        self.apply([Edit("remove", ("tensioner", self._tensioner))])
+
+    def _open_tab(self, name: str) -> None:
+        self._tab = name
+        self._update_forms()
+
+    def apply(self, edits: list[Edit]) -> None:
+        """Change the drive file, and show what follows."""
+        self.session.apply(edits)
+        self.update()
+
+    def act(self, told: Mapping[str, Any]) -> None:
+        """Do what was done on the canvas; while a drag goes on only show what would follow."""
+        edits = self.session.edits_of(told.get("action"), told)
+        if told.get("done"):
+            self.apply(edits)
+        else:
+            self._canvas.show(scene(self.session.preview(edits)), self.session.selected)
+
+    def choose(self, number: object) -> None:
+        """Choose a pulley, and open its form."""
+        self.session.choose(number)
+        if self.session.selected is not None:
+            self._tabs.value = "pulley"
+        self.update()
+
+    def add_pulley(self) -> None:
+        """Add a pulley beside those that are there."""
+        left, _, right, bottom = scene(self.session.draft)["extent"]
+        count = len(groups(self.session.document.data, "pulley"))
+        x = (right + 0.35 * (right - left) if count else (left + right) / 2) / 1e3
+        middle = 0.0 if not count else -bottom / 1e3 + 0.1
+        self.act({"action": "add", "x": round(x, 3), "y": round(middle, 3), "done": True})
+
+    def _on_chosen(self, action: str) -> None:
+        self.act({"action": action, "number": self.session.selected, "done": True})
+
+    def undo(self) -> None:
+        """Take the last change back."""
+        self.session.undo()
+        self.update()
+
+    def redo(self) -> None:
+        """Make the change again that was taken back."""
+        self.session.redo()
+        self.update()
+
+    def _key(self, event: KeyEventArguments) -> None:
+        if not event.action.keydown or not (event.modifiers.ctrl or event.modifiers.meta):
+            return
+        if event.key == "z" and not event.modifiers.shift:
+            self.undo()
+        elif event.key in ("y", "Z", "z"):
+            self.redo()
+
+    def _turn_dark(self) -> None:
+        self._dark.value = not self._dark.value

@@ -1,0 +1,188 @@
+"""What is done on the canvas, as edits of the drive file: place, move, size, put on the back, add and remove."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from beltdyn.app.document import Edit
+from beltdyn.app.draft import Draft
+from beltdyn.app.scene import Circle, circles, groups, sketched
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.quantity import written_like
+
+_FIRST_RADIUS = 0.05
+_SMALLEST_RADIUS = 0.005
+_LARGEST_SHARE = 0.45
+"""Largest radius of a new pulley, over the distance of its center from other pulleys' surfaces."""
+_DISK = 0.02 * 2700.0
+"""Mass of a square metre of an aluminium disk 20 mm thick, kg: what a new pulley is taken for."""
+_ARM = 2.5
+"""Length of the arm of a new tensioner, over the radius of its pulley."""
+_TENSION = 300.0
+"""Tension for which a new tensioner's spring is chosen where the file asks for none, N."""
+_DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"}
+
+
+def move(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
+    """Put the center of a pulley to a place, m."""
+    return _point(data, ("pulley", number, "center"), groups(data, "pulley")[number].get("center"), x, y)
+
+
+def move_pivot(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
+    """Put the pivot of a tensioner to a place, m."""
+    return _point(data, ("tensioner", number, "pivot"), groups(data, "tensioner")[number].get("pivot"), x, y)
+
+
+def turn_direction(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
+    """Let a tensioner slide towards a place, m."""
+    one = groups(data, "tensioner")[number]
+    carried = next((each for each in circles(data) if each.name == one.get("pulley")), None)
+    if carried is None:
+        return []
+    away, up = x - carried.x, y - carried.y
+    size = math.hypot(away, up)
+    return (
+        [Edit("set", ("tensioner", number, "direction"), [round(away / size, 4), round(up / size, 4)])] if size else []
+    )
+
+
+def _point(data: Mapping[str, Any], location: tuple[int | str, ...], given: object, x: float, y: float) -> list[Edit]:
+    before = given if isinstance(given, list) and len(given) == 2 else [0.0, 0.0]
+    return [Edit("set", location, [written_like(new, old, "m") for new, old in zip((x, y), before, strict=True)])]
+
+
+def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
+    """Give a pulley a radius, m, or the diameter where it is given by that."""
+    one, radius = groups(data, "pulley")[number], max(radius, _SMALLEST_RADIUS / 10)
+    if "diameter" in one and "radius" not in one:
+        return [Edit("set", ("pulley", number, "diameter"), written_like(2 * radius, one["diameter"], "m"))]
+    return [Edit("set", ("pulley", number, "radius"), written_like(radius, one.get("radius"), "m"))]
+
+
+def flip(data: Mapping[str, Any], number: int) -> list[Edit]:
+    """Put a pulley on the other side of the belt."""
+    if groups(data, "pulley")[number].get("side") == "outside":
+        return [Edit("remove", ("pulley", number, "side"))]
+    return [Edit("set", ("pulley", number, "side"), "outside")]
+
+
+def remove(data: Mapping[str, Any], number: int) -> list[Edit]:
+    """Take a pulley away, and the tensioners that carry it."""
+    name = groups(data, "pulley")[number].get("name")
+    carriers = [place for place, one in enumerate(groups(data, "tensioner")) if one.get("pulley") == name]
+    return [Edit("remove", ("pulley", number)), *(Edit("remove", ("tensioner", place)) for place in carriers[::-1])]
+
+
+def rename(data: Mapping[str, Any], number: int, name: str) -> list[Edit]:
+    """Give a pulley another name, and tell the tensioners that carry it."""
+    before = groups(data, "pulley")[number].get("name")
+    carriers = [place for place, one in enumerate(groups(data, "tensioner")) if one.get("pulley") == before]
+    edits = [Edit("set", ("pulley", number, "name"), name)]
+    return [*edits, *(Edit("set", ("tensioner", place, "pulley"), name) for place in carriers)]
+
+
+def shift(data: Mapping[str, Any], number: int, places: int) -> list[Edit]:
+    """Let the belt meet a pulley earlier or later, around the list."""
+    pulleys = groups(data, "pulley")
+    target = (number + places) % len(pulleys)
+    return [Edit("remove", ("pulley", number)), Edit("insert", ("pulley", target), dict(pulleys[number]))]
+
+
+def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit]:
+    """Let a tensioner of a kind carry a pulley: it presses the belt the way that lengthens the path.
+
+    Its spring is such that the belt has the installed tension of the file, or 300 N, with the pulley where it stands.
+    """
+    path, pulley = sketched(found := circles(draft.data)), groups(draft.data, "pulley")[number]
+    one = next((each for each in found if each.number == number), None)
+    if one is None:
+        return []
+    gradient = (0.0, 1.0)
+    if path is not None and len(found) == len(groups(draft.data, "pulley")):
+        along = path.gradient(number)
+        gradient = (float(along[0]), float(along[1]))
+    leverage = math.hypot(*gradient) or 1.0
+    direction = [round(each / leverage, 4) for each in gradient]
+    tension = draft.drive.belt.installed_tension or _TENSION if draft.drive is not None else _TENSION
+    made: dict[str, Any] = {"kind": kind, "pulley": str(pulley.get("name", ""))}
+    if kind == "fixed":
+        made |= {"direction": direction}
+    elif kind == "sliding":
+        made |= {"direction": direction, "preload": f"{tension * leverage:.3g} N"}
+    else:
+        arm = _ARM * one.radius
+        pivot = [one.x - arm * direction[1], one.y + arm * direction[0]]
+        made |= {"pivot": [float(f"{each:.4g}") for each in pivot], "preload": f"{tension * leverage * arm:.3g} N m"}
+    edits = [Edit("insert", ("tensioner", place), made)]
+    if kind != "fixed" and not pulley.get("mass"):
+        edits.append(Edit("set", ("pulley", number, "mass"), float(f"{_DISK * math.pi * one.radius**2:.2g}")))
+    return edits
+
+
+def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
+    """Add a pulley at a place, m, where the belt can meet it: in the nearest span, on the side that it takes.
+
+    The first one is given a speed; the others turn freely, with the inertia of an aluminium disk.
+    """
+    found, pulleys = circles(draft.data), groups(draft.data, "pulley")
+    radius = _radius_at(found, x, y)
+    pulley: dict[str, Any] = {
+        "name": _free_name([str(one.get("name")) for one in pulleys]),
+        "center": [float(f"{x:.6g}"), float(f"{y:.6g}")],
+        "radius": f"{1e3 * radius:g} mm",
+    }
+    if pulleys:
+        pulley["inertia"] = float(f"{_DISK * math.pi / 2 * radius**4:.2g}")
+    else:
+        pulley["speed"] = dict(_DRIVER)
+    for place, side in _places(found, x, y, len(pulleys)):
+        tried = pulley | ({"side": side} if side == "outside" else {})
+        if draft.drive is not None and not _runs(draft.data, place, tried, base):
+            continue
+        return [Edit("insert", ("pulley", place), tried)]
+    return [Edit("insert", ("pulley", len(pulleys)), pulley)]
+
+
+def _runs(data: Mapping[str, Any], place: int, pulley: Mapping[str, Any], base: Any) -> bool:
+    """Whether a belt runs around the pulleys with another one in the list."""
+    pulleys = list(groups(data, "pulley"))
+    pulleys.insert(place, pulley)
+    try:
+        Drive.model_validate({**data, "pulley": pulleys}, context={"base": base})
+    except (ModelError, ValueError):
+        return False
+    return True
+
+
+def _places(found: Sequence[Circle], x: float, y: float, count: int) -> Iterator[tuple[int, str]]:
+    """Places in the list and sides of the belt to try: those of the nearest spans first."""
+    path = sketched(found)
+    if path is None or len(found) != count:
+        yield count, "inside"
+        return
+    starts, ends = path.span_points[:, 0], path.span_points[:, 1]
+    along = ends - starts
+    share = ((x - starts[:, 0]) * along[:, 0] + (y - starts[:, 1]) * along[:, 1]) / (along**2).sum(axis=1).clip(1e-12)
+    nearest = starts + share.clip(0.0, 1.0)[:, None] * along
+    distance = ((nearest - [x, y]) ** 2).sum(axis=1)
+    order = sorted(range(len(distance)), key=lambda span: float(distance[span]))
+    for side in ("inside", "outside"):
+        for span in order:
+            yield span + 1, side
+
+
+def _radius_at(found: Sequence[Circle], x: float, y: float) -> float:
+    """Radius of a new pulley, m: that of the smallest other one, and less where there is no room."""
+    if not found:
+        return _FIRST_RADIUS
+    room = min(math.hypot(x - one.x, y - one.y) - one.radius for one in found)
+    radius = min(min(one.radius for one in found), max(_LARGEST_SHARE * 2 * room, _SMALLEST_RADIUS))
+    return float(f"{radius:.2g}")
+
+
+def _free_name(names: Sequence[str]) -> str:
+    first = ("driver", "driven")
+    if len(names) < len(first) and first[len(names)] not in names:
+        return first[len(names)]
+    return next(name for number in range(len(names) + 1, 10**6) if (name := f"pulley {number}") not in names)

@@ -1,0 +1,206 @@
+"""What the canvas draws: pulleys, the belt's path and tensioners, in millimetres with y down."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from beltdyn.app.draft import Draft
+from beltdyn.model import Drive, Path
+from beltdyn.model.carrier import moved
+from beltdyn.model.picture import outline
+from beltdyn.parts.quantity import to_si
+
+MILLIMETRES = 1e3
+_EMPTY = (-250.0, -150.0, 250.0, 150.0)
+"""What an empty canvas shows, mm."""
+_FEW = 2
+"""Pulleys from which on they alone say how much is shown."""
+_SMALLEST = 60.0
+"""Shorter side of what is shown at least, mm."""
+_SEEN = 0.004
+"""Way of a tensioner from its given place, over the size of the drive, from which on its rest is drawn beside it."""
+
+
+class Circle(NamedTuple):
+    """A pulley as far as the data tell of it: m."""
+
+    number: int
+    name: str
+    x: float
+    y: float
+    radius: float
+    side: str
+
+
+def length_in(value: object) -> float | None:
+    """Read a length or coordinate, m; none where it cannot be read."""
+    try:
+        number = to_si(value, "m") if isinstance(value, str) else float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return number if math.isfinite(number) and abs(number) < MILLIMETRES**2 else None
+
+
+def circles(data: Mapping[str, Any]) -> list[Circle]:
+    """Read the pulleys that have a center and a size, whatever else is wrong."""
+    found = []
+    for number, one in enumerate(groups(data, "pulley")):
+        center, radius = one.get("center"), length_in(one.get("radius"))
+        if radius is None and (diameter := length_in(one.get("diameter"))) is not None:
+            radius = diameter / 2
+        point = (
+            [length_in(each) for each in center] if isinstance(center, list | tuple) and len(center) == 2 else [None]
+        )
+        if radius is None or radius <= 0 or None in point:
+            continue
+        x, y = (float(each or 0.0) for each in point)
+        side = "outside" if one.get("side") == "outside" else "inside"
+        found.append(Circle(number, str(one.get("name", f"pulley {number + 1}")), x, y, radius, side))
+    return found
+
+
+def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
+    """The groups of a list in a drive file; whatever is no group is empty."""
+    found = data.get(key)
+    return [one if isinstance(one, Mapping) else {} for one in found] if isinstance(found, list) else []
+
+
+def scene(draft: Draft) -> dict[str, Any]:
+    """Say what the canvas draws.
+
+    Parameters
+    ----------
+    draft : Draft
+        The drive file.
+
+    Returns
+    -------
+    dict
+        Ready for JSON: lengths in mm, y down.
+    """
+    drive, found = draft.drive, circles(draft.data)
+    complete = len(found) == len(groups(draft.data, "pulley"))
+    path = drive.path if drive is not None else sketched(found) if complete else None
+    rest = _rest(drive) if drive is not None else None
+    centers = {} if drive is None else dict(enumerate(drive.centers.tolist()))
+    pulleys = [_pulley(one, drive, centers.get(one.number, (one.x, one.y)), draft) for one in found]
+    thickness = drive.belt.thickness if drive is not None else 0.0
+    tensioners = _tensioners(draft.data, found)
+    return {
+        "pulleys": pulleys,
+        "valid": drive is not None,
+        "belt": _line(path),
+        "thickness": MILLIMETRES * thickness,
+        "rest": _line(rest),
+        "ghosts": [] if drive is None or rest is None else _ghosts(drive, rest),
+        "spans": [] if drive is None else _spans(drive.path),
+        "tensioners": tensioners,
+        "ends": [] if path is None or path.ends is None else [list(_place(*end)) for end in path.ends.tolist()],
+        "extent": _extent(pulleys, tensioners, path),
+    }
+
+
+def sketched(found: Sequence[Circle]) -> Path | None:
+    """The path around pulleys where it can be drawn, though no belt may run there; without the belt's offsets."""
+    if len(found) < 2:
+        return None
+    radii = np.array([one.radius if one.side == "inside" else -one.radius for one in found])
+    try:
+        path = Path(np.array([(one.x, one.y) for one in found]), radii)
+        return path if np.isfinite(path.span_points).all() else None
+    except ValueError:
+        return None
+
+
+def _rest(drive: Drive) -> Path | None:
+    """The path with tensioners where their springs hold them, if that is to be told apart from the given one."""
+    if not drive.carriers:
+        return None
+    _, positions = drive.balance
+    path = moved(drive.path, drive.carriers, positions)
+    way = float(np.abs(path.centers - drive.path.centers).max())
+    return path if way > _SEEN * float(np.ptp(path.centers, axis=0).max()) else None
+
+
+def _ghosts(drive: Drive, rest: Path) -> list[dict[str, float]]:
+    """Pulleys of tensioners at rest."""
+    places = [(rest.centers[one.pulley].tolist(), drive.pulleys[one.pulley].radius) for one in drive.carriers]
+    return [dict(zip("xyr", (*_place(*center), MILLIMETRES * radius), strict=True)) for center, radius in places]
+
+
+def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Draft) -> dict[str, Any]:
+    x, y = _place(center[0], center[1])
+    pulley = None if drive is None else drive.pulleys[one.number]
+    wrap = None if drive is None else math.degrees(drive.path.wrap_angles[one.number])
+    return {
+        "number": one.number,
+        "name": one.name,
+        "x": x,
+        "y": y,
+        "r": MILLIMETRES * one.radius,
+        "outside": one.side == "outside",
+        "drives": bool(pulley is not None and (pulley.prescribed or pulley.driven_speed() > 0)),
+        "wrap": "" if wrap is None else f"{wrap:.1f}°",
+        "wrong": bool(draft.told_below(("pulley", one.number))),
+    }
+
+
+def _spans(path: Path) -> list[dict[str, Any]]:
+    """Middles and lengths of spans."""
+    middles = path.span_points.mean(axis=1).tolist()
+    spans = zip(middles, path.span_lengths.tolist(), strict=True)
+    return [
+        dict(zip(("x", "y", "label"), (*_place(*middle), f"{_written(length)}"), strict=True))
+        for middle, length in spans
+    ]
+
+
+def _written(length: float) -> str:
+    return f"{MILLIMETRES * length:.1f} mm" if length < 1.0 else f"{length:.3f} m"
+
+
+def _tensioners(data: Mapping[str, Any], found: Sequence[Circle]) -> list[dict[str, Any]]:
+    """Arms from a pivot to the pulley, and directions in which pulleys slide."""
+    by_name, drawn = {one.name: one for one in found}, []
+    for number, one in enumerate(groups(data, "tensioner")):
+        carried = by_name.get(str(one.get("pulley")))
+        if carried is None:
+            continue
+        x, y = _place(carried.x, carried.y)
+        made: dict[str, Any] = {"number": number, "kind": str(one.get("kind", "")), "x": x, "y": y}
+        for key in ("pivot", "direction"):
+            point = one.get(key)
+            if (
+                isinstance(point, list)
+                and len(point) == 2
+                and None not in (read := [length_in(each) for each in point])
+            ):
+                made[key] = list(_place(*(float(each or 0.0) for each in read)))
+        if "direction" in made:
+            size = math.hypot(*made["direction"]) or 1.0
+            made["direction"] = [each / size for each in made["direction"]]
+        drawn.append(made)
+    return drawn
+
+
+def _extent(pulleys: Sequence[dict[str, Any]], tensioners: Sequence[dict[str, Any]], path: Path | None) -> list[float]:
+    """What is to be seen: left, top, right, bottom, mm."""
+    points = [(one["x"] + sign * one["r"], one["y"] + sign * one["r"]) for one in pulleys for sign in (-1, 1)]
+    points += [tuple(one["pivot"]) for one in tensioners if "pivot" in one]
+    if path is not None and path.ends is not None:
+        points += [_place(*end) for end in path.ends.tolist()]
+    if len(pulleys) < _FEW:
+        points += [_EMPTY[:2], _EMPTY[2:]]
+    low, high = np.min(points, axis=0), np.max(points, axis=0)
+    middle, half = (low + high) / 2, np.maximum((high - low) / 2, _SMALLEST / 2)
+    return [*(middle - half).tolist(), *(middle + half).tolist()]
+
+
+def _place(x: float, y: float) -> tuple[float, float]:
+    return MILLIMETRES * x, -MILLIMETRES * y
+
+
+def _line(path: Path | None) -> str:
+    return "" if path is None else outline(path, _place, MILLIMETRES)

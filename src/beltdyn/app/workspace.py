@@ -1,0 +1,59 @@
+"""What all tabs share: the folder, the drive file that a new tab opens, and the examples."""
+
+from importlib.resources import files
+from typing import NamedTuple
+
+from beltdyn.app.folder import Folder
+
+EMPTY = """\
+# A belt drive for beltdyn. Numbers are in SI units (m, kg, s, N, rad); "25 mm" or "720 rpm" work too.
+# Everything turns and counts counter-clockwise positive.
+
+[belt]
+profile = "PK"               # beltdyn catalogue lists the profiles
+ribs = 6
+installed_tension = "300 N"  # at rest; the length follows
+
+[simulation]
+duration = 0.5
+output_interval = "1 ms"
+"""
+"""The drive file to begin with: a belt without pulleys."""
+
+
+class Example(NamedTuple):
+    """A drive of the gallery."""
+
+    name: str
+    about: str
+    text: str
+
+
+class Workspace:
+    """What all tabs share.
+
+    Parameters
+    ----------
+    folder : Folder
+        Where drive files are.
+    first : str, optional
+        Name of the file that a new tab opens.
+    """
+
+    def __init__(self, folder: Folder, first: str | None = None) -> None:
+        self.folder = folder
+        self.first = first
+
+    def close(self) -> None:
+        """End what works for the tabs."""
+
+
+def examples() -> list[Example]:
+    """The drives of the gallery; what each is stands in the first lines of its file."""
+    found = []
+    for file in sorted(files("beltdyn").joinpath("examples").iterdir(), key=lambda one: one.name):
+        if file.name.endswith(".toml"):
+            text = file.read_text(encoding="utf-8")
+            about = " ".join(line.lstrip("# ") for line in text.partition("\n\n")[0].splitlines() if line[:1] == "#")
+            found.append(Example(file.name.removesuffix(".toml"), about.partition(" # ")[0], text))
+    return found

@@ -1,0 +1,28 @@
+"""Drives on the page: a folder with one, and what tabs share."""
+
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from beltdyn.app.folder import Folder
+from beltdyn.app.session import Session
+from beltdyn.app.workspace import Workspace
+
+
+@pytest.fixture(scope="session")
+def alternator_text() -> str:
+    return files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, alternator_text: str) -> Workspace:
+    (tmp_path / "drive.toml").write_text(alternator_text, encoding="utf-8")
+    return Workspace(Folder(tmp_path), "drive.toml")
+
+
+@pytest.fixture
+def session(workspace: Workspace) -> Session:
+    made = Session(workspace)
+    made.open("drive.toml")
+    return made

@@ -1,0 +1,52 @@
+"""What is wrong with a drive file, and where."""
+
+import tomllib
+from pathlib import Path
+
+from beltdyn.app.draft import draft
+
+
+def test_a_right_file_gives_its_drive(alternator_text: str, tmp_path: Path) -> None:
+    found = draft(tomllib.loads(alternator_text), tmp_path)
+    assert found.drive is not None
+    assert found.told == []
+
+
+def test_errors_stand_at_their_keys(alternator_text: str, tmp_path: Path) -> None:
+    data = tomllib.loads(alternator_text)
+    data["pulley"][1]["radius"] = "32 N"
+    data["tensioner"][0]["preloat"] = 3.0
+    found = draft(data, tmp_path)
+    assert found.drive is None
+    assert found.told_at(("pulley", 1, "radius"))[0].startswith(
+        'pulley[tensioner].radius = "32 N" must be in units of m'
+    )
+    assert 'Did you mean "preload"?' in found.told_at(("tensioner", 0, "preloat"))[0]
+    assert len(found.told_below(("pulley",))) == 1
+
+
+def test_files_outside_the_folder_are_not_read(alternator_text: str, tmp_path: Path) -> None:
+    data = tomllib.loads(alternator_text)
+    for path in ("/etc/passwd", "../other.csv", "sub/../../x.csv"):
+        data["pulley"][0]["speed"] = {"kind": "table", "file": path}
+        found = draft(data, tmp_path)
+        assert found.drive is None
+        assert [one.location for one in found.told] == [("pulley", 0, "speed", "file")]
+        assert "lies outside" in found.told[0].sentence
+
+
+def test_a_link_to_elsewhere_is_not_followed(alternator_text: str, tmp_path: Path) -> None:
+    folder = tmp_path / "here"
+    folder.mkdir()
+    (tmp_path / "speed.csv").write_text("0,0\n1,10\n", encoding="utf-8")
+    (folder / "link.csv").symlink_to(tmp_path / "speed.csv")
+    data = tomllib.loads(alternator_text)
+    data["pulley"][0]["speed"] = {"kind": "table", "file": "link.csv"}
+    assert "lies outside" in draft(data, folder).told[0].sentence
+
+
+def test_a_file_in_the_folder_is_read(alternator_text: str, tmp_path: Path) -> None:
+    (tmp_path / "speed.csv").write_text("0,0\n1,10\n", encoding="utf-8")
+    data = tomllib.loads(alternator_text)
+    data["pulley"][0]["speed"] = {"kind": "table", "file": "speed.csv"}
+    assert draft(data, tmp_path).drive is not None

@@ -1,0 +1,204 @@
+"""The page as a user without a browser sees it."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("nicegui")
+
+from nicegui.testing import User, user_simulation
+
+from beltdyn.app.canvas import Canvas
+from beltdyn.app.page import Page
+from beltdyn.app.workspace import Workspace
+
+Journey = Callable[[User], Awaitable[None]]
+
+
+def go(workspace: Workspace, journey: Journey) -> None:
+    """Open the page, and do something there."""
+
+    async def run() -> None:
+        async with user_simulation(root=lambda: Page(workspace).build()) as user:
+            await user.open("/")
+            await user.should_see(kind=Canvas)
+            try:
+                await asyncio.wait_for(journey(user), 20.0)
+            except Exception as error:  # what waits for it would keep the loop from ending
+                failures.append(error.with_traceback(None) if isinstance(error, TimeoutError) else error)
+
+    failures: list[Exception] = []
+    asyncio.run(run())
+    if failures:
+        raise failures[0]
+
+
+def canvas(user: User) -> dict[str, Any]:
+    (one,) = user.find(Canvas).elements
+    return dict(one.props)
+
+
+def act(user: User, **told: Any) -> None:
+    user.find(Canvas).trigger("act", {"done": True, **told})
+
+
+def marked(user: User, marker: str) -> Any:
+    (one,) = user.find(marker=marker).elements
+    return one
+
+
+def enter(user: User, marker: str, text: str) -> None:
+    """Type into a field, and leave it."""
+    with user:
+        marked(user, marker).value = text
+    user.find(marker=marker).trigger("change")
+
+
+def test_the_file_is_shown_with_its_numbers(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        await user.should_see("drive.toml")
+        scene = canvas(user)["scene"]
+        assert [one["name"] for one in scene["pulleys"]] == ["crank", "tensioner", "alternator"]
+        await user.should_see("Pulleys at rest")
+        await user.should_see("crank to tensioner")
+
+    go(workspace, journey)
+
+
+def test_a_drag_is_followed_and_becomes_one_step_of_undo(workspace: Workspace, alternator_text: str) -> None:
+    async def journey(user: User) -> None:
+        before = canvas(user)["scene"]
+        for x in (0.002, 0.005, 0.01):
+            act(user, action="move", number=2, x=x, y=0.27, done=False)
+            assert canvas(user)["scene"]["belt"] != before["belt"]
+        await user.should_not_see("drive.toml *")
+        act(user, action="move", number=2, x=0.01, y=0.27)
+        await user.should_see("drive.toml *")
+        assert canvas(user)["scene"]["pulleys"][2]["x"] == 10.0
+        user.find(marker="undo").click()
+        assert canvas(user)["scene"] == before
+        user.find(marker="redo").click()
+        assert canvas(user)["scene"]["pulleys"][2]["x"] == 10.0
+
+    go(workspace, journey)
+
+
+def test_a_wrong_value_is_told_at_its_field_and_below_the_canvas(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        user.find(Canvas).trigger("choose", {"number": 1})
+        await user.should_see(marker="pulley.1.radius")
+        enter(user, "pulley.1.radius", "32 kg")
+        said = 'pulley[tensioner].radius = "32 kg" must be in units of m, not "kg". Give the radius of the pulley'
+        assert marked(user, "pulley.1.radius").error.startswith(said)
+        await user.should_see(said)
+        assert canvas(user)["scene"]["belt"] == ""
+        enter(user, "pulley.1.radius", "33 mm")
+        assert marked(user, "pulley.1.radius").error is None
+        await user.should_not_see(said)
+        assert canvas(user)["scene"]["pulleys"][1]["r"] == 33.0
+
+    go(workspace, journey)
+
+
+def test_a_drive_is_laid_out_from_an_empty_canvas_and_saved(workspace: Workspace, tmp_path: Path) -> None:
+    async def journey(user: User) -> None:
+        user.find(marker="New").click()
+        await user.should_see("empty canvas")
+        user.find(marker="example:empty_canvas").click()
+        await user.should_see("not saved yet")
+        for x, y in ((-0.1, 0.0), (0.15, 0.0), (0.0, 0.2)):
+            act(user, action="add", x=x, y=y)
+        assert canvas(user)["scene"]["valid"]
+        assert canvas(user)["selected"] == 2
+        await user.should_see("pulley 3")
+        user.find(marker="Save").click()
+        await user.should_see(marker="file name")
+        with user:
+            marked(user, "file name").value = "mine"
+        user.find(marker="save under name").click()
+        await user.should_see("mine.toml")
+        assert "pulley 3" in (tmp_path / "mine.toml").read_text(encoding="utf-8")
+
+    go(workspace, journey)
+
+
+@pytest.mark.parametrize("kind", ["rotary", "sliding", "fixed"])
+def test_tensioners_are_set_up_in_the_form(workspace: Workspace, kind: str) -> None:
+    async def journey(user: User) -> None:
+        user.find(marker="tab:tensioner").click()
+        await user.should_see("rotary: tensioner")
+        user.find(marker="remove:tensioner").click()
+        await user.should_not_see("rotary: tensioner")
+        user.find(Canvas).trigger("choose", {"number": 1})
+        user.find(marker="tab:tensioner").click()
+        user.find(marker=f"add:tensioner:{kind}").click()
+        await user.should_see(f"{kind}: tensioner")
+        await user.should_see(marker=f"tensioner.0.{'direction' if kind != 'rotary' else 'pivot'}")
+        assert canvas(user)["scene"]["tensioners"][0]["kind"] == kind
+        assert canvas(user)["scene"]["valid"]
+
+    go(workspace, journey)
+
+
+def test_a_group_takes_a_kind_and_shows_its_keys(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        user.find(Canvas).trigger("choose", {"number": 0})
+        await user.should_see(marker="pulley.0.speed.start")
+        with user:
+            marked(user, "pulley.0.speed").value = "constant"
+        await user.should_see(marker="pulley.0.speed.value")
+        await user.should_not_see(marker="pulley.0.speed.start")
+        user.find(marker="add:load:fan").click()
+        await user.should_see(marker="pulley.0.load.0.rated_power")
+        assert not canvas(user)["scene"]["valid"]  # a fan has keys that must be given
+
+    go(workspace, journey)
+
+
+def test_a_file_that_cannot_be_opened_is_told(workspace: Workspace, tmp_path: Path) -> None:
+    (tmp_path / "bad.toml").write_text("belt = [", encoding="utf-8")
+
+    async def journey(user: User) -> None:
+        user.find(marker="Open").click()
+        await user.should_see("bad.toml")
+        user.find(marker="file:bad.toml").click()
+        assert "bad.toml is not valid TOML" in user.notify.messages[-1]
+        await user.should_see("drive.toml")
+
+    go(workspace, journey)
+
+
+def test_tabs_do_not_mix(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        other = User(user.http_client)
+        await other.open("/")
+        await other.should_see(kind=Canvas)
+        act(other, action="remove", number=1)
+        assert len(canvas(other)["scene"]["pulleys"]) == 2
+        assert len(canvas(user)["scene"]["pulleys"]) == 3
+        act(user, action="flip", number=0)
+        assert not canvas(other)["scene"]["pulleys"][0]["outside"]
+
+    go(workspace, journey)
+
+
+def test_the_drive_is_still_there_after_the_page_was_loaded_again(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        act(user, action="remove", number=1)
+        await user.open("/")
+        await user.should_see("drive.toml *")
+        assert len(canvas(user)["scene"]["pulleys"]) == 2
+
+    go(workspace, journey)
+
+
+def test_the_drive_file_is_downloaded(workspace: Workspace, alternator_text: str) -> None:
+    async def journey(user: User) -> None:
+        user.find(marker="Download").click()
+        response = await user.download.next()
+        assert response.text == alternator_text
+
+    go(workspace, journey)

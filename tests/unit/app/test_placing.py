@@ -1,0 +1,90 @@
+"""What is done on the canvas, as edits."""
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from beltdyn.app import placing
+from beltdyn.app.document import Document
+from beltdyn.app.draft import Draft, draft
+from beltdyn.app.workspace import EMPTY
+
+HERE = Path()
+
+
+def of(document: Document) -> Draft:
+    return draft(document.data, HERE)
+
+
+def test_values_keep_the_units_of_the_file(alternator_text: str) -> None:
+    document = Document(alternator_text)
+    document.apply(placing.resize(document.data, 0, 0.0765))
+    document.apply(placing.move(document.data, 2, 0.0012, 0.28))
+    assert document.data["pulley"][0]["radius"] == "76.5 mm"
+    assert document.data["pulley"][2]["center"] == [0.0012, 0.28]
+
+
+def test_a_pulley_given_by_its_diameter_keeps_it() -> None:
+    document = Document('[[pulley]]\nname = "a"\ndiameter = "100 mm"\n')
+    document.apply(placing.resize(document.data, 0, 0.04))
+    assert document.data["pulley"][0] == {"name": "a", "diameter": "80 mm"}
+
+
+def test_the_other_side_and_back(alternator_text: str) -> None:
+    document = Document(alternator_text)
+    document.apply(placing.flip(document.data, 0))
+    assert document.data["pulley"][0]["side"] == "outside"
+    document.apply(placing.flip(document.data, 0))
+    assert document.data == tomllib.loads(alternator_text)
+
+
+def test_tensioners_follow_a_name_and_go_with_their_pulley(alternator_text: str) -> None:
+    document = Document(alternator_text)
+    document.apply(placing.rename(document.data, 1, "arm"))
+    assert document.data["tensioner"][0]["pulley"] == "arm"
+    assert of(document).drive is not None
+    document.apply(placing.remove(document.data, 1))
+    assert document.data["tensioner"] == []
+    assert of(document).drive is not None
+
+
+def test_a_pulley_meets_the_belt_later(alternator_text: str) -> None:
+    document = Document(alternator_text)
+    document.apply(placing.shift(document.data, 0, 1))
+    assert [one["name"] for one in document.data["pulley"]] == ["tensioner", "crank", "alternator"]
+    document.apply(placing.shift(document.data, 0, -1))
+    assert [one["name"] for one in document.data["pulley"]] == ["crank", "alternator", "tensioner"]
+
+
+def test_a_drive_is_laid_out_from_nothing() -> None:
+    document = Document(EMPTY)
+    for x, y in ((-0.1, 0.0), (0.15, 0.0), (0.0, 0.2), (0.0, 0.05)):
+        document.apply(placing.add(of(document), x, y))
+    found = of(document)
+    assert found.drive is not None
+    assert [one.name for one in found.drive.pulleys] == ["driver", "pulley 4", "driven", "pulley 3"]
+    assert [one.side for one in found.drive.pulleys] == ["inside", "outside", "inside", "inside"]
+    assert document.text.startswith(EMPTY[:40])
+
+
+@pytest.mark.parametrize("kind", ["rotary", "sliding", "fixed"])
+def test_a_new_tensioner_tensions_the_belt(kind: str) -> None:
+    document = Document(EMPTY)
+    for x, y in ((-0.1, 0.0), (0.15, 0.0), (0.0, 0.2)):
+        document.apply(placing.add(of(document), x, y))
+    document.apply(placing.new_tensioner(of(document), 2, kind, 0))
+    drive = of(document).drive
+    assert drive is not None, of(document).told
+    assert drive.tensioners[0].kind == kind
+    if kind != "fixed":
+        _, positions = drive.balance
+        assert abs(positions[0]) < 0.01  # its spring fits the installed tension where it stands
+
+
+def test_a_new_pulley_finds_room() -> None:
+    document = Document(EMPTY)
+    for x in (-0.1, 0.1, 0.03):
+        document.apply(placing.add(of(document), x, 0.0))
+    _, second, third = (float(str(one["radius"]).removesuffix(" mm")) for one in document.data["pulley"])
+    assert 70.0 - second > third

@@ -1,0 +1,71 @@
+"""What the canvas draws: geometry by hand."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from beltdyn.app.draft import draft
+from beltdyn.app.scene import length_in, scene
+from beltdyn.model import Drive
+
+HERE = Path()
+
+
+def test_two_equal_pulleys_are_drawn_to_scale(drive: Drive) -> None:
+    drawn = scene(draft(drive.data, HERE))
+    first, second = drawn["pulleys"]
+    assert (first["x"], first["y"], first["r"]) == pytest.approx((-191.441, 0.0, 81.25))
+    assert first["wrap"] == second["wrap"] == "180.0°"
+    assert (first["drives"], second["drives"]) == (True, False)
+    assert [one["label"] for one in drawn["spans"]] == ["382.9 mm", "382.9 mm"]
+    assert drawn["belt"].startswith("M -191.44 81.25 L 191.44 81.25 A 81.25 81.25 0 ")
+    assert drawn["extent"] == pytest.approx([-272.691, -81.25, 272.691, 81.25])
+    json.dumps(drawn)
+
+
+def test_an_empty_drive_file_shows_an_empty_canvas() -> None:
+    drawn = scene(draft({}, HERE))
+    assert (drawn["pulleys"], drawn["belt"], drawn["valid"]) == ([], "", False)
+
+
+def test_wrong_pulleys_are_drawn_as_far_as_they_can_be(drive: Drive) -> None:
+    data = drive.data
+    data["pulley"] += [
+        {"name": "no size", "center": [0, 0]},
+        {"center": ["0 mm", "200 mm"], "diameter": "40 mm"},
+        3,
+        {},
+    ]
+    data["contact"]["friction"] = -1.0
+    drawn = scene(draft(data, HERE))
+    assert not drawn["valid"]
+    assert [(one["number"], one["name"]) for one in drawn["pulleys"]][2:] == [(3, "pulley 4")]
+    assert drawn["pulleys"][2]["r"] == pytest.approx(20.0)
+    assert drawn["belt"] == ""
+    assert drawn["pulleys"][2]["wrong"]
+    del data["pulley"][4:], data["pulley"][2]
+    assert scene(draft(data, HERE))["belt"]
+
+
+def test_an_arm_and_its_rest_are_drawn(alternator_text: str) -> None:
+    import tomllib
+
+    data = tomllib.loads(alternator_text)
+    drawn = scene(draft(data, HERE))
+    assert drawn["tensioners"][0]["pivot"] == pytest.approx([100.0, -100.0])
+    assert drawn["ghosts"] == []  # it rests where it is drawn, but for a third of a degree
+    data["tensioner"][0]["preload"] = "12 N m"
+    drawn = scene(draft(data, HERE))
+    (ghost,) = drawn["ghosts"]
+    assert math.hypot(ghost["x"] - 100.0, ghost["y"] + 100.0) == pytest.approx(math.hypot(70.0, 40.0))
+    assert drawn["rest"] != drawn["belt"]
+
+
+@pytest.mark.parametrize(
+    ("value", "length"),
+    [("25 mm", 0.025), (3, 3.0), ("3", None), (None, None), ([], None), (math.inf, None), (1e9, None), ("1 N", None)],
+)
+def test_lengths_are_read_where_they_can_be(value: object, length: float | None) -> None:
+    assert length_in(value) == length
