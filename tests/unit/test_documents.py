@@ -128,12 +128,14 @@ def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) ->
     assert loads(dumps(drive)) == drive
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/tutorial.md"])
+@pytest.mark.parametrize("document", ["README.md", "docs/index.md", "docs/machines.md", "docs/tutorial.md"])
 def test_python_blocks_run_one_after_another(
     document: str, new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("drive.toml").write_text(new_drive, encoding="utf-8")
+    example = files("beltdyn.examples").joinpath("alternator_drive.toml")
+    Path("alternator_drive.toml").write_text(example.read_text(encoding="utf-8"), encoding="utf-8")
     codes, names = blocks(ROOT / document, "python"), dict[str, Any]()
     assert codes
     plt.switch_backend("agg")
@@ -142,6 +144,29 @@ def test_python_blocks_run_one_after_another(
             exec(compile(code, document, "exec"), names)
     finally:
         plt.close("all")
+
+
+@pytest.mark.slow
+def test_the_tutorial_prints_what_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its blocks run with the drive of `beltdyn new` as it is; numbers are compared to 2 %."""
+    monkeypatch.chdir(tmp_path)
+    Path("drive.toml").write_text(files("beltdyn.cli").joinpath("new_drive.toml").read_text("utf-8"), encoding="utf-8")
+    parts = re.split(r"```python\n(.*?)```", TUTORIAL.read_text(encoding="utf-8"), flags=re.DOTALL)
+    names, told = dict[str, Any](), 0
+    plt.switch_backend("agg")
+    for code, text in zip(parts[1::2], parts[2::2], strict=True):
+        exec(compile(code, "tutorial", "exec"), names)
+        printed = capsys.readouterr().out
+        for said in re.findall(r"It prints `(.*?)`", text):
+            told += 1
+            number = r"\d+(?:\.\d+)?"
+            assert re.sub(number, "#", said) in re.sub(number, "#", printed)
+            expected, found = ([float(one) for one in re.findall(number, words)] for words in (said, printed))
+            assert found == pytest.approx(expected, rel=0.02)
+    plt.close("all")
+    assert told == 3
 
 
 def test_python_of_the_results_page_runs(new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -96,7 +96,8 @@ def _tension(drive: Drive, installation: Installation) -> list[Finding]:
             Finding(
                 f"the contact of belt and pulleys is so soft that it takes {lost:.1%} of the belt's tension, more than "
                 f"{_MOST_TENSION_LOST:.0%}.",
-                f"Tensions and hub loads are those of {tension:.4g} N, in place of {laid:.4g} N on hard pulleys.",
+                f"Tensions and hub loads are lower by as much: by hand {tension:.4g} N, not {laid:.4g} N as on hard "
+                "pulleys.",
                 f"Raise {_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}.",
             )
         ]
