@@ -19,7 +19,6 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Pulley
 from beltdyn.model.hysteresis import compression_losses
 from beltdyn.results import summarize
-from beltdyn.results.derived import capstan_margins
 from beltdyn.theory.capstan import capstan_ratio
 from beltdyn.theory.elastic_creep import gross_slip_tensions, speed_loss
 from beltdyn.theory.hysteresis import bending_loss
@@ -182,13 +181,13 @@ def slip_on_a_small_pulley(run: Run, _: Path) -> Iterator[str]:
     yield f"slip at full speed: {creep(run):.2%} by hand, {summarize(run).pulleys[1].slip:.2%} in the run"
     rolls = float(run.drive.rolling_radii[0] / run.drive.radii[0] - 1.0)
     yield f"what bending adds to the radius of the motor: {rolls:.2%}"
-    for elements, depth in ((200, 50e-6), (400, 50e-6)):
-        made = simulate(under_load(run.drive, elements, depth))
+    for elements in (None, 2 * run.drive.elements):
+        made = simulate(under_load(run.drive, elements))
         slip = summarize(made).pulleys[1].slip
-        yield f"{elements} elements, {1e6 * depth:.0f} um: slip {creep(made):.2%} by hand, {slip:.2%} in the run"
+        yield f"{made.drive.elements} elements: slip {creep(made):.2%} by hand, {slip:.2%} in the run"
 
 
-def under_load(drive: Drive, elements: int, depth: float) -> Drive:
+def under_load(drive: Drive, elements: int | None) -> Drive:
     """The washing machine at a prescribed 600 rad/s of the motor, with 6 N m on a light drum."""
     motor, drum = drive.pulleys
     ramp = {"kind": "cosine_ramp", "start": 0.01, "end": 0.06, "value": 600.0}
@@ -197,7 +196,6 @@ def under_load(drive: Drive, elements: int, depth: float) -> Drive:
     return drive.replace(
         pulley=[driver, driven],
         belt=drive.belt.replace(elements=elements),
-        contact=drive.contact.replace(allowed_penetration=depth),
         simulation=drive.simulation.replace(duration=0.4),
     )
 
@@ -280,8 +278,8 @@ def slip_through(run: Run) -> Iterator[Number]:
     times, speeds = sliding["time"].values, sliding["pulley_speed"].values[:, 1]
     braked = (limit - load.constant) / conveyor.inertia
     yield Number("deceleration, rad/s²", braked, float(np.polyfit(times, speeds, 1)[0]), 0.05 * abs(braked))
-    margins = capstan_margins(run).sel(pulley="conveyor", time=slice(0.6, None))
-    since = float(margins["time"][int((margins.values < 1.0).argmax())])
+    whole = run.dataset["sliding_speed"].sel(pulley="conveyor", time=slice(0.6, None))
+    since = float(whole["time"][int((np.abs(whole.values) > 0.001 * rim).argmax())])
     yield Number("time at which it slips through, s", 0.6 + limit / load.constant, since, 0.03)
     yield Number("capstan margin at the end", 1.0, summarize(run).pulleys[1].margin, 0.02)
 

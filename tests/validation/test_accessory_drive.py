@@ -16,7 +16,7 @@ from beltdyn import Run
 from beltdyn.model import Resistance, RotaryTensioner
 from beltdyn.plot.curve import centerline
 from beltdyn.results import derived
-from beltdyn.results.mechanics import cells, element_lengths
+from beltdyn.results.mechanics import cells, element_lengths, recorded_kind
 
 pytestmark = pytest.mark.slow
 
@@ -123,34 +123,35 @@ def test_the_rotor_swings_and_decays_when_the_clutch_grips_again() -> None:
 
 
 def test_the_tensioner_takes_up_what_the_belt_stretches() -> None:
-    """Length of the bent belt = path of circles at the tensioner's place - what the belt sinks in, at any time.
+    """Length of the bent belt = path of circles at the tensioner's place - what the belt sinks in + what bending adds.
 
-    The belt is longer by 20 to 30 um than this, since it bends on and off the circles; how it does varies with tension,
-    by up to 8 um where the path changes by 2 mm or more.
+    A beam under T that touches a hard circle up to where its curvature is 1 / R leaves it by l / R before the tangent
+    point, l = sqrt(E I / T), and its end is longer than arc and tangent by l^3 / (12 R^2). That varies between 26 and
+    47 um here while the path changes by 2 mm or more, and is met within 8 um: contact is not hard.
     """
     dataset, drive = run().dataset, run().drive
     lengths = element_lengths(dataset, drive.belt_length)
     cell = cells(dataset["belt_coordinate"].values, drive.belt_length)
-    paths, belts, stretched = [], [], []
+    paths, belts, stretched, bent = [], [], [], []
     for instant in (0.0, 0.3, 0.47, 0.7, 1.19, 1.27, 2.0):
         output = run().fields_at(instant)
-        pieces = np.diff(centerline(drive.belt.element_kind, output["nodal_coordinates"].values, lengths, 33), axis=1)
+        curves = centerline(recorded_kind(dataset, drive), output["nodal_coordinates"].values, lengths, 129)
         path = replace(drive.path, centers=output["pulley_center"].values)
         touched = output["contact_pulley"].values.astype(int)
         sunk = np.where(
             touched >= 0, output["normal_force"].values / drive.contact_stiffness / drive.radii[touched], 0.0
         )
-        belts.append(float(np.linalg.norm(pieces, axis=2).sum()))
+        belts.append(float(np.linalg.norm(np.diff(curves, axis=1), axis=2).sum()))
         paths.append(path.length - float(np.sum(sunk * cell)))
         tension = output["belt_tension"].values
         stretched.append(float(np.sum(lengths * [drive.belt.stretch_parameters.stretch(one) for one in tension])))
+        cubes = (drive.belt.bending_stiffness / output["span_tension"].values) ** 1.5
+        bent.append(float(np.sum((cubes + np.roll(cubes, 1)) / (12.0 * drive.radii**2))))
     assert np.ptp(paths) > 2e-3
-    assert np.ptp(np.array(belts) - paths) < 16e-6
+    assert np.array(belts) - paths == pytest.approx(np.array(bent), abs=8e-6)
     assert np.array(stretched) - drive.belt_length == pytest.approx(np.array(belts) - drive.belt_length, rel=0.01)
 
 
 def test_there_is_no_false_alarm() -> None:
-    """Nothing slips through, gets slack or lies on a stop; the mesh is fine enough. The creep velocity of 50 mm/s
-    makes more slip than elastic creep does.
-    """
-    assert all("friction builds up too slowly" in warning for warning in run().warnings)
+    """Nothing slips through, gets slack or lies on a stop, and friction takes hold quickly enough."""
+    assert run().warnings == []

@@ -18,10 +18,6 @@ CLOSURE = 5e-3
 NAMES = list(EXAMPLES)
 WARNINGS = {
     "two_pulley": ["the belt has too few elements for peak pressure"],
-    "accessory_drive": [
-        "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, 0.28% "
-        "of 0.54% on alternator"
-    ],
     "tensioner_stop": ["the tensioner of tensioner was on its upper stop between t = 0.46"],
     "slip_through": [
         "driver and conveyor slide through",
@@ -103,16 +99,19 @@ def test_a_crossed_belt_turns_the_lathe_the_other_way() -> None:
 
 @pytest.mark.slow
 def test_slip_on_a_small_pulley() -> None:
-    """0.69 % as by hand, of which bending around the motor pulley takes 0.25 % from the ratio of radii.
+    """Slip under load is that of creep on the mesh that is chosen, of which bending takes 0.25 % from the radii.
 
-    With 100 elements, of which each covers 63 degrees of it, slip is 0.48 %, less than the belt stretches by, and the
-    run says so; with as many as the remedy names it is right.
+    On a mesh that travels, of 100 elements of which each covers 63 degrees of the motor pulley, slip is less than the
+    belt stretches by, and the run says so; with as many as the remedy names it is right.
     """
     machine = bd.load(str(files("beltdyn").joinpath("examples", "washing_machine.toml")))
-    coarse = simulate(under_load(machine, 100, 50e-6))
+    right = simulate(under_load(machine, None))
+    assert summarize(right).pulleys[1].slip == pytest.approx(creep(right), rel=0.03)
+    assert right.drive.rolling_radii[0] == pytest.approx(1.0025 * right.drive.radii[0], rel=1e-4)
+    travelling = machine.with_({"simulation.frame": "travelling", "contact.allowed_penetration": 50e-6})
+    coarse = simulate(under_load(travelling, 100))
     (finding,) = (one for one in coarse.findings if "no belt can do that" in one.fault)
     assert finding.remedy.startswith("The belt has too few elements: set belt.elements = 200 ")
-    fine = simulate(under_load(machine, 200, 50e-6))
+    fine = simulate(under_load(travelling, 200))
     assert [one for one in fine.findings if "no belt can do that" in one.fault] == []
     assert summarize(fine).pulleys[1].slip == pytest.approx(creep(fine), rel=0.03)
-    assert fine.drive.rolling_radii[0] == pytest.approx(1.0025 * fine.drive.radii[0], rel=1e-4)

@@ -17,6 +17,7 @@ from beltdyn.model.defaults import (
     choose_creep_ratio,
     choose_damping,
     choose_elements,
+    choose_graded_elements,
     choose_standstill_creep,
     choose_stiffness,
     stiffness_for_tension,
@@ -41,6 +42,8 @@ class Given(NamedTuple):
     contact: Contact
     tensioners: tuple[Tensioner, ...]
     ends: tuple[PathEnd, ...] = ()
+    staying: bool = False
+    """Whether the mesh is to stay in place while the belt flows through it."""
 
     def path_around(self, pulleys: Sequence[Pulley]) -> Path:
         """The path of the belt around pulleys, checked."""
@@ -179,7 +182,12 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
         chosen.append(choose_standstill_creep(ratio, _largest_speed(given, path, strain)))
     if belt.elements is None:
         on_path = OnPath(belt, estimate.length, np.abs(path.radii), estimate.stiffness)
-        chosen.append(choose_elements(on_path, estimate.tension))
+        graded = given.staying and not given.ends
+        chosen.append(
+            choose_graded_elements(on_path, path, estimate.tension)
+            if graded
+            else choose_elements(on_path, estimate.tension)
+        )
     return tuple(chosen)
 
 

@@ -12,9 +12,10 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model.belt import Belt
+from beltdyn.model.graded_mesh import Laid, graded_mesh, layer_length
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
-from beltdyn.model.resolution import PRESSURES, Running, elements_needed, fewest
+from beltdyn.model.resolution import PRESSURES, Running, elements_needed, fewest, layer_lengths
 
 TENSION_LOST = 0.005
 """Part of the tension that penetration may take."""
@@ -177,3 +178,21 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
     finer = max(elements_needed(belt, Running(tension))[name] for name in PRESSURES)
     more = f"; contact pressures need {finer}" if finer > number else ""
     return Choice("belt.elements", number, "", reason + more)
+
+
+def choose_graded_elements(belt: OnPath, path: Path, tension: float) -> Choice:
+    """Choose the number of elements of a mesh that stays in place.
+
+    Parameters
+    ----------
+    belt : OnPath
+    path : Path
+        Closed.
+    tension : float
+        At rest, N.
+    """
+    layer = layer_length(*layer_lengths(belt, tension))
+    arcs = Laid.on(path, belt.belt_length, path.longest_span).arcs()
+    number = graded_mesh(belt.belt_length, arcs, layer).size
+    reason = f"a mesh that stays in place, with short ones within {1e3 * layer:.2g} mm of the ends of arcs"
+    return Choice("belt.elements", number, "", reason)

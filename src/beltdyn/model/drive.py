@@ -145,7 +145,8 @@ class Drive(Part):
     @cached_property
     def completed(self) -> Completed:
         """The parts with nothing left open, as an analysis takes them."""
-        return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends))
+        staying = self.simulation.frame == "staying"
+        return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends, staying))
 
     @property
     def belt_length(self) -> float:

@@ -13,7 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.model.path import Path
 
+FINENESS = 1.0
+"""Of the mesh of a run over time, unless the number of elements is given."""
 _FIRST = 1.5
 """First element, over the length of the layers."""
 _GROWTH = 0.7
@@ -41,6 +44,36 @@ class Arc(NamedTuple):
     """Where in between friction begins or ends to be fully used, in ascending order; forces have a kink there."""
 
 
+class Laid(NamedTuple):
+    """A belt laid on the path of a drive; its coordinate is zero in the middle of a span."""
+
+    path: Path
+    start: float
+    """Place of the coordinate zero along the path, m."""
+    stretch: float
+    """Length of the path over that of the belt."""
+
+    @classmethod
+    def on(cls, path: Path, length: float, span: int) -> "Laid":
+        """Lay a belt of an unstretched length (m) on a path, from the middle of a span on."""
+        return cls(path, path.span_start(span) + 0.5 * float(path.span_lengths[span]), path.length / length)
+
+    def arcs(self) -> list[Arc]:
+        """Where the belt lies on pulleys, in the order in which they follow each other along the belt."""
+        found = list[Arc]()
+        for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
+            size = abs(float(radius))
+            arrives = self.path.span_start((p - 1) % self.path.count) + float(self.path.span_lengths[p - 1])
+            first = (arrives - self.start) % self.path.length
+            found.append(Arc(first / self.stretch, (first + size * float(wrap)) / self.stretch, size))
+        return sorted(found)
+
+    def marks(self) -> FloatArray:
+        """Both ends of the belt, and of the arcs between them, m."""
+        ends = [place for arc in self.arcs() for place in (arc.start, arc.end)]
+        return np.array([0.0, *ends, self.path.length / self.stretch])
+
+
 def layer_length(bending: float, sinking: float) -> float:
     """Length over which the belt takes the curvature of a pulley, m.
 
@@ -52,7 +85,7 @@ def layer_length(bending: float, sinking: float) -> float:
     return sqrt(bending * sinking) if sinking < bending else max(bending, _ENOUGH * sinking)
 
 
-def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = 1.0) -> FloatArray:
+def graded_mesh(length: float, arcs: list[Arc], layer: float, fineness: float = FINENESS) -> FloatArray:
     """Divide a closed belt into elements.
 
     Parameters

@@ -131,6 +131,11 @@ class Path:
         """Arc length at which a span begins, m."""
         return float(self._starts[2 * int(np.flatnonzero(self.order == span)[0])])
 
+    @property
+    def longest_span(self) -> int:
+        """Number of the longest span."""
+        return int(np.argmax(self.span_lengths))
+
     def position(self, s: ArrayLike) -> FloatArray:
         """Points on the path.
 

@@ -16,7 +16,7 @@ def centerline(kind: ElementKind, coordinates: FloatArray, lengths: FloatArray, 
     Parameters
     ----------
     kind : ElementKind
-        Of the belt: ``drive.belt.element_kind``.
+        Of the elements; `mechanics.recorded_kind` of a result.
     coordinates : ndarray, shape (nodes, k)
         Nodal coordinates of a result: positions (m) first.
     lengths : ndarray, shape (elements,)

@@ -19,7 +19,7 @@ from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
 from beltdyn.plot.tensioner import TensionerPicture
 from beltdyn.results import Run, StaticResult
-from beltdyn.results.mechanics import element_lengths
+from beltdyn.results.mechanics import element_lengths, recorded_kind
 
 _ARROW_RADIUS = 0.62
 _ARROW_ANGLE = np.radians(60.0)
@@ -52,7 +52,7 @@ class DrivePicture:
     """
 
     def __init__(self, run: Run | StaticResult, ax: Axes, norm: Normalize) -> None:
-        self._kind = run.drive.belt.element_kind
+        self._kind = recorded_kind(run.dataset, run.drive)
         self._lengths = element_lengths(run.dataset, run.drive.belt_length)
         self._radii = [pulley.radius for pulley in run.drive.pulleys]
         self._centers = run.drive.centers

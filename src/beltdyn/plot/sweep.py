@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from math import isfinite
 
 import numpy as np
 import xarray as xr
@@ -146,7 +147,7 @@ def waterfall(
         page.colorbar(mesh, ax=ax, label=f"Amplitude (peak) [dB re 1 {unit(amplitude)}]")
     elements = derived.element_order(run.drive, number)
     marks = [(order, f"{order:.3g}", "-") for order in which]
-    marks += [(k * elements, "elements pass" if k == 1 else f"{k} ×", "--") for k in _HARMONICS]
+    marks += [(k * elements, "elements pass" if k == 1 else f"{k} ×", "--") for k in _HARMONICS if isfinite(elements)]
     for place, (order, words, style) in enumerate(sorted(marks)):
         _mark(ax, order, amplitude, words, style, place % _ROWS)
     ax.set(xlabel=label(amplitude["frequency"]), ylabel=f"Speed of {run.drive.pulleys[number].name} [rpm]")

@@ -10,7 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.plot.curve import centerline
 from beltdyn.plot.drive import extent_of
 from beltdyn.results import Run
-from beltdyn.results.mechanics import element_lengths
+from beltdyn.results.mechanics import element_lengths, recorded_kind
 
 _POINTS = 480
 """Points along the belt in a picture."""
@@ -72,7 +72,7 @@ def _along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, 
     """Places (points, 2), tensions and contact pressures at points evenly along the belt, from one fixed place on."""
     drive = run.drive
     lengths = element_lengths(run.dataset, drive.belt_length)
-    curves = centerline(drive.belt.element_kind, instant["nodal_coordinates"].values, lengths, _SMOOTH + 1)
+    curves = centerline(recorded_kind(run.dataset, drive), instant["nodal_coordinates"].values, lengths, _SMOOTH + 1)
     points = curves[:, :-1].reshape(-1, 2)
     starts = np.cumsum(lengths) - lengths
     coordinate = (starts[:, None] + lengths[:, None] * np.arange(_SMOOTH) / _SMOOTH).ravel()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
+from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Drive
 from beltdyn.results.arc import arc_ends
 
@@ -131,6 +132,25 @@ def element_lengths(dataset: "xr.Dataset", belt_length: float) -> FloatArray:
     """
     nodes = dataset["node_coordinate"].values
     return np.diff(nodes, append=nodes[0] + belt_length)[: dataset.sizes["element"]]
+
+
+def recorded_kind(dataset: "xr.Dataset", drive: Drive) -> ElementKind:
+    """Give the kind of the elements whose nodal coordinates a result holds.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        A result.
+    drive : Drive
+        Its drive.
+
+    Returns
+    -------
+    ElementKind
+        The drive's, or that of a mesh that stays in place.
+    """
+    given, names = drive.belt.element_kind, tuple(dataset["coordinate"].values.tolist())
+    return next(kind for kind in (given, *ELEMENTS.values()) if kind.coordinates == names)
 
 
 def sliding_velocity(

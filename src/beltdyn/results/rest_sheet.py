@@ -66,11 +66,16 @@ def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tu
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
-        ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm"),
+        ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
         *_lost_in_the_belt(drive),
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
+
+
+def _in_the_mean(drive: Drive) -> str:
+    """Elements that travel with the belt are all of one length."""
+    return ", in the mean" if drive.simulation.frame == "staying" else ""
 
 
 def _taken_up(drive: Drive) -> list[tuple[str, str]]:

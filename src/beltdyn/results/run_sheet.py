@@ -172,7 +172,7 @@ def _pace(summary: Summary) -> str:
 
 
 def _mesh(resolution: Resolution) -> str:
-    """The estimated errors of the mesh, of which some may not be known."""
+    """The estimated errors of the mesh, of which some may not be known; without slip they are those at rest."""
     known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
     errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} > 100%" for name, error in known.items())
-    return errors or "not known"
+    return f"{errors}{', at rest' * ('slip' not in known)}" if errors else "not known"

@@ -1,21 +1,22 @@
 """Where a run on a mesh that stays begins: at rest, or in the steady running of its first instant."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.model.graded_mesh import FINENESS
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.staying import Standing, anchor_at, bring_to_stand, stand
 from beltdyn.solve.steady import require_steady
+from beltdyn.solve.steady_refinement import errors_at_rest
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build import flowing_system
 from beltdyn.system.state import State
-
-_FINENESS = 1.0
-"""Of the mesh of a drive that leaves the number of its elements open."""
 
 
 class Beginning(NamedTuple):
@@ -27,6 +28,8 @@ class Beginning(NamedTuple):
     state: State
     unstable: tuple[str, ...] = ()
     """Names of the pulleys whose tensioners are not in stable balance at rest."""
+    mesh_errors: Mapping[str, float] = MappingProxyType({})
+    """What a mesh that stays makes wrong at rest, relative, where a finer one has told."""
 
 
 def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
@@ -60,7 +63,9 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
     direction = anchor_at(rest.system, rest.state, True).direction
     state = _running(rest) if steady else rest.state
     speed = float(rest.system.frame.speed[0])
-    return Beginning(rest.drive, flowing_system(rest.system, direction), with_passage(rest.system, state, speed))
+    flowing = flowing_system(rest.system, direction)
+    errors = errors_at_rest(rest)
+    return Beginning(rest.drive, flowing, with_passage(rest.system, state, speed), mesh_errors=errors)
 
 
 def _require_steady(drive: Drive) -> None:
@@ -77,7 +82,7 @@ def _meshed(drive: Drive) -> Standing:
     """The drive at rest on a graded mesh of about the number of elements that it asks for."""
     rest = bring_to_stand(drive)
     wanted, count = drive.belt.elements, rest.system.nodes
-    fineness = _FINENESS if wanted is None else rest.fineness * wanted / count
+    fineness = FINENESS if wanted is None else rest.fineness * wanted / count
     return stand(rest.drive, fineness=fineness)
 
 

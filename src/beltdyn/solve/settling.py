@@ -14,7 +14,7 @@ from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.trajectory import Chunk, Integrator, Statistics, drive_task
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
+from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state import State
 
@@ -60,13 +60,17 @@ class Settling:
     lead: float
     longest: float
 
-    def __call__(self, drive: Drive, state: State, integrator: Integrator, progress: Report | None, /) -> Start:
+    def __call__(
+        self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
+    ) -> Start:
         """Settle.
 
         Parameters
         ----------
         drive
             That of the run to come.
+        system
+            Its arrays.
         state
             At rest.
         integrator
@@ -81,8 +85,8 @@ class Settling:
             is left of the start in the span tensions, over the largest mean one.
         """
         before = self._before(drive)
-        system = drive_system(before)
-        task = drive_task(drive, system, state, Statistics())
+        slower = system._replace(profiles=profile_arrays(before.pulleys))
+        task = drive_task(drive, slower, state, Statistics())
         window = self._window(drive.pulleys[self.pulley])
         stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)
         instants = Instants(drive.simulation.output_interval, float(stops[-1]))
@@ -93,13 +97,13 @@ class Settling:
                 progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "settling"))
             last = states.only(slice(-1, None))
             if reached in stops and reached - self.lead > 0.5 * window:
-                seen = observe_motion(system, states.position, states.velocity, states.forces, _first(states))
+                seen = observe_motion(slower, states.position, states.velocity, states.forces, _first(states))
                 left.take(states.time, seen.span_tension)
                 if left.known and left.part < SETTLED:
                     break
         end = State(last.position[0], last.velocity[0], np.zeros_like(last.velocity[0]))
         time = float(last.time[0])
-        return Start(_going_on(drive, system, time), end, {"settling_time": time, "settling_left": left.part})
+        return Start(_going_on(drive, system, slower, time), end, {"settling_time": time, "settling_left": left.part})
 
     def _before(self, drive: Drive) -> Drive:
         """The drive that reaches the first speed and stays there."""
@@ -164,9 +168,9 @@ def _first(states: Chunk) -> BoolArray:
     return np.asarray(np.arange(len(states.time)) == 0)
 
 
-def _going_on(drive: Drive, before: System, time: float) -> System:
+def _going_on(drive: Drive, system: System, before: System, time: float) -> System:
     """Arrays of a drive whose prescribed angles go on from what they were in another system at a time."""
-    system = drive_system(drive)
+    profiles = profile_arrays(drive.pulleys)
     prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
-    go_on(system.profiles, before.profiles, prescribed, time)
-    return system
+    go_on(profiles, before.profiles, prescribed, time)
+    return system._replace(profiles=profiles)

@@ -22,8 +22,8 @@ from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
 
-Begin = Callable[[Drive, State, Integrator, Report | None], Start]
-"""``begin(drive, state, integrator, progress) -> Start``, from the drive and its state at rest."""
+Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
+"""``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
 
 
 def simulate(
@@ -117,20 +117,21 @@ def record_run(
     integrator = integrator or choose_integrator(drive)
     flowing = None
     if drive.simulation.frame == "staying":
-        _require_flowing(integrator, begin)
+        _require_flowing(integrator)
         flowing = begin_flowing(drive, progress)
     system = flowing.system if flowing else drive_system(drive)
     title = f"{drive.title}, {drive.simulation.duration:g} s"
     with Recording(drive, system, output, title, progress, overwrite, **attributes) as recording:
         recording.prepare()
-        drive, system, state, unstable = flowing or _begin_travelling(drive, system, progress)
+        drive, system, state, unstable, _ = flowing or _begin_travelling(drive, system, progress)
         recording.integrator, recording.watch = integrator.name, watch
         if begin is not None:
-            system, state, said = begin(drive, state, integrator, progress)
+            system, state, said = begin(drive, system, state, integrator, progress)
             recording.note(**said)
         recording.start(drive, system, unstable)
         if flowing:
-            recording.note(**{mesh_error_attribute("peak pressure"): float("nan")})  # no finer mesh was tried
+            errors = flowing.mesh_errors or {"peak pressure": float("nan")}  # not known
+            recording.note(**{mesh_error_attribute(name): error for name, error in errors.items()})
         task = drive_task(drive, system, state, recording.statistics)
         for chunk in integrator(task):
             recording.take(chunk)
@@ -158,7 +159,7 @@ def _begin_travelling(drive: Drive, system: System, progress: Report | None) -> 
     return Beginning(rest.drive, rest.system, state, rest.unstable)
 
 
-def _require_flowing(integrator: Integrator, begin: Begin | None) -> None:
+def _require_flowing(integrator: Integrator) -> None:
     """Make sure that a run may be one on a mesh that stays.
 
     Raises
@@ -170,11 +171,6 @@ def _require_flowing(integrator: Integrator, begin: Begin | None) -> None:
         raise ModelError(
             f'the integrator "{integrator.name}" does not fit simulation.frame = "staying", whose flow it does not '
             'know. Leave the integrator out, or set simulation.frame = "travelling".'
-        )
-    if begin is not None:
-        raise ModelError(
-            'a run-up that settles first does not fit simulation.frame = "staying". '
-            'Set simulation.frame = "travelling".'
         )
 
 

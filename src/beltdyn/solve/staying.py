@@ -7,8 +7,8 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
-from beltdyn.model import Drive, Installation, Path, install
-from beltdyn.model.graded_mesh import Arc, graded_mesh, layer_length
+from beltdyn.model import Drive, Installation, install
+from beltdyn.model.graded_mesh import Arc, Laid, graded_mesh, layer_length
 from beltdyn.model.resolution import layer_lengths
 from beltdyn.solve.installation import STARTS, drawn_in, follow, looked_at, tighten, with_stiffer_contact
 from beltdyn.solve.static import only_tensioners
@@ -54,42 +54,13 @@ class Standing(NamedTuple):
     """Of its graded mesh."""
 
 
-class Laid(NamedTuple):
-    """A belt laid on the path of a drive; its coordinate is zero in the middle of a span."""
-
-    path: Path
-    start: float
-    """Place of the coordinate zero along the path, m."""
-    stretch: float
-    """Length of the path over that of the belt."""
-
-    @classmethod
-    def on(cls, path: Path, length: float, span: int) -> "Laid":
-        """Lay a belt of an unstretched length (m) on a path, from the middle of a span on."""
-        return cls(path, path.span_start(span) + 0.5 * float(path.span_lengths[span]), path.length / length)
-
-    def arcs(self) -> list[Arc]:
-        """Where the belt lies on pulleys, in the order in which they follow each other along the belt."""
-        found = list[Arc]()
-        for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
-            size = abs(float(radius))
-            arrives = self.path.span_start((p - 1) % self.path.count) + float(self.path.span_lengths[p - 1])
-            first = (arrives - self.start) % self.path.length
-            found.append(Arc(first / self.stretch, (first + size * float(wrap)) / self.stretch, size))
-        return sorted(found)
-
-    def marks(self) -> FloatArray:
-        """Both ends of the belt, and of the arcs between them, m."""
-        ends = [place for arc in self.arcs() for place in (arc.start, arc.end)]
-        return np.array([0.0, *ends, self.path.length / self.stretch])
-
-    def state(self, system: System, tensioners: FloatArray) -> State:
-        """The state of a system whose belt lies so."""
-        along = self.start + self.stretch * point_coordinates(system)
-        slope, bend = self.stretch * self.path.tangent(along), self.stretch**2 * self.path.bend(along)
-        state = at_rest(system, nodal_coordinates(system, self.path.position(along), slope, bend))
-        state.position[state.position.size - tensioners.size :] = tensioners
-        return state
+def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
+    """The state of a system whose belt is laid on its path, with its tensioners (m or rad) where they are."""
+    along = laid.start + laid.stretch * point_coordinates(system)
+    slope, bend = laid.stretch * laid.path.tangent(along), laid.stretch**2 * laid.path.bend(along)
+    state = at_rest(system, nodal_coordinates(system, laid.path.position(along), slope, bend))
+    state.position[state.position.size - tensioners.size :] = tensioners
+    return state
 
 
 def anchor_at(system: System, state: State, at_rest: bool) -> Anchor:
@@ -146,7 +117,7 @@ def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_
     """
     installation = install(drive)
     layer = layer_length(*layer_lengths(drive, installation.tension))
-    span = int(np.argmax(installation.path.span_lengths))
+    span = installation.path.longest_span
     if elements is not None:
         lengths = np.full(elements, drive.belt_length / elements)
     else:
@@ -212,12 +183,12 @@ def carried(drive: Drive, other: Drive, lengths: FloatArray, nodes: FloatArray) 
         A state without speeds, its bodies moved from zero by as much as tensioners move at rest.
     """
     before, after = install(other), install(drive)
-    span = int(np.argmax(before.path.span_lengths))
+    span = before.path.longest_span
     here, there = Laid.on(before.path, other.belt_length, span), Laid.on(after.path, drive.belt_length, span)
     moved = np.interp(np.append(0.0, np.cumsum(lengths)), here.marks(), there.marks())
     new = staying_system(drive, np.diff(moved))
-    state = there.state(new, after.tensioner_positions)
-    state.position[:] -= here.state(new._replace(length=lengths), before.tensioner_positions).position
+    state = laid_state(there, new, after.tensioner_positions)
+    state.position[:] -= laid_state(here, new._replace(length=lengths), before.tensioner_positions).position
     state.nodes(new)[:, _CURVATURE] = 0.0  # it jumps at the ends of arcs, where nodes may be
     state.position[: nodes.size] += nodes
     return new, state
@@ -243,9 +214,8 @@ def without_friction(system: System) -> System:
 
 def _lying(drive: Drive, system: System, installation: Installation, span: int, factor: float) -> State:
     """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
-    return Laid.on(drawn_in(drive, installation, factor), drive.belt_length, span).state(
-        system, installation.tensioner_positions
-    )
+    laid = Laid.on(drawn_in(drive, installation, factor), drive.belt_length, span)
+    return laid_state(laid, system, installation.tensioner_positions)
 
 
 def found_arcs(system: System, state: State) -> list[Arc]:

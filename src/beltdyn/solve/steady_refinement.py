@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
 from beltdyn.model.graded_mesh import graded_mesh
-from beltdyn.solve.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs
+from beltdyn.solve.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build import staying_system
@@ -23,8 +24,8 @@ _LEAST_SLIP = 1e-4
 """Slip against which differences of slip are measured, at least."""
 
 
-class _Solution(NamedTuple):
-    """Steady running on a mesh."""
+class Solution(NamedTuple):
+    """Steady running on a mesh, or rest."""
 
     system: System
     state: State
@@ -70,7 +71,7 @@ def refine(search: SteadySearch, rest: Standing, tolerance: float, elements: int
         before = after
 
 
-def _finer(search: SteadySearch, now: _Solution, layer: float, fineness: float, elements: int | None) -> FloatArray:
+def _finer(search: SteadySearch, now: Solution, layer: float, fineness: float, elements: int | None) -> FloatArray:
     """Lengths of the elements of a finer mesh, m."""
     length = search.drive.belt_length
     if elements is not None:
@@ -82,7 +83,7 @@ def _finer(search: SteadySearch, now: _Solution, layer: float, fineness: float, 
     return graded_mesh(length, within, layer, fineness)
 
 
-def _kinks(now: _Solution) -> list[float]:
+def _kinks(now: Solution) -> list[float]:
     """Where friction begins or ends to be fully used, in ascending order along the belt, m."""
     system, seen, found = now.system, now.seen, list[float]()
     starts = np.cumsum(system.length) - system.length
@@ -98,15 +99,41 @@ def _kinks(now: _Solution) -> list[float]:
     return sorted(found)
 
 
-def _solution(search: SteadySearch) -> _Solution:
+def _solution(search: SteadySearch) -> Solution:
     """Steady running where the search is."""
     system, state = search.constant, search.state
-    seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
     speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
-    return _Solution(system, state, seen, 1.0 - speeds / speeds[0])
+    return Solution(system, state, _seen(system, state), 1.0 - speeds / speeds[0])
 
 
-def _differences(before: _Solution, after: _Solution) -> dict[str, float]:
+def _seen(system: System, state: State) -> Observations:
+    return observe(system, np.zeros(1), state.position[None], state.velocity[None])
+
+
+def errors_at_rest(rest: Standing) -> dict[str, float]:
+    """Errors of a mesh in tension and contact pressures at rest, relative, by a finer one.
+
+    Parameters
+    ----------
+    rest
+        The drive at rest on the mesh.
+
+    Returns
+    -------
+    dict of str to float
+        As `refine` gives them, without slip; empty where the finer mesh finds no rest.
+    """
+    try:
+        finer = stand(rest.drive, fineness=FINER * rest.fineness)
+    except ConvergenceError:
+        return {}
+    none = np.zeros(rest.system.pulleys.size)
+    before, after = (Solution(one.system, one.state, _seen(one.system, one.state), none) for one in (rest, finer))
+    found = _differences(before, after)
+    return {name: found[name] for name in ("tension", "mean pressure", "peak pressure")}
+
+
+def _differences(before: Solution, after: Solution) -> dict[str, float]:
     """Differences of two solutions, relative."""
     peaks, means = [0.0], [0.0]
     for arc in found_arcs(after.system, after.state):
@@ -124,7 +151,7 @@ def _differences(before: _Solution, after: _Solution) -> dict[str, float]:
     }
 
 
-def _depth(solution: _Solution, along: FloatArray) -> FloatArray:
+def _depth(solution: Solution, along: FloatArray) -> FloatArray:
     """Depth of points of the belt in whatever pulley is deepest, m; negative outside."""
     places = centreline_points(solution.system, solution.state.position, along)[0]
     return np.asarray(depths(solution.system, solution.state, places).max(axis=0))

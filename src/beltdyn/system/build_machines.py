@@ -49,22 +49,38 @@ def machine_arrays(
     Returns
     -------
     Machines
-        Profile p is that of pulley p; factors and commands of its loads, then of its hub chain, follow.
+        Their profiles are those of `profile_arrays`.
 
     Raises
     ------
     ModelError
         If there are tensioners but no path.
     """
-    own = [pulley.speed if pulley.prescribed else pulley.torque for pulley in pulleys]
-    switching = [item for pulley in pulleys for item in pulley.switching if item is not None]
     of_loads, of_links = _switching_numbers(pulleys)
     return Machines(
-        profile_rows([*own, *switching], [*(pulley.harmonics for pulley in pulleys), *([()] * len(switching))]),
+        profile_arrays(pulleys),
         shaft_loads([pulley.load for pulley in pulleys], of_loads, body_inertias(pulleys).size),
         link_rows(_placed(pulleys, of_links)),
         _tensioners(pulleys, tensioners, path, gravity),
     )
+
+
+def profile_arrays(pulleys: Sequence[Pulley]) -> Profiles:
+    """Arrays of all that is prescribed over time.
+
+    Parameters
+    ----------
+    pulleys
+        The pulleys.
+
+    Returns
+    -------
+    Profiles
+        Profile p is that of pulley p; factors and commands of its loads, then of its hub chain, follow.
+    """
+    own = [pulley.speed if pulley.prescribed else pulley.torque for pulley in pulleys]
+    switching = [item for pulley in pulleys for item in pulley.switching if item is not None]
+    return profile_rows([*own, *switching], [*(pulley.harmonics for pulley in pulleys), *([()] * len(switching))])
 
 
 def pulley_arrays(

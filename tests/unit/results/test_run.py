@@ -180,10 +180,10 @@ def test_flutter_is_said(run: Run, fine_drive: Drive) -> None:
 
 
 def test_gross_slip_that_has_passed_is_said(make_run: MakeRun) -> None:
-    """Of 1 and 99 N less than the present load can be transmitted, from 0.2 to 0.3 s: two outputs of 0.1 s each."""
-    tension = np.tile([30.0, 60.0], (11, 1))
-    tension[2:4] = [1.0, 99.0]
-    found = make_run(outputs=11, span_tension=tension).warnings
+    """The whole arc of the driver slides from 0.2 to 0.3 s: two outputs of 0.1 s each."""
+    sliding = np.zeros((11, 2))
+    sliding[2:4, 0] = 0.1
+    found = make_run(outputs=11, sliding_speed=sliding).warnings
     torque = float(make_run(outputs=11).dataset["pulley_torque"][2, 0])
     (warning,) = (text for text in found if "slid through" in text)
     said = f"the belt slid through on driver from t = 0.2 to 0.3 s, first at {abs(torque):.4g} N m"

@@ -8,7 +8,9 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.plot.curve import centerline
 from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.results.mechanics import element_lengths, recorded_kind
 from beltdyn.solve.standard import StandardIntegrator
 
 
@@ -52,6 +54,41 @@ def test_a_run_from_rest_ends_in_steady_running(loaded: Drive, constant: Drive) 
 def test_the_number_of_elements_is_about_that_asked_for(constant: Drive) -> None:
     short = constant.replace(simulation=constant.simulation.replace(duration=1e-3))
     assert bd.simulate(short).dataset.sizes["node"] == pytest.approx(30, abs=4)
+
+
+@pytest.fixture(scope="module")
+def short(loaded: Drive) -> Drive:
+    """The same for a millisecond, with the number of elements that is chosen."""
+    return loaded.replace(belt=loaded.belt.replace(elements=None), simulation=loaded.simulation.replace(duration=1e-3))
+
+
+def test_the_number_of_elements_is_known_before(short: Drive) -> None:
+    """A drive file tells with it how large its results will be."""
+    assert bd.simulate(short).dataset.sizes["node"] == short.elements
+    travelling = short.replace(simulation=short.simulation.replace(frame="travelling", start="equilibrium"))
+    assert short.elements != travelling.elements
+
+
+def test_errors_of_the_mesh_are_those_at_rest(short: Drive) -> None:
+    """As a finer mesh shows them; on one of half as many elements they are larger."""
+    fine = bd.simulate(short).resolution.errors
+    coarse = bd.simulate(short.replace(belt=short.belt.replace(elements=short.elements // 2))).resolution.errors
+    assert 0.0 < fine["peak pressure"] < coarse["peak pressure"]
+    assert fine["tension"] < 1e-3
+    assert np.isnan(fine["slip"])
+
+
+def test_the_belt_is_drawn_by_the_elements_that_stay(short: Drive) -> None:
+    """Cubic curves through the nodes would leave the arcs, whose radius is theirs less the penetration."""
+    run = bd.simulate(short)
+    last, drive = run.fields_at(), run.drive
+    kind, lengths = recorded_kind(run.dataset, drive), element_lengths(run.dataset, drive.belt_length)
+    points = centerline(kind, last["nodal_coordinates"].values, lengths).reshape(-1, 2)
+    depths = drive.radii[0] - np.linalg.norm(points - drive.centers[0], axis=1)
+    touching = last["contact_pulley"].values == 0
+    deepest = float(last["normal_force"].values[touching].max()) / drive.contact_stiffness
+    assert kind.name == "quintic"
+    assert depths.max() == pytest.approx(deepest, rel=0.02)
 
 
 def test_what_does_not_fit_is_refused(loaded: Drive) -> None:

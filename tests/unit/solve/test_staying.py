@@ -8,8 +8,9 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.model import Drive
+from beltdyn.model.graded_mesh import Laid
 from beltdyn.solve import staying
-from beltdyn.solve.staying import Laid, bring_to_stand, carried, found_arcs, stand, stand_like, transfer
+from beltdyn.solve.staying import bring_to_stand, carried, found_arcs, stand, stand_like, transfer
 from beltdyn.solve.steady_newton import find_steady
 from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points

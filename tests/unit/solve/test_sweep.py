@@ -90,8 +90,13 @@ def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive, start: float | str
     assert float(run.dataset.time[-1]) == pytest.approx(0.01)
 
 
-def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive) -> None:
-    """Angles go on from the settling; the account of energy begins anew."""
+@pytest.mark.parametrize(("frame", "closure"), [("travelling", 1e-3), ("staying", 5e-3)])
+def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive, frame: str, closure: float) -> None:
+    """Angles go on from the settling; the account of energy begins anew.
+
+    On 20 elements that stay it closes as well as their mesh follows the waves of a start within 2 ms.
+    """
+    drive = drive.replace(simulation=drive.simulation.replace(frame=frame, start="equilibrium"))
     run = sweep(drive, pulley="driver", from_=20.0, to=30.0, duration="20 ms", settling="30 ms")
     data = run.dataset
     assert float(data.pulley_speed[0, 0]) == pytest.approx(20.0)
@@ -100,7 +105,7 @@ def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive
     assert lead < settled <= lead + 0.03 + 2 * lead
     assert float(data.pulley_angle[0, 0]) == pytest.approx(20.0 * (settled - 0.5 * lead))
     assert float(data.pulley_angle[-1, 0] - data.pulley_angle[0, 0]) == pytest.approx(25.0 * 0.02)
-    assert float(abs(data.energy_closure).max()) < 1e-3
+    assert float(abs(data.energy_closure).max()) < closure
     assert float(data.driver_work[0]) == 0.0
 
 

@@ -12,7 +12,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.elements.quintic import QUINTIC
 from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path
-from beltdyn.solve.staying import Laid
+from beltdyn.model.graded_mesh import Laid
+from beltdyn.solve.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system, flowing_system, staying_system
@@ -62,7 +63,7 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
     mesh = staying_system(drive, np.full(16, drive.belt_length / 16))
     system, random = flowing_system(mesh, np.array([0.6, 0.8])), np.random.default_rng(5)
     drawn_in = Path(drive.path.centers, drive.path.radii - 1e-3 * np.sign(drive.path.radii))
-    state = Laid.on(drawn_in, drive.belt_length, 0).state(system, np.array([2e-3]))
+    state = laid_state(Laid.on(drawn_in, drive.belt_length, 0), system, np.array([2e-3]))
     nodes, place = system.first_body, system.frame.place
     state.position[:nodes] += 2e-4 * random.normal(size=nodes)
     state.velocity[:nodes] = 1e-2 * random.normal(size=nodes)

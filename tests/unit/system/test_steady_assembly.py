@@ -8,7 +8,8 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path
-from beltdyn.solve.staying import Laid, anchor_at
+from beltdyn.model.graded_mesh import Laid
+from beltdyn.solve.staying import anchor_at, laid_state
 from beltdyn.solve.steady_newton import SteadyWork, steady_work
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, staying_system
@@ -51,7 +52,7 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
     system = with_speeds_unknown(constant_drive(base, 0.3))
     random = np.random.default_rng(5)
     drawn_in = Path(drive.path.centers, drive.path.radii - 1e-3 * np.sign(drive.path.radii))
-    state = Laid.on(drawn_in, drive.belt_length, 0).state(system, np.array([2e-3]))
+    state = laid_state(Laid.on(drawn_in, drive.belt_length, 0), system, np.array([2e-3]))
     state.position[: system.first_body] += 2e-4 * random.normal(size=system.first_body)
     system.frame.speed[0] = SPEED
     bodies = slice(system.first_body, system.first_body + system.bodies.size - 1)

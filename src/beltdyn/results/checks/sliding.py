@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.arc import arc_ends
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.mechanics import capstan_margin, rim_speeds
+from beltdyn.results.mechanics import rim_speeds
 
 SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or up to a lower speed."
 """What to do where a pulley slips through in a run-up."""
@@ -70,12 +70,12 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
     if evidence.drive.ends:
         return
-    tension, speed, centers, torque = (
-        np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed", "pulley_center", "pulley_torque")
-    )
     first, drive = evidence.window.first, evidence.drive
-    times, margins = evidence.time[:first], capstan_margin(tension, speed, centers, drive)[:first]
-    reached = (margins < 1.0) & (drive.frictions > 0.0)
+    sliding, speed, torque = (
+        np.asarray(evidence.recorded[name]) for name in ("sliding_speed", "pulley_speed", "pulley_torque")
+    )
+    limit = SLIDING_LIMIT * np.max(np.abs(rim_speeds(speed, drive)[:, 0]))
+    times, reached = evidence.time[:first], np.abs(sliding[:first]) > limit
     found, longest = [], 0.0
     for number in np.flatnonzero(np.count_nonzero(reached, axis=0) > 1).tolist():
         when = reached[:, number]

@@ -182,7 +182,8 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
 def element_order(drive: Drive, pulley: int) -> float:
     """Give the order of a pulley's rotation at which elements of the mesh pass: how many do in one of its turns.
 
-    What stands out there and at its multiples belongs to the mesh, not to the drive.
+    What stands out there and at its multiples belongs to the mesh, not to the drive. On a mesh that stays no element
+    passes: then it is infinite.
 
     Parameters
     ----------
@@ -191,6 +192,8 @@ def element_order(drive: Drive, pulley: int) -> float:
     pulley : int
         Number of the pulley.
     """
+    if drive.simulation.frame == "staying":
+        return float("inf")
     turn = 2.0 * np.pi * float(drive.radii[pulley])
     return drive.elements * turn / drive.path.length
 

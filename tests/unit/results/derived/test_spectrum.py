@@ -349,6 +349,8 @@ def test_elements_pass_a_pulley_as_often_as_its_turn_is_longer(run: Run) -> None
     share = 1.0 - path.span_lengths.sum() / path.length
     for pulley in (0, 1):
         assert element_order(run.drive, pulley) == pytest.approx(run.drive.elements * share)
+    still = run.drive.replace(simulation=run.drive.simulation.replace(frame="staying", start="equilibrium"))
+    assert element_order(still, 0) == np.inf
 
 
 def test_the_pass_band_belongs_to_the_rate_of_the_outputs() -> None:
