@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help install demo paper test validate compatibility mutation bench docs lock clean
+.PHONY: help install demo paper test validate compatibility mutation browser bench docs lock clean
 
 PYTHON ?= python3
 BIN := .venv/bin
@@ -48,6 +48,10 @@ compatibility: ## kernels with the oldest Numba, the last one known and the newe
 mutation: install ## small changes of the sources, taken at random, and how many of them the tests notice
 	$(BIN)/python -m tools.mutation contact elements machines system results/derived --sample 100 \
 		--tests tests/unit/contact tests/unit/elements tests/unit/machines tests/unit/system tests/unit/results/derived
+
+browser: install ## the page of `beltdyn app` in a real Chromium, which must be installed (or named in BELTDYN_BROWSER)
+	$(BIN)/pip install --quiet playwright
+	$(BIN)/pytest tests/browser
 
 bench: install ## benchmarks
 	for script in benchmarks/*.py; do $(BIN)/python $$script || exit 1; done

@@ -55,10 +55,13 @@ ELSEWHERE = {
     "solve/steady_slip.py": "unit/solve/test_steady.py",
     "solve/worker.py": "unit/solve/test_batch.py",
     # Seen by a user through something else, and tested there.
+    "app/analysis_view.py": "unit/app/test_page.py",
+    "app/calculator.py": "unit/app/test_computing.py",
     "app/canvas.py": "unit/app/test_page.py",
     "app/file_menu.py": "unit/app/test_page.py",
     "app/form_view.py": "unit/app/test_page.py",
     "app/numbers_view.py": "unit/app/test_page.py",
+    "app/sheet_view.py": "unit/app/test_page.py",
     "app/workspace.py": "unit/app/test_session.py",
     "__init__.py": "unit/test_public_names.py",
     "analyses.py": "unit/cli/test_analysis.py",

@@ -10,6 +10,11 @@ function niceStep(length) {
 
 export default {
   template: `
+   <div>
+    <div v-if="lost" class="bd-lost" role="alert">
+      The server has ended, and this page with it. Start it anew: beltdyn app.
+      <a :href="kept" :download="name">Keep the drive file</a>
+    </div>
     <svg ref="svg" class="bd-canvas" role="application" :viewBox="viewBox" preserveAspectRatio="xMidYMid meet"
          :aria-label="'Layout of the drive with ' + pulleys.length + ' pulleys. Tab reaches each pulley.'"
          @pointerdown="down($event, null)" @pointermove="moved" @pointerup="up" @pointercancel="up"
@@ -57,16 +62,21 @@ export default {
       </circle>
       <text v-if="pulleys.length === 0" class="bd-hint" :x="view.x + view.w / 2" :y="view.y + view.h / 2" :font-size="16 * px"
             text-anchor="middle">Double-click to place a pulley</text>
-    </svg>`,
-  props: { scene: Object, selected: Number },
+    </svg>
+   </div>`,
+  props: { scene: Object, selected: Number, text: String, name: String },
   data: () => ({
     view: { x: -250, y: -150, w: 500, h: 300 },
     size: { w: 800, h: 450 },
     drag: null, // what is dragged, and where it is
     waiting: false, // Python has been asked, and has not answered yet
     fitted: true,
+    lost: false, // the server does not answer any more
   }),
   computed: {
+    kept() {
+      return "data:text/plain;charset=utf-8," + encodeURIComponent(this.text || "");
+    },
     px() {
       return Math.max(this.view.w / this.size.w, this.view.h / this.size.h);
     },
@@ -114,10 +124,16 @@ export default {
       this.fit();
     });
     this.observer.observe(this.$refs.svg);
+    this.asking = setInterval(() => {
+      const silent = window.socket !== undefined && !window.socket.connected;
+      this.lost = silent && this.silent; // twice in a row
+      this.silent = silent;
+    }, 1500);
     this.fit();
   },
   unmounted() {
     this.observer.disconnect();
+    clearInterval(this.asking);
   },
   methods: {
     fit() {

@@ -26,6 +26,10 @@ class Canvas(Element, component="canvas.js"):
         self.on("act", lambda event: on_act(_told(event)))
         self.on("choose", lambda event: on_choose(_told(event).get("number")))
 
+    def keep(self, text: str, name: str) -> None:
+        """Give the browser the drive file, which is offered there should the server end."""
+        self._props["text"], self._props["name"] = text, name
+
     def show(self, scene: Mapping[str, Any], selected: int | None) -> None:
         """Show a scene, with a pulley marked."""
         self._props["scene"] = dict(scene)

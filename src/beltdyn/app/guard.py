@@ -15,11 +15,11 @@ LARGEST_REQUEST = 5_000_000
 _HEADERS = (
     (b"referrer-policy", b"no-referrer"),
     (b"x-content-type-options", b"nosniff"),
-    (b"x-frame-options", b"DENY"),
+    (b"x-frame-options", b"SAMEORIGIN"),
     (b"cross-origin-resource-policy", b"same-origin"),
     (
         b"content-security-policy",
-        b"frame-ancestors 'none'; form-action 'self'; base-uri 'self'; object-src 'none'; connect-src 'self'",
+        b"frame-ancestors 'self'; form-action 'self'; base-uri 'self'; object-src 'none'; connect-src 'self'",
     ),
 )
 

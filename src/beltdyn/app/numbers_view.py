@@ -1,12 +1,19 @@
-"""Numbers of the drive at rest, below the canvas: the tables of `beltdyn check`."""
+"""Numbers below the canvas: the drive at rest, in steady running, and its modes, which follow each change."""
 
-from nicegui import ui
+from uuid import uuid4
 
+from nicegui import background_tasks, ui
+
+from beltdyn.app.calculator import Calculator
+from beltdyn.app.computing import Answer, Asked
 from beltdyn.app.session import Session
+from beltdyn.app.sheet_view import show_parts
 from beltdyn.errors import BeltdynError
-from beltdyn.model import Drive, install
+from beltdyn.model import install
 from beltdyn.results.rest_sheet import rest_sheet
-from beltdyn.results.sheet_parts import Facts, Table
+
+_TITLES = {"rest": "At rest", "running": "Running", "modes": "Modes"}
+_PERCENT = 0.01
 
 
 class NumbersView:
@@ -16,42 +23,92 @@ class NumbersView:
     ----------
     session : Session
         The drive.
+    calculator : Calculator or None
+        What computes them; without one there are estimates at rest alone.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, session: Session, calculator: Calculator | None) -> None:
+        self._session, self._calculator = session, calculator
+        self._tab = uuid4().hex
+        self._wanted: Asked | None = None
+        self._busy = False
+        self._shown: Asked | None = None
+        if calculator is not None:
+            with ui.row().classes("w-full items-center gap-3"):
+                self._what = ui.toggle(dict(_TITLES), value="rest", on_change=self.update).props("dense no-caps flat")
+                self._what.mark("what")
+                self._sliders = ui.row().classes("items-center gap-2 grow")
+                with self._sliders:
+                    self._speed = self._slider("speed", 10, 200)
+                    self._load = self._slider("load", 0, 200)
+                self._state = ui.label().classes("text-caption").props('role="status"').mark("state")
         self._box = ui.column().classes("w-full gap-2 bd-tables").mark("numbers")
+
+    def _slider(self, name: str, low: int, high: int) -> ui.slider:
+        label = ui.label().classes("text-caption").style("min-width: 7em")
+        slider = ui.slider(min=low, max=high, value=100, step=5, on_change=self.update)
+        slider.props(f'dense aria-label="{name} in percent of the drive file"').style("width: 130px").mark(name)
+        label.bind_text_from(slider, "value", lambda value: f"{name} {value:g} %")
+        return slider
 
     def update(self) -> None:
         """Show the numbers of the drive as it stands; nothing where it is wrong."""
-        self._box.clear()
-        drive = self._session.draft.drive
-        if drive is None:
+        session = self._session
+        what = "rest" if self._calculator is None else str(self._what.value)
+        if self._calculator is not None:
+            self._sliders.set_visibility(what != "rest")
+        if session.draft.drive is None:
+            self._wanted = self._shown = None
+            self._box.clear()
+            self._say("")
             return
+        factors = (1.0, 1.0)
+        if self._calculator is not None and what != "rest":
+            factors = (_PERCENT * float(self._speed.value), _PERCENT * float(self._load.value))
+        asked = Asked(what, self._tab, session.document.text, session.workspace.folder.root, *factors)
+        if asked == self._shown:
+            return
+        self._shown = asked
+        if what == "rest":
+            self._estimate()
+        if self._calculator is not None:
+            self._wanted = asked
+            self._say("computing …")
+            if not self._busy:
+                self._busy = True
+                background_tasks.create(self._work(self._calculator))
+
+    def _estimate(self) -> None:
+        """Show at once what is known by hand."""
+        drive = self._session.draft.drive
+        assert drive is not None
+        try:
+            parts, told = rest_sheet(drive, drive, install(drive)).parts, ""
+        except BeltdynError as error:
+            parts, told = (), str(error)
+        self._show(Answer(parts, (), told, 0.0))
+
+    async def _work(self, calculator: Calculator) -> None:
+        """Answer the latest question, until there is none."""
+        try:
+            while (asked := self._wanted) is not None:
+                self._wanted = None
+                answer = await calculator.ask(asked)
+                if asked == self._shown and not self._box.is_deleted:
+                    self._show(answer)
+                    self._say(f"{_TITLES[asked.what].lower()}, computed in {answer.seconds:.2g} s")
+        finally:
+            self._busy = False
+
+    def _say(self, text: str) -> None:
+        if self._calculator is not None:
+            self._state.text = text
+
+    def _show(self, answer: Answer) -> None:
+        self._box.clear()
         with self._box:
-            try:
-                self._show(drive)
-            except BeltdynError as error:
-                ui.label(str(error)).classes("bd-message")
-
-    def _show(self, drive: Drive) -> None:
-        for part in rest_sheet(drive, drive, install(drive)).parts:
-            show_part(part)
-
-
-def show_part(part: Table | Facts) -> None:
-    """Show a part of a sheet."""
-    if part.title:
-        ui.label(part.title).classes("text-weight-medium q-mt-sm")
-    with ui.element("table").classes("bd-table" if isinstance(part, Table) else "bd-table bd-facts"):
-        if isinstance(part, Table):
-            _row("th", part.headings)
-        for row in part.rows if isinstance(part, Table) else part.facts:
-            _row("td", row)
-
-
-def _row(tag: str, cells: tuple[str, ...]) -> None:
-    with ui.element("tr"):
-        for cell in cells:
-            with ui.element(tag):
-                ui.label(cell)
+            if answer.error:
+                ui.label(answer.error).classes("bd-message")
+            show_parts(answer.parts)
+            for warning in answer.warnings:
+                ui.label(warning).classes("bd-message bd-warning")

@@ -7,6 +7,7 @@ from typing import Any
 from nicegui import app, ui
 from nicegui.events import KeyEventArguments
 
+from beltdyn.app.analysis_view import AnalysisView
 from beltdyn.app.canvas import Canvas
 from beltdyn.app.document import Edit
 from beltdyn.app.file_menu import FileMenu
@@ -19,6 +20,8 @@ from beltdyn.errors import BeltdynError
 
 _TABS = ("drive", "belt", "pulley", "tensioner", "contact", "simulation", "limits")
 _LISTS = ("pulley", "tensioner")
+_BLUE = "#1d5f9e"
+"""White text on it, and it on white, have a contrast of 6.6."""
 _TENSIONER_KINDS = ("rotary", "sliding", "fixed")
 
 
@@ -61,6 +64,7 @@ class Page:
 
     def _build(self) -> None:
         self._dark = ui.dark_mode(None)
+        ui.colors(primary=_BLUE)
         with ui.header().classes("items-center q-py-xs gap-1 no-wrap").props("elevated=false"):
             ui.label("beltdyn").classes("text-weight-bold q-mr-sm")
             self._title = ui.label().classes("ellipsis grow").mark("title")
@@ -73,7 +77,8 @@ class Page:
                 self._build_toolbar()
                 self._canvas = Canvas(self.act, self.choose)
                 self._messages = ui.column().classes("w-full gap-0").props('role="status" aria-live="polite"')
-                self._numbers = NumbersView(self.session)
+                self._analyses = AnalysisView(self.session)
+                self._numbers = NumbersView(self.session, self.session.workspace.calculator)
             with ui.element("div").classes("bd-right"):
                 self._build_forms()
         ui.keyboard(on_key=self._key, ignore=[])
@@ -113,10 +118,12 @@ class Page:
         self._redo.set_enabled(session.document.can_redo)
         for button in self._of_pulley:
             button.set_enabled(session.selected is not None)
+        self._canvas.keep(session.document.text, session.name or "drive.toml")
         self._canvas.show(scene(session.draft), session.selected)
         self._update_messages()
         self._update_forms()
         self._numbers.update()
+        self._analyses.update()
 
     def _update_messages(self) -> None:
         self._messages.clear()

@@ -1,9 +1,13 @@
 """What all tabs share: the folder, the drive file that a new tab opens, and the examples."""
 
 from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from beltdyn.app.calculator import Calculator
 from beltdyn.app.folder import Folder
+from beltdyn.app.jobs import Job
 
 EMPTY = """\
 # A belt drive for beltdyn. Numbers are in SI units (m, kg, s, N, rad); "25 mm" or "720 rpm" work too.
@@ -38,14 +42,32 @@ class Workspace:
         Where drive files are.
     first : str, optional
         Name of the file that a new tab opens.
+    calculator : Calculator, optional
+        What computes numbers that follow each change; without one there are estimates at rest.
     """
 
-    def __init__(self, folder: Folder, first: str | None = None) -> None:
+    def __init__(self, folder: Folder, first: str | None = None, calculator: Calculator | None = None) -> None:
         self.folder = folder
         self.first = first
+        self.calculator = calculator
+        self.jobs: set[Job] = set()
+        self._results: TemporaryDirectory[str] | None = None
+
+    @property
+    def results(self) -> Path:
+        """A folder for results, which goes with the server."""
+        if self._results is None:
+            self._results = TemporaryDirectory(prefix="beltdyn-app-", ignore_cleanup_errors=True)
+        return Path(self._results.name)
 
     def close(self) -> None:
         """End what works for the tabs."""
+        for job in self.jobs:
+            job.close()
+        if self.calculator is not None:
+            self.calculator.close()
+        if self._results is not None:
+            self._results.cleanup()
 
 
 def examples() -> list[Example]:

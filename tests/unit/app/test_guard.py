@@ -43,7 +43,7 @@ def test_the_address_with_its_token_is_answered_and_keeps_itself_to_itself() -> 
     start, body = ask(f"/{TOKEN}/", [HOST])
     assert (start["status"], body["body"]) == (200, b"page")
     assert dict(start["headers"])[b"referrer-policy"] == b"no-referrer"
-    assert b"frame-ancestors 'none'" in dict(start["headers"])[b"content-security-policy"]
+    assert b"frame-ancestors 'self'" in dict(start["headers"])[b"content-security-policy"]
     assert status(f"/{TOKEN}/_nicegui/x", [(b"host", b"localhost:8000"), ORIGIN]) == 200
 
 

@@ -9,11 +9,29 @@ import pytest
 
 pytest.importorskip("nicegui")
 
+from nicegui import ui
 from nicegui.testing import User, user_simulation
 
+from beltdyn.app.calculator import Calculator
 from beltdyn.app.canvas import Canvas
+from beltdyn.app.computing import Answer, Asked
 from beltdyn.app.page import Page
+from beltdyn.app.sheet_view import table_html
 from beltdyn.app.workspace import Workspace
+from beltdyn.results.sheet_parts import Facts, Table
+
+
+class Told(Calculator):
+    """Answers at once, with what it was asked."""
+
+    def __init__(self) -> None:
+        self.asked: list[Asked] = []
+
+    async def ask(self, asked: Asked) -> Answer:
+        self.asked.append(asked)
+        facts = Facts((("speed", f"{asked.speed:g}"), ("<b>load</b>", f"{asked.load:g}")), asked.what)
+        return Answer((facts,), ("A warning.",), "", 0.125)
+
 
 Journey = Callable[[User], Awaitable[None]]
 
@@ -63,7 +81,7 @@ def test_the_file_is_shown_with_its_numbers(workspace: Workspace) -> None:
         scene = canvas(user)["scene"]
         assert [one["name"] for one in scene["pulleys"]] == ["crank", "tensioner", "alternator"]
         await user.should_see("Pulleys at rest")
-        await user.should_see("crank to tensioner")
+        await user.should_see(kind=ui.html, content="crank to tensioner")
 
     go(workspace, journey)
 
@@ -202,3 +220,46 @@ def test_the_drive_file_is_downloaded(workspace: Workspace, alternator_text: str
         assert response.text == alternator_text
 
     go(workspace, journey)
+
+
+def test_numbers_follow_speed_and_load(workspace: Workspace) -> None:
+    workspace.calculator = calculator = Told()
+
+    async def journey(user: User) -> None:
+        await user.should_see("at rest, computed in 0.12 s")
+        assert calculator.asked[-1].what == "rest"
+        with user:
+            marked(user, "what").value = "running"
+        await user.should_see("running, computed in 0.12 s")
+        with user:
+            marked(user, "load").value = 150
+        await user.should_see(kind=ui.html, content="1.5")
+        await user.should_see("A warning.")
+        assert calculator.asked[-1][4:] == (1.0, 1.5)
+        asked = len(calculator.asked)
+        act(user, action="move", number=2, x=0.0, y=0.0)
+        await user.should_see("overlap")
+        await user.should_not_see(kind=ui.html, content="1.5")
+        assert len(calculator.asked) == asked
+
+    go(workspace, journey)
+
+
+def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> None:
+    async def journey(user: User) -> None:
+        assert marked(user, "run").enabled
+        act(user, action="move", number=2, x=0.0, y=0.0)
+        assert not marked(user, "run").enabled
+        user.find(marker="undo").click()
+        with user:
+            marked(user, "analysis").value = "campbell"
+        user.find(marker="run").click()
+        await user.should_see("campbell needs speed.")
+
+    go(workspace, journey)
+
+
+def test_tables_are_written_with_their_text_escaped() -> None:
+    written = table_html(Table("", ("", "a\nb"), (("<i>", "1"),)))
+    assert "<td>&lt;i&gt;</td><td>1</td>" in written
+    assert table_html(Facts((("a", "b"),))).startswith('<table class="bd-table bd-facts">')

@@ -1,0 +1,165 @@
+"""Analyses on the page: started with a button, with progress, cancelled, and what they gave."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import mkdtemp
+
+from nicegui import app, ui
+
+from beltdyn.analyses import ANALYSES, RUN
+from beltdyn.app.jobs import Job, Option, Outcome, offered, options_of
+from beltdyn.app.session import Session
+from beltdyn.app.sheet_view import show_parts
+from beltdyn.errors import ModelError
+
+_OFTEN = 0.25
+"""Time between two looks at an analysis, s."""
+_MOST_RESULTS = 5
+
+
+class AnalysisView:
+    """The part of the page that runs analyses.
+
+    Parameters
+    ----------
+    session : Session
+        The drive.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._job: Job | None = None
+        self._cards: list[tuple[ui.expansion, Outcome]] = []
+        names = offered()
+        with ui.row().classes("w-full items-center gap-2 q-mt-md"):
+            self._name = ui.select(
+                {name: f"{name}: {about}" for name, about in names.items()}, value=RUN, label="analysis"
+            )
+            self._name.props("dense options-dense").classes("grow").style("max-width: 30em").mark("analysis")
+            self._name.on_value_change(self._ask_options)
+            self._start = ui.button("Run", icon="play_arrow", on_click=self.start).props("dense no-caps").mark("run")
+            self._cancel = (
+                ui.button("Cancel", icon="stop", on_click=self.cancel).props("dense no-caps outline").mark("cancel")
+            )
+        self._options = ui.row().classes("w-full items-start gap-2")
+        self._inputs: dict[Option, ui.input] = {}
+        self._bar = ui.linear_progress(value=0.0, show_value=False).props('instant-feedback aria-label="progress"')
+        self._state = ui.label().classes("text-caption").props('role="status"').mark("progress")
+        self._results = ui.column().classes("w-full gap-1")
+        self._timer = ui.timer(_OFTEN, self._look, active=False)
+        self._ask_options()
+        self.update()
+
+    def update(self) -> None:
+        """Bring what can be started in line with the drive."""
+        running = self._job is not None
+        self._start.set_enabled(self._session.draft.drive is not None and not running)
+        self._cancel.set_visibility(running)
+        self._bar.set_visibility(running)
+
+    def _ask_options(self) -> None:
+        """Show the options of the chosen analysis."""
+        self._options.clear()
+        with self._options:
+            self._inputs = {
+                one: ui.input(label=one.name.strip("_"), placeholder=one.default)
+                .props('dense stack-label autocomplete="off"')
+                .style("width: 9em")
+                .mark(f"option:{one.name}")
+                for one in options_of(str(self._name.value))
+            }
+
+    def start(self) -> None:
+        """Start the chosen analysis."""
+        name, session = str(self._name.value), self._session
+        if self._job is not None or session.draft.drive is None:
+            return
+        try:
+            options = {
+                one.name: one.read(typed) for one, box in self._inputs.items() if (typed := (box.value or "").strip())
+            }
+        except ModelError as error:
+            self._state.text = str(error)
+            return
+        missing = [one.name for one in self._inputs if one.required and one.name not in options]
+        if missing:
+            self._state.text = f"{name} needs {' and '.join(missing)}."
+            return
+        folder = Path(mkdtemp(dir=session.workspace.results))
+        result = ANALYSES[name].result_file(folder / Path(session.name or "drive.toml").name)
+        self._job = Job(name, session.document.text, session.workspace.folder.root, result, options)
+        session.workspace.jobs.add(self._job)
+        self._timer.active = True
+        self.update()
+
+    def cancel(self) -> None:
+        """End the analysis, and keep what was computed."""
+        if self._job is not None:
+            self._job.cancel()
+            self._state.text = "ending …"
+
+    def _look(self) -> None:
+        job = self._job
+        if job is None:
+            return
+        job.poll()
+        if job.outcome is None:
+            part, phase, remaining = job.step
+            self._bar.value = part
+            left = "" if math.isnan(remaining) else f", about {remaining:.0f} s left"
+            self._state.text = f"{job.name}: {phase}, {part:.0%}{left}"
+            return
+        self._job, self._timer.active, self._state.text = None, False, ""
+        self._session.workspace.jobs.discard(job)
+        self._show(job.name, job.outcome)
+        self.update()
+
+    def _show(self, name: str, outcome: Outcome) -> None:
+        for card, _ in self._cards:
+            card.value = False
+        with self._results:
+            title = f"{name}: {outcome.status}"
+            card = ui.expansion(title, value=True).classes("w-full").props("dense header-class=text-weight-medium")
+            card.move(target_index=0)
+            with card:
+                self._fill(outcome)
+        self._cards.insert(0, (card, outcome))
+        for old, gone in self._cards[_MOST_RESULTS:]:
+            old.delete()
+            for file in (gone.result, gone.report):
+                if file is not None:
+                    file.unlink(missing_ok=True)
+        del self._cards[_MOST_RESULTS:]
+
+    def _fill(self, outcome: Outcome) -> None:
+        if outcome.error:
+            ui.label(outcome.error).classes("bd-message")
+        with ui.row().classes("gap-2"):
+            if outcome.report is not None:
+                address = app.add_static_file(local_file=outcome.report)
+                frame = ui.element("div").classes("w-full")
+                _button("Look at it", "movie", lambda: _open(frame, address)).mark("look")
+                ui.link("in a tab of its own", address, new_tab=True).classes("self-center")
+                report = outcome.report
+                _button("Report", "download", lambda: ui.download.file(report)).mark("report")
+            if outcome.result is not None:
+                result = outcome.result
+                _button("Result file", "download", lambda: ui.download.file(result)).mark("result")
+        for warning in outcome.warnings:
+            ui.label(warning).classes("bd-message bd-warning")
+        show_parts(outcome.parts)
+
+
+def _button(text: str, icon: str, on_click: Callable[[], None]) -> ui.button:
+    return ui.button(text, icon=icon, on_click=on_click).props("dense flat no-caps")
+
+
+def _open(frame: ui.element, address: str) -> None:
+    """Show a report, in which the drive moves, in the page; a second click puts it away."""
+    if frame.default_slot.children:
+        frame.clear()
+        return
+    prefix = str(ui.context.client.request.scope.get("root_path", ""))
+    with frame:
+        ui.element("iframe").props(f'src="{prefix}{address}" title="report"').classes("bd-report")

@@ -1,0 +1,162 @@
+"""What the numbers below the canvas are computed by, in a process of its own: rest, steady running and modes."""
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+import warnings
+from pathlib import Path
+from typing import NamedTuple
+
+from beltdyn.errors import BeltdynError
+from beltdyn.model import Drive, advise, install, loads, unstable_balance
+from beltdyn.results import Run
+from beltdyn.results.rest_sheet import rest_sheet
+from beltdyn.results.sheet import sheet
+from beltdyn.results.sheet_parts import Facts, Table
+
+_MODES = 6
+_MOST_TABS = 8
+"""Tabs whose last steady running is remembered."""
+
+
+class Asked(NamedTuple):
+    """What a tab wants to know.
+
+    Attributes
+    ----------
+    what : str
+        "rest", "running" or "modes".
+    tab : str
+        Which tab.
+    text : str
+        The drive file.
+    folder : Path
+        Where its relative paths start.
+    speed, load : float
+        Factors on the speed of the pulley that drives, and on all torques and loads.
+    """
+
+    what: str
+    tab: str
+    text: str
+    folder: Path
+    speed: float = 1.0
+    load: float = 1.0
+
+
+class Answer(NamedTuple):
+    """Numbers of a drive.
+
+    Attributes
+    ----------
+    parts : tuple of Table or Facts
+        What is shown.
+    warnings : tuple of str
+        What to know.
+    error : str
+        Why there are no numbers; empty otherwise.
+    seconds : float
+        How long it took.
+    """
+
+    parts: tuple[Table | Facts, ...]
+    warnings: tuple[str, ...]
+    error: str
+    seconds: float
+
+
+class _Known(NamedTuple):
+    """Steady running that the next search begins from."""
+
+    text: str
+    held: Drive
+    run: Run | None
+
+
+_known: dict[str, _Known] = {}
+
+
+def prepare() -> None:
+    """Make the process ready: it leaves Ctrl-C to the server, and ends with it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    warnings.simplefilter("ignore")
+    threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def _follow_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
+
+
+def answer(asked: Asked) -> Answer:
+    """Compute what a tab wants to know; an error is an answer too."""
+    begun = time.perf_counter()
+    try:
+        parts, told = {"rest": _rest, "running": _running, "modes": _modes}[asked.what](asked)
+        return Answer(parts, told, "", time.perf_counter() - begun)
+    except BeltdynError as error:
+        return Answer((), (), str(error), time.perf_counter() - begun)
+
+
+Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...]]
+
+
+def _rest(asked: Asked) -> Shown:
+    """The drive at rest, as `beltdyn check` finds it."""
+    from beltdyn.solve import bring_to_rest
+
+    given = loads(asked.text, asked.folder)
+    rest = bring_to_rest(given)
+    unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
+    told = (*unstable, *advise(given, install(given)))
+    return rest_sheet(given, rest.drive, rest.installation).parts, told
+
+
+def _running(asked: Asked) -> Shown:
+    run = _steady(asked)
+    return sheet(run).parts, tuple(run.warnings)
+
+
+def _modes(asked: Asked) -> Shown:
+    from beltdyn.solve import modes
+
+    found = modes(_steady(asked).drive, about=_steady(asked), count=_MODES)
+    return sheet(found).parts, tuple(found.warnings)
+
+
+def _steady(asked: Asked) -> Run:
+    """Steady running under a speed and loads: from that before where there is one, which is quick."""
+    from beltdyn.solve import steady_state
+    from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, with_load
+
+    known = _known.get(asked.tab)
+    if known is None or known.text != asked.text:
+        held = held_at(loads(asked.text, asked.folder), None)
+        known = _Known(asked.text, held, None if known is None else known.run)
+    drive = with_load(known.held, asked.load)
+    if asked.speed != 1.0:
+        number = driver_of(drive)
+        drive = at_speed(drive, number, asked.speed * given_speed(drive, number))
+    try:
+        run = steady_state(drive, start=known.run)
+    except BeltdynError:
+        if known.run is None:
+            raise
+        run = steady_state(drive)
+    _known.pop(asked.tab, None)
+    _known[asked.tab] = known._replace(run=run)
+    while len(_known) > _MOST_TABS:
+        _known.pop(next(iter(_known)))
+    return run
+
+
+def given_speed(drive: Drive, number: int) -> float:
+    """Speed at which a pulley is driven at the end of the simulation, by its speed or a motor, rad/s."""
+    pulley = drive.pulleys[number]
+    if pulley.speed is not None:
+        return float(pulley.speed.at([drive.simulation.duration])[0])
+    return pulley.driven_speed()

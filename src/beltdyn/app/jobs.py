@@ -1,0 +1,225 @@
+"""Analyses that take their time: each in a process of its own, with progress, which can be cancelled."""
+
+import multiprocessing
+import os
+import signal
+from collections.abc import Mapping
+from functools import cache
+from inspect import Parameter, signature
+from multiprocessing.connection import Connection
+from multiprocessing.synchronize import Event as SharedEvent
+from pathlib import Path
+from types import UnionType
+from typing import Any, NamedTuple, get_args
+
+from beltdyn.analyses import ANALYSES
+from beltdyn.app.computing import prepare
+from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.model import loads
+from beltdyn.parts.error_location import shorten
+from beltdyn.results.sheet_parts import Facts, Table
+
+_GRACE = 5.0
+"""Time that a cancelled analysis has to close its file, s."""
+_SHARED = ("output", "progress", "overwrite", "start")
+
+
+class Step(NamedTuple):
+    """How far an analysis has come: the part that is done (0 to 1), what it is at, and the seconds left (or NaN)."""
+
+    part: float
+    phase: str
+    remaining: float
+
+
+class Outcome(NamedTuple):
+    """How an analysis ended.
+
+    Attributes
+    ----------
+    status : str
+        "completed", "interrupted" or "failed".
+    error : str
+        Why it failed; empty otherwise.
+    parts : tuple of Table or Facts
+        What is shown of it.
+    warnings : tuple of str
+        What to know of it.
+    result, report : Path or None
+        The result file and the report, where there are any.
+    """
+
+    status: str
+    error: str = ""
+    parts: tuple[Table | Facts, ...] = ()
+    warnings: tuple[str, ...] = ()
+    result: Path | None = None
+    report: Path | None = None
+
+
+class Option(NamedTuple):
+    """An option of an analysis.
+
+    Attributes
+    ----------
+    name : str
+        As its function has it.
+    kind : type
+        str, int or float: what is given.
+    default : str
+        What holds where it is left open; empty where it must be given, or is chosen.
+    required : bool
+        Whether it must be given.
+    """
+
+    name: str
+    kind: type
+    default: str
+    required: bool
+
+    def read(self, text: str) -> str | int | float:
+        """Read what was typed.
+
+        Raises
+        ------
+        ModelError
+            If it is no number, and should be one.
+        """
+        if self.kind is str:
+            return text
+        try:
+            number: int | float = self.kind(text)
+        except ValueError:
+            whole = "a whole number" if self.kind is int else "a number"
+            raise ModelError(f"{self.name} = {shorten(text)} must be {whole}.") from None
+        return number
+
+
+@cache
+def offered() -> dict[str, str]:
+    """Analyses that take a drive file and plain options, with what they tell."""
+    return {
+        name: one.purpose
+        for name, one in ANALYSES.items()
+        if all(_kind(each.annotation) or each.default is not Parameter.empty for each in _own(name))
+    }
+
+
+@cache
+def options_of(name: str) -> tuple[Option, ...]:
+    """Options of an analysis that are texts or numbers; those that must be given come first."""
+    found = []
+    for one in _own(name):
+        if kind := _kind(one.annotation):
+            required = one.default is Parameter.empty
+            default = "" if required or one.default is None else str(one.default)
+            found.append(Option(one.name, kind, default, required))
+    return tuple(sorted(found, key=lambda option: not option.required))
+
+
+def _own(name: str) -> list[Parameter]:
+    parameters = signature(ANALYSES[name].function, eval_str=True).parameters.values()
+    return [one for one in parameters if one.kind is Parameter.KEYWORD_ONLY and one.name not in _SHARED]
+
+
+def _kind(annotation: Any) -> type | None:
+    """What an option takes as it is typed; None where it is a file, or neither text nor number."""
+    kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
+    return None if Path in kinds else next((kind for kind in (str, float, int) if kind in kinds), None)
+
+
+class Job:
+    """An analysis in a process of its own.
+
+    Parameters
+    ----------
+    name : str
+        Of the analysis.
+    text : str
+        The drive file.
+    folder : Path
+        Where its relative paths start.
+    result : Path
+        The result file; the report is beside it.
+    options : mapping
+        Of the analysis.
+    """
+
+    def __init__(self, name: str, text: str, folder: Path, result: Path, options: Mapping[str, Any]) -> None:
+        spawning = multiprocessing.get_context("spawn")
+        self._heard, told = spawning.Pipe(duplex=False)
+        self._stop = spawning.Event()
+        self._process = spawning.Process(
+            target=_analyse, args=(name, text, folder, result, dict(options), told, self._stop), daemon=True
+        )
+        self.name = name
+        self.step = Step(0.0, "starting", float("nan"))
+        self.outcome: Outcome | None = None
+        self._process.start()
+        told.close()
+
+    def poll(self) -> None:
+        """Take in what the process has told."""
+        if self.outcome is not None:
+            return
+        try:
+            while self.outcome is None and self._heard.poll():
+                said = self._heard.recv()
+                if isinstance(said, Step):
+                    self.step = said
+                else:
+                    self.outcome = said
+        except (EOFError, OSError):
+            self.outcome = Outcome("failed", "the process that computes has ended unexpectedly, as for want of memory.")
+        if self.outcome is not None:
+            self.close()
+
+    def cancel(self) -> None:
+        """End it, and keep what was computed."""
+        self._stop.set()
+
+    def close(self) -> None:
+        """End the process, whatever it is at."""
+        self._stop.set()
+        self._process.join(_GRACE if self.outcome is not None else 0.0)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        self._heard.close()
+        if self.outcome is None:
+            self.outcome = Outcome("interrupted")
+
+
+def _analyse(
+    name: str, text: str, folder: Path, result: Path, options: dict[str, Any], told: Connection, stop: SharedEvent
+) -> None:
+    """Analyse a drive into a file, write its report, and tell how it goes."""
+    prepare()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+    def heed(progress: Any) -> None:
+        told.send(Step(progress.time / progress.duration, progress.phase, progress.remaining))
+        if stop.is_set():
+            raise KeyboardInterrupt
+
+    try:
+        found = ANALYSES[name].write(loads(text, folder), result, heed, True, **options)
+        told.send(_outcome(found, result))
+    except KeyboardInterrupt:
+        told.send(Outcome("interrupted"))
+    except BeltdynError as error:
+        told.send(Outcome("failed", str(error)))
+    told.close()
+
+
+def _outcome(found: Any, result: Path) -> Outcome:
+    """What is shown of a result, with its report."""
+    from beltdyn.report import write_report
+    from beltdyn.results import Run
+    from beltdyn.results.sheet import sheet
+
+    if isinstance(found, Run) and not found.outputs:
+        return Outcome(found.status)
+    report = write_report(found, result.with_suffix(".html"), overwrite=True)
+    return Outcome(found.status, "", sheet(found).parts, tuple(found.warnings), result, report)

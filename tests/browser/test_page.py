@@ -1,0 +1,222 @@
+"""The page in a real browser, drag by drag; run by `make browser`.
+
+With BELTDYN_PICTURES=FOLDER pictures of the page are kept there, to be looked at.
+"""
+
+import os
+import random
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+Open = Callable[..., Any]
+LONG = 240_000
+"""Time for an analysis and for kernels that are compiled, ms."""
+
+
+def shoot(page: Any, name: str) -> None:
+    """Keep a picture of the page, if a folder for pictures is named."""
+    if folder := os.environ.get("BELTDYN_PICTURES"):
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        page.screenshot(path=str(Path(folder) / f"{name}.png"))
+
+
+def middle(page: Any, selector: str) -> tuple[float, float]:
+    box = page.locator(selector).first.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def drag(page: Any, selector: str, right: float, down: float) -> None:
+    x, y = middle(page, selector)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for part in range(1, 9):
+        page.mouse.move(x + right * part / 8, y + down * part / 8)
+        page.wait_for_timeout(25)
+    page.mouse.up()
+    page.wait_for_timeout(400)
+
+
+def pulley(name: str) -> str:
+    return f'[data-pulley="{name}"] .bd-rim'
+
+
+def place(page: Any, share_x: float, share_y: float) -> None:
+    """Double-click on the canvas."""
+    box = page.locator(".bd-canvas").bounding_box()
+    before = page.locator(".bd-pulley").count()
+    page.mouse.dblclick(box["x"] + share_x * box["width"], box["y"] + share_y * box["height"])
+    page.wait_for_function(f"document.querySelectorAll('.bd-pulley').length === {before + 1}")
+
+
+def begin_empty(page: Any) -> None:
+    page.get_by_role("button", name="New", exact=True).click()
+    page.get_by_text("empty canvas").click()
+    page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 0")
+
+
+def enter(page: Any, label: str, text: str) -> None:
+    field = page.get_by_label(label, exact=True).first
+    field.fill(text)
+    field.press("Enter")
+    page.wait_for_timeout(300)
+
+
+def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(open_page: Open, folder: Path) -> None:
+    page = open_page()
+    begin_empty(page)
+    for share in ((0.3, 0.6), (0.7, 0.6), (0.5, 0.25)):
+        place(page, *share)
+    assert page.locator(".bd-belt:not(.bd-sketch)").count() == 1
+    before = page.locator(".bd-belt").get_attribute("d")
+    drag(page, pulley("pulley 3"), 40, 15)
+    assert page.locator(".bd-belt").get_attribute("d") != before
+    radius = page.get_by_label("radius [m]", exact=True).input_value()
+    drag(page, ".bd-size", 12, 12)
+    assert page.get_by_label("radius [m]", exact=True).input_value() != radius
+    page.locator('[data-pulley="driven"]').click()
+    page.get_by_role("button", name="add load").click()
+    page.get_by_text("resistance", exact=True).click()
+    enter(page, "constant [N*m]", "5 N m")
+    page.get_by_role("tab", name="simulation").click()
+    enter(page, "duration [s]", "20 ms")
+    shoot(page, "newcomer_layout")
+    page.get_by_role("button", name="Running").click()
+    page.get_by_text(re.compile("running, computed in")).wait_for(timeout=LONG)
+    assert page.get_by_text("efficiency").count() == 1
+    shoot(page, "newcomer_running")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("run: completed").wait_for(timeout=LONG)
+    page.get_by_role("button", name="Look at it").click()
+    report = page.frame_locator("iframe.bd-report")
+    report.locator("canvas").first.wait_for(timeout=30_000)
+    page.wait_for_timeout(1500)
+    shoot(page, "newcomer_report")
+    with page.expect_download() as kept:
+        page.get_by_role("button", name="Result file").click()
+    assert kept.value.suggested_filename.endswith(".nc")
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_label("name of the file").fill("mine")
+    page.get_by_role("dialog").get_by_role("button", name="Save").click()
+    page.get_by_text("mine.toml", exact=True).wait_for()
+    data = tomllib.loads((folder / "mine.toml").read_text(encoding="utf-8"))
+    assert data["pulley"][1]["load"] == [{"kind": "resistance", "constant": "5 N m"}]
+
+
+def test_wrong_values_and_layouts_are_told_and_undone(open_page: Open) -> None:
+    page = open_page()
+    page.locator('[data-pulley="alternator"]').click()
+    enter(page, "radius [m]", "28 kg")
+    page.get_by_text('pulley[alternator].radius = "28 kg" must be in units of m').first.wait_for()
+    assert page.locator(".bd-belt").count() == 0
+    shoot(page, "wrong_value")
+    enter(page, "radius [m]", "28 mm")
+    page.locator(".bd-belt:not(.bd-sketch)").wait_for()
+    drag(page, pulley("tensioner"), 250, 0)
+    page.get_by_text("the belt would cross itself").wait_for()
+    assert page.locator(".bd-sketch").count() == 1
+    shoot(page, "wrong_layout")
+    page.keyboard.press("Control+z")
+    page.locator(".bd-belt:not(.bd-sketch)").wait_for()
+    drag(page, pulley("alternator"), 0, 150)
+    page.get_by_text("overlap").wait_for()
+    page.get_by_role("button", name="Undo").click()
+    page.locator(".bd-belt:not(.bd-sketch)").wait_for()
+
+
+def test_the_keyboard_is_enough(open_page: Open) -> None:
+    page = open_page()
+    page.locator('[data-pulley="alternator"]').focus()
+    before = page.get_by_label("center [m]", exact=True).input_value()
+    for key in ("ArrowRight", "ArrowRight", "+", "ArrowUp"):
+        page.keyboard.press(key)
+        page.wait_for_timeout(250)
+    assert page.get_by_label("center [m]", exact=True).input_value() != before
+    assert page.get_by_label("radius [m]", exact=True).input_value() == "29 mm"
+    page.keyboard.press("b")
+    page.get_by_text("the belt").first.wait_for()
+    page.keyboard.press("b")
+    page.locator(".bd-belt:not(.bd-sketch)").wait_for()
+    page.keyboard.press("Delete")
+    page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
+    page.keyboard.press("Control+z")
+    page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 3")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1600, 1000, 480])
+def test_it_fits_at_three_widths(open_page: Open, width: int, scheme: str) -> None:
+    page = open_page(width, 900, scheme)
+    page.locator('[data-pulley="tensioner"]').click()
+    page.wait_for_timeout(500)
+    shoot(page, f"width_{width}_{scheme}")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    box = page.locator(".bd-canvas").bounding_box()
+    assert box["width"] > 0.5 * min(width, 900)
+
+
+def test_a_hundred_random_edits_leave_a_page_that_works(open_page: Open) -> None:
+    page = open_page()
+    generator = random.Random(11)
+    for _ in range(100):
+        count = page.locator(".bd-pulley").count()
+        act = generator.choice(("drag", "drag", "size", "flip", "add", "remove", "undo", "redo", "keys"))
+        if count and act == "drag":
+            number = generator.randrange(count)
+            x, y = middle(page, f".bd-pulley >> nth={number} >> .bd-rim")
+            page.mouse.move(x, y)
+            page.mouse.down()
+            page.mouse.move(x + generator.uniform(-80, 80), y + generator.uniform(-80, 80), steps=4)
+            page.mouse.up()
+        elif page.locator(".bd-size").count() and act == "size":
+            x, y = middle(page, ".bd-size")
+            page.mouse.move(x, y)
+            page.mouse.down()
+            page.mouse.move(x + generator.uniform(-20, 20), y + generator.uniform(-20, 20), steps=3)
+            page.mouse.up()
+        elif count and act in ("flip", "keys", "remove"):
+            page.locator(".bd-pulley").nth(generator.randrange(count)).focus()
+            page.keyboard.press({"flip": "b", "keys": "ArrowLeft", "remove": "Delete"}[act])
+        elif act == "add":
+            box = page.locator(".bd-canvas").bounding_box()
+            x, y = (generator.uniform(0.1, 0.9) for _ in "xy")
+            page.mouse.dblclick(box["x"] + x * box["width"], box["y"] + y * box["height"])
+        elif act in ("undo", "redo"):
+            page.keyboard.press("Control+z" if act == "undo" else "Control+y")
+        page.wait_for_timeout(120)
+    page.wait_for_timeout(1000)
+    while page.get_by_role("button", name="Undo").is_enabled():
+        page.get_by_role("button", name="Undo").click()
+        page.wait_for_timeout(60)
+    assert page.locator(".bd-pulley").count() == 3
+    assert page.locator(".bd-belt:not(.bd-sketch)").count() == 1
+
+
+def test_two_tabs_do_not_mix_and_a_page_loaded_again_has_its_drive(open_page: Open) -> None:
+    one, other = open_page(), open_page()
+    one.locator('[data-pulley="tensioner"]').focus()
+    one.keyboard.press("Delete")
+    one.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
+    assert other.locator(".bd-pulley").count() == 3
+    one.reload()
+    one.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
+
+
+def test_a_server_that_is_killed_is_told_of_and_the_drive_can_be_kept(open_page: Open, server: Any) -> None:
+    page = open_page()
+    page.locator('[data-pulley="tensioner"]').focus()
+    page.keyboard.press("Delete")
+    page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
+    server.process.kill()
+    page.get_by_text("The server has ended").wait_for(timeout=30_000)
+    shoot(page, "killed")
+    with page.expect_download() as kept:
+        page.get_by_role("link", name="Keep the drive file").click()
+    text = Path(kept.value.path()).read_text(encoding="utf-8")
+    assert [one["name"] for one in tomllib.loads(text)["pulley"]] == ["crank", "alternator"]

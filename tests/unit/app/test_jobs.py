@@ -1,0 +1,78 @@
+"""Analyses in processes of their own."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+from beltdyn.app.jobs import Job, Option, Outcome, offered, options_of
+from beltdyn.errors import ModelError
+from beltdyn.results import open_result
+
+
+def ended(job: Job) -> Outcome:
+    while job.outcome is None:
+        time.sleep(0.05)
+        job.poll()
+    return job.outcome
+
+
+def test_analyses_are_offered_that_need_nothing_else() -> None:
+    names = offered()
+    assert {"run", "static", "steady", "traction", "modes", "campbell"} <= names.keys()
+    assert not {"duty", "optimize"} & names.keys()  # which read further files
+    options = {one.name: one for one in options_of("campbell")}
+    assert options["speed"].required
+    assert options["points"] == Option("points", int, "40", False)
+    assert options_of("static") == ()
+    assert {"from_", "to"} <= {one.name for one in options_of("sweep") if one.required}
+
+
+def test_options_are_read_as_what_they_are() -> None:
+    points = Option("points", int, "40", False)
+    assert (points.read("12"), Option("slip", str, "", False).read("1")) == (12, "1")
+    for wrong in ("1.5", "many"):
+        with pytest.raises(ModelError, match="must be a whole number"):
+            points.read(wrong)
+
+
+def test_a_result_and_its_report_are_written(drive_text: str, tmp_path: Path) -> None:
+    outcome = ended(Job("static", drive_text, tmp_path, tmp_path / "drive-static.nc", {}))
+    assert (outcome.status, outcome.error) == ("completed", "")
+    assert outcome.result is not None
+    assert outcome.report is not None
+    assert open_result(outcome.result).kind == "static"
+    assert outcome.report.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+    assert outcome.parts
+
+
+def test_what_fails_says_why(drive_text: str, tmp_path: Path) -> None:
+    outcome = ended(Job("traction", drive_text, tmp_path, tmp_path / "x.nc", {"pulley": "none"}))
+    assert outcome.status == "failed"
+    assert '"none"' in outcome.error or "'none'" in outcome.error
+
+
+def test_a_run_that_is_cancelled_keeps_what_was_computed(drive_text: str, tmp_path: Path) -> None:
+    job = Job("run", drive_text.replace("duration = 1.0", "duration = 500.0"), tmp_path, tmp_path / "drive.nc", {})
+    while job.outcome is None and job.step.phase != "integrating":
+        time.sleep(0.05)
+        job.poll()
+    time.sleep(0.2)
+    job.cancel()
+    outcome = ended(job)
+    assert (outcome.status, outcome.error) == ("interrupted", "")
+
+
+def test_a_process_that_is_killed_is_told(drive_text: str, tmp_path: Path) -> None:
+    job = Job("static", drive_text, tmp_path, tmp_path / "x.nc", {})
+    job._process.kill()
+    outcome = ended(job)
+    assert outcome.status == "failed"
+    assert "unexpectedly" in outcome.error
+
+
+def test_closing_ends_the_process(drive_text: str, tmp_path: Path) -> None:
+    job = Job("static", drive_text, tmp_path, tmp_path / "x.nc", {})
+    job.close()
+    assert not job._process.is_alive()
+    assert job.outcome is not None
