@@ -20,7 +20,7 @@ from beltdyn.machines.profiles import kinds as profiles
 from beltdyn.machines.tensioners import kinds as tensioners
 from beltdyn.model import Belt, Contact, Drive, Harmonic, Limits, Pulley, Simulation, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
-from beltdyn.model.catalogue import Entry
+from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
 from beltdyn.parts.part import Part
 from beltdyn.plot import FIGURES
@@ -104,9 +104,12 @@ def test_every_key_of_a_belt_as_sold_is_documented(key: str) -> None:
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
-    machine, own, catalogue = blocks(CATALOGUE, "toml")
+    machine, own, catalogue, curve = blocks(CATALOGUE, "toml")
     (entry,) = tomllib.loads(catalogue).values()
-    assert entry.keys() == Entry.model_fields.keys()
+    assert entry.keys() | tomllib.loads(curve)["my-belt"].keys() == Entry.model_fields.keys()
+    without = "".join(line for line in catalogue.splitlines(keepends=True) if not line.startswith("axial_stiffness"))
+    (tmp_path / "measured.toml").write_text(without + curve, encoding="utf-8")
+    assert read_catalogue("measured.toml", tmp_path)["my-belt"].axial_stiffness == pytest.approx(1700.0)
     (tmp_path / "belts.toml").write_text(catalogue, encoding="utf-8")
     data = tomllib.loads(new_drive)
     for form in (*blocks(DRIVE_FILE, "toml")[:2], machine, own):

@@ -4,7 +4,9 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from math import degrees, pi, sin, sqrt
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
 
 from beltdyn.cli.console import show, show_facts, show_paragraphs, show_table
 
@@ -14,7 +16,14 @@ if TYPE_CHECKING:
 _LENGTHS = {"datum": "datum length", "effective": "effective length", "outside": "inside length"}
 
 
-def catalogue(profile: str | None = None, /, *, file: Path | None = None) -> None:
+def catalogue(
+    profile: str | None = None,
+    /,
+    *,
+    file: Path | None = None,
+    figure: Annotated[Path | None, Parameter(alias="-f")] = None,
+    force: Annotated[bool, Parameter(negative="")] = False,
+) -> None:
     """List the belts of the catalogue, or show one with all its values and where they come from.
 
     Parameters
@@ -23,6 +32,11 @@ def catalogue(profile: str | None = None, /, *, file: Path | None = None) -> Non
         The name of a profile, such as SPB; without it, all are listed.
     file
         A catalogue of your own, TOML, over that of the package.
+    figure
+        Draw tension over strain of the profile into this file, such as stretch.png; it replaces figures of beltdyn, and
+        no other files.
+    force
+        Replace other files too.
     """
     from beltdyn.errors import ModelError
     from beltdyn.model.catalogue import find_entry, read_catalogue
@@ -35,9 +49,16 @@ def catalogue(profile: str | None = None, /, *, file: Path | None = None) -> Non
     except ValueError as error:
         raise ModelError(f"{str(error).rstrip('.')}.") from None
     if profile is None or entry is None:
+        if figure is not None:
+            raise ModelError(f"--figure {figure} shows one profile. Name it: beltdyn catalogue PK --figure {figure}.")
         _list(entries)
-    else:
-        _show(profile, entry)
+        return
+    _show(profile, entry)
+    if figure is not None:
+        from beltdyn import plot
+
+        drawn = plot.save_stretch(entry, figure, f"{profile}, {_size(entry)}", overwrite=force)
+        show(f"\nTension over strain: {drawn}")
 
 
 def _list(entries: "dict[str, Entry]") -> None:
@@ -95,7 +116,8 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
     yield "back_offset", f"{1e3 * entry.back_offset:.3g} mm from the back to the tension line"
     if entry.wedge_angle is not None:
         yield "wedge_angle", f"{degrees(entry.wedge_angle):.3g}°"
-    yield "axial_stiffness", f"{entry.axial_stiffness / 1e3:.4g} kN"
+    begins = ", with which the measured curve begins" * (entry.stretch_curve is not None)
+    yield "axial_stiffness", f"{entry.axial_stiffness / 1e3:.4g} kN{begins}"
     yield "bending_stiffness", f"{entry.bending_stiffness:.3g} N·m²"
     yield "mass_per_length", f"{1e3 * entry.mass_per_length:.3g} g/m"
     if entry.friction is not None:
@@ -118,5 +140,9 @@ def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
         yield "smallest pulley", f"{1e3 * entry.smallest_diameter:.3g} mm of {entry.pulley_diameter} diameter"
     if entry.friction is not None and entry.wedge_angle is not None:
         yield "friction in grooves", f"{entry.friction / sin(entry.wedge_angle / 2):.3g}"
-    yield "stretch", f"{entry.axial_stiffness / 100:.4g} N for 1 %"
+    if entry.stretch_curve is None:
+        yield "stretch", f"{entry.axial_stiffness / 100:.4g} N for 1 %"
+    else:
+        points = zip(entry.stretch_curve.strains, entry.stretch_curve.tensions, strict=True)
+        yield "stretch", ", ".join(f"{tension:.4g} N for {100 * strain:.3g} %" for strain, tension in points if strain)
     yield "speed of stretch waves", f"{sqrt(entry.axial_stiffness / entry.mass_per_length):.0f} m/s"

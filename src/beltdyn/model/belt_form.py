@@ -11,10 +11,10 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from beltdyn.model.catalogue import Entry, find_entry, read_catalogue
-from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.stretch_curve import with_initial_slope
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 
@@ -144,8 +144,13 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
         for pair in zip(DAMPING_TIMES, LOSS_FACTORS, strict=True):
             if any(key in values for key in pair):
                 section = {key: value for key, value in section.items() if key not in pair}
+        if any(key in data for key in (*_STRETCH, "axial_stiffness")):
+            section.pop("stretch_curve", None)
+        elif "stretch_curve" in section:
+            values["stretch_law"] = "measured"
         values = section | values
-    _take_initial_slope(values, data, base)
+    if "stretch_curve" in data:
+        values |= {key: with_initial_slope(data, base)[key] for key in ("stretch_curve", "axial_stiffness")}
     given_section = {key: values.pop(key) for key in Stiffnesses.model_fields if key in values}
     return {"poissons_ratio": _POISSONS_RATIO} | values | _material(Stiffnesses.model_validate(given_section))
 
@@ -187,22 +192,6 @@ def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: M
     return {key: value for key, value in own.items() if key not in without} | kept
 
 
-def _take_initial_slope(values: dict[str, Any], data: Mapping[str, Any], base: Path | None) -> None:
-    """Set the axial stiffness of a belt with a measured curve to the slope with which the curve begins."""
-    if "stretch_curve" not in data:
-        return
-    if "axial_stiffness" in data:
-        raise ValueError(
-            "axial_stiffness and stretch_curve exclude each other: the curve has the stiffness. Keep one of them"
-        )
-    try:
-        curve = StretchCurve.model_validate(data["stretch_curve"], context={"base": base})
-    except ValidationError:
-        values["axial_stiffness"] = 1.0  # the field of the belt tells what is wrong with the curve
-    else:
-        values["stretch_curve"], values["axial_stiffness"] = curve, curve.parameters.stiffness
-
-
 def _material(section: Stiffnesses) -> dict[str, float]:
     """Give the material of a rectangle that has the stiffnesses and the mass."""
     area = section.width * section.thickness
@@ -224,7 +213,10 @@ def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
         raise ValueError(f'{error.args[0]}; a catalogue of your own extends it: catalogue = "file.toml"') from None
     size, powers = _size(sold, entry, width), _POWERS[entry.sold_by]
     values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *_TAKEN_OVER)}
-    return {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
+    found = {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
+    if entry.stretch_curve is None:
+        return found
+    return found | {"stretch_curve": entry.stretch_curve.times(size ** powers["axial_stiffness"])}
 
 
 def _size(sold: Sold, entry: Entry, width: object) -> float:

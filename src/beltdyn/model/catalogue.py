@@ -6,10 +6,11 @@ from functools import cache
 from importlib.resources import files
 from math import pi
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, ValidationInfo, model_validator
 
+from beltdyn.model.stretch_curve import StretchCurve, with_initial_slope
 from beltdyn.parts.error_location import shorten
 from beltdyn.parts.messages import explain, reason
 from beltdyn.parts.part import Part
@@ -43,6 +44,9 @@ class Entry(Part):
     width: Length = Field(gt=0, description="the width of a rib, or of the belt that the values belong to, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in m")
     axial_stiffness: AxialStiffness = Field(gt=0, description="the axial stiffness E A, in N")
+    stretch_curve: StretchCurve | None = Field(
+        None, description="the measured curve of tension over strain, in place of the axial stiffness"
+    )
     bending_stiffness: BendingStiffness = Field(gt=0, description="the bending stiffness E I, in N*m^2")
     mass_per_length: MassPerLength = Field(gt=0, description="the mass of a metre, in kg/m")
     pitch_offset: Length = Field(
@@ -71,6 +75,11 @@ class Entry(Part):
     )
     generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _stretches_by_one_law(cls, data: Any, info: ValidationInfo) -> Any:
+        return with_initial_slope(data, (info.context or {}).get("base"))
 
 
 def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, Entry]:
@@ -111,7 +120,7 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
             f'catalogue = "{shorten(name)}" cannot be read: {reason(error)}. A relative path starts at the folder of '
             "the drive file"
         ) from error
-    return _shipped() | _entries(text, str(name))
+    return _shipped() | _entries(text, str(name), base)
 
 
 def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
@@ -148,22 +157,22 @@ def _shipped() -> dict[str, Entry]:
     return _entries(resource.read_text(encoding="utf-8"), resource.name)
 
 
-def _entries(text: str, name: str) -> dict[str, Entry]:
+def _entries(text: str, name: str, base: Path | None = None) -> dict[str, Entry]:
     try:
         tables = parse_toml(text)
     except ValueError as error:
         raise ValueError(
             f'catalogue = "{shorten(name)}" is not valid TOML: {shorten(error, 200)}. Correct the file there'
         ) from error
-    return {profile: _entry(profile, table, name) for profile, table in tables.items()}
+    return {profile: _entry(profile, table, name, base) for profile, table in tables.items()}
 
 
-def _entry(profile: str, table: object, name: str) -> Entry:
+def _entry(profile: str, table: object, name: str, base: Path | None) -> Entry:
     file, profile = f'catalogue = "{shorten(name)}"', shorten(profile)
     if not isinstance(table, Mapping):
         raise ValueError(f"{file}: {profile} must be a group of keys, such as [{profile}]. Correct it")
     try:
-        return Entry.model_validate(table)
+        return Entry.model_validate(table, context={"base": base})
     except ValidationError as error:
         told = explain(error, Entry, table).splitlines()
         raise ValueError("\n".join(f"{file}, profile {profile}: {line}" for line in told)) from None

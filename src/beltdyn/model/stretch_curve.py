@@ -1,10 +1,12 @@
 """A measured curve of tension over strain."""
 
+from collections.abc import Mapping
 from functools import cached_property
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, Self
 
-from pydantic import ConfigDict, Field, ValidationInfo, model_validator
+from pydantic import ConfigDict, Field, ValidationError, ValidationInfo, model_validator
 
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Force, Ratio
@@ -61,8 +63,40 @@ class StretchCurve(Part):
             return self.strains, self.tensions
         return (0.0, *self.strains), (0.0, *self.tensions)
 
+    def times(self, factor: float) -> "StretchCurve":
+        """The curve of a belt so many times as strong."""
+        return StretchCurve(strains=self.strains, tensions=tuple(factor * tension for tension in self.tensions))
+
     @cached_property
     def parameters(self) -> StretchParameters:
         """Parameters of the law of stretch."""
         made: StretchParameters = LAWS["measured"].make(*self._points)
         return made
+
+
+def with_initial_slope(data: Any, base: Path | None) -> Any:
+    """Set the axial stiffness of a belt with a measured curve to the slope with which the curve begins.
+
+    Parameters
+    ----------
+    data
+        Keys of a belt; returned as they are without a curve.
+    base
+        Folder that the path of a file of the curve starts from.
+
+    Raises
+    ------
+    ValueError
+        If there is a stiffness beside the curve.
+    """
+    if not isinstance(data, Mapping) or "stretch_curve" not in data:
+        return data
+    if "axial_stiffness" in data:
+        raise ValueError(
+            "axial_stiffness and stretch_curve exclude each other: the curve has the stiffness. Keep one of them"
+        )
+    try:
+        curve = StretchCurve.model_validate(data["stretch_curve"], context={"base": base})
+    except ValidationError:
+        return {**data, "axial_stiffness": 1.0}  # the field of the belt tells what is wrong with the curve
+    return {**data, "stretch_curve": curve, "axial_stiffness": curve.parameters.stiffness}

@@ -30,10 +30,22 @@ from beltdyn.plot.sensitivity import sensitivity as sensitivity
 from beltdyn.plot.spans import mid_spans as mid_spans
 from beltdyn.plot.spans import tension_spectrum as tension_spectrum
 from beltdyn.plot.spans import tensioners as tensioners
+from beltdyn.plot.stretch import save_stretch as save_stretch
+from beltdyn.plot.stretch import stretch as stretch
 from beltdyn.plot.sweep import orders as orders
 from beltdyn.plot.sweep import waterfall as waterfall
 from beltdyn.plot.tensioner_sheet import tensioner_sheet as tensioner_sheet
 from beltdyn.plot.wear import wear_by_arc as wear_by_arc
 from beltdyn.plot.wear import wear_by_belt as wear_by_belt
 
-__all__ = ["FIGURES", "animate", "animate_modes", "layout", "save_all", "save_layout", *FIGURES]
+__all__ = [
+    "FIGURES",
+    "animate",
+    "animate_modes",
+    "layout",
+    "save_all",
+    "save_layout",
+    "save_stretch",
+    "stretch",
+    *FIGURES,
+]

@@ -12,7 +12,7 @@ from matplotlib.path import Path as Outline
 from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError
 from beltdyn.machines import FixedTensioner, Tensioner
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
@@ -106,12 +106,6 @@ def save_layout(
     """
     path = FilePath(path)
     figure = new_figure(size_of(drive))
-    formats = figure.canvas.get_supported_filetypes()
-    if path.suffix.lower().lstrip(".") not in formats:
-        raise ModelError(
-            f"{path} cannot be written: {path.suffix or 'no suffix'} is not a format for figures. "
-            f"Use one of {', '.join(formats)}."
-        )
     layout(drive, installation, figure.add_subplot())
     return save(figure, path, overwrite)
 

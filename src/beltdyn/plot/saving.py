@@ -8,6 +8,7 @@ from typing import Literal
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from beltdyn.errors import ModelError
 from beltdyn.results.atomic import MARK, atomic_path, is_marked
 
 _SAYS_WHO_MADE_IT = {".png": "Software", ".svg": "Creator", ".pdf": "Creator", ".ps": "Creator", ".eps": "Creator"}
@@ -36,8 +37,14 @@ def save(figure: Figure, path: Path, overwrite: bool = False) -> Path:
     Raises
     ------
     ModelError
-        If the file cannot be written, or would replace one that is no figure of ours.
+        If the format is unknown, the file cannot be written, or would replace one that is no figure of ours.
     """
+    formats = figure.canvas.get_supported_filetypes()
+    if path.suffix.lower().lstrip(".") not in formats:
+        raise ModelError(
+            f"{path} cannot be written: {path.suffix or 'no suffix'} is not a format for figures. "
+            f"Use one of {', '.join(formats)}."
+        )
     field = _SAYS_WHO_MADE_IT.get(path.suffix.lower())
     with atomic_path(path, is_marked, overwrite) as temporary:
         figure.savefig(temporary, metadata={field: MARK} if field else None)

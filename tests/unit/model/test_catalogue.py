@@ -206,3 +206,33 @@ def test_every_error_says_where_it_is(tmp_path: Path) -> None:
     assert len(lines) == 2
     for line, key in zip(lines, ("title is missing", "mass_per_length = 0.0 must be greater"), strict=True):
         assert line.startswith(f'catalogue = "mine.toml", profile PK: entry.{key}')
+
+
+CURVE = """
+[elastic]
+width = "2 mm"
+thickness = "3 mm"
+bending_stiffness = 2e-4
+mass_per_length = 0.009
+title = "Elastic belt of ours"
+source = "our rig"
+stretch_curve = { strains = [0.01, 0.03], tensions = [10.0, 20.0] }
+"""
+
+
+def test_a_measured_curve_takes_the_place_of_the_stiffness(tmp_path: Path) -> None:
+    """Four ribs pull four times as much; a stiffness or law that the drive file gives goes before."""
+    file = tmp_path / "mine.toml"
+    file.write_text(CURVE)
+    entry = read_catalogue(file)["elastic"]
+    sold = {"length": 1.0, "profile": "elastic", "ribs": 4, "catalogue": str(file)}
+    belt = Belt(**sold)
+    assert belt.stretch_law == "measured"
+    np.testing.assert_allclose(belt.stretch_parameters.tension([1.01, 1.03]), [40.0, 80.0])
+    assert belt.axial_stiffness == pytest.approx(4.0 * entry.axial_stiffness)
+    assert Belt(**sold | {"axial_stiffness": 5e3}).stretch_parameters.tension(1.03) == pytest.approx(150.0)
+    linear = Belt(**sold, stretch_law="linear")
+    assert linear.stretch_parameters.tension(1.03) == pytest.approx(0.12 * entry.axial_stiffness)
+    file.write_text(CURVE + "axial_stiffness = 1e3\n")
+    with pytest.raises(ValueError, match="axial_stiffness and stretch_curve exclude each other"):
+        read_catalogue(file)
