@@ -38,6 +38,7 @@ ELSEWHERE = {
     "solve/alpha_impulse.py": "verification/dynamics/test_impulse.py",
     "solve/alpha_method.py": "unit/solve/test_alpha_step.py",
     "solve/campbell_diagram.py": "unit/solve/test_campbell.py",
+    "solve/response_answers.py": "unit/solve/test_response.py",
     "solve/engine.py": "unit/solve/test_alpha_advance.py",
     "solve/integrator_state.py": "unit/solve/test_alpha_advance.py",
     "solve/observer.py": "unit/solve/test_recording.py",

@@ -26,6 +26,7 @@ from beltdyn.plot.pulleys import hub_loads as hub_loads
 from beltdyn.plot.pulleys import powers as powers
 from beltdyn.plot.pulleys import slip as slip
 from beltdyn.plot.registry import FIGURES as FIGURES
+from beltdyn.plot.response import response as response
 from beltdyn.plot.sensitivity import sensitivity as sensitivity
 from beltdyn.plot.spans import mid_spans as mid_spans
 from beltdyn.plot.spans import tension_spectrum as tension_spectrum

@@ -10,6 +10,7 @@ from beltdyn.solve.modes import modes
 from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.optimize import optimize
 from beltdyn.solve.progress import BatchProgress, Progress
+from beltdyn.solve.response import response
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.simulate import simulate
 from beltdyn.solve.standard import StandardIntegrator
@@ -41,6 +42,7 @@ __all__ = [
     "modes",
     "operating_map",
     "optimize",
+    "response",
     "sensitivity",
     "simulate",
     "simulate_all",

@@ -7,11 +7,12 @@ from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable
 from beltdyn.solve.campbell_diagram import CampbellDiagram
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
+from beltdyn.solve.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.solve.excitation import given_excitations, own_excitations
 from beltdyn.solve.modes import SLIDING, STUCK
 from beltdyn.solve.operating_points import Axes, OperatingPoints
 from beltdyn.solve.progress import Report
+from beltdyn.solve.waves import averaged
 
 _KEPT = (
     *("belt_speed", "largest_tension", "least_slip_safety"),
@@ -94,10 +95,10 @@ def campbell(
         raise ModelError(f"count = {count} modes are none. Give 1 or more.")
     if dry_tensioners not in (SLIDING, STUCK):
         raise ModelError(f'dry_tensioners = {dry_tensioners!r} is neither "{SLIDING}" nor "{STUCK}". Give one of them.')
-    held = held_at(drive, at)
+    held = held_at(averaged(drive), at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     name, sense = held.pulleys[number].name, sense_of(held, number)
-    excitations = own_excitations(held) if orders is None else given_excitations(orders, held, number)
+    excitations = own_excitations(at_instant(drive, at)) if orders is None else given_excitations(orders, held, number)
     speeds = numbers_in("speed", speed, "rad/s", points)
     if speeds[0] <= 0.0:
         raise ModelError(f"speed = {speed!r} must be above zero. Begin at a higher speed.")

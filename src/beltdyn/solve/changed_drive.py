@@ -25,8 +25,13 @@ def held_at(drive: Drive, at: float | None) -> Drive:
     ConvergenceError
         If there is no length that gives the installed tension.
     """
-    held = without_schedules(drive, drive.simulation.duration if at is None else at)[0]
+    held = at_instant(drive, at)
     return held if held.belt.installed_tension is None else bring_to_stand(held).drive
+
+
+def at_instant(drive: Drive, at: float | None) -> Drive:
+    """Hold speeds, torques and schedules as they are at an instant (s), by default the end of the simulation."""
+    return without_schedules(drive, drive.simulation.duration if at is None else at)[0]
 
 
 def sense_of(drive: Drive, number: int) -> float:

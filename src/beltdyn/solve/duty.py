@@ -1,6 +1,5 @@
 """An analysis: the operating points of a duty table, and means weighted by their durations."""
 
-import re
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -12,15 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.parts.messages import reason
-from beltdyn.parts.quantity import to_si
-from beltdyn.parts.table_file import read_rows
 from beltdyn.results import Result, Variable
 from beltdyn.solve.changed_drive import at_speed, held_at, with_load, with_torque
+from beltdyn.solve.headed_table import HeadedColumn, read_headed
 from beltdyn.solve.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 
-_HEADING = re.compile(r"\s*(?P<what>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
 _UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
 _MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss")
 _EXPONENT = 3.0
@@ -119,47 +115,22 @@ def read_duty(path: Path) -> list[Column]:
     ModelError
         If it cannot be read, or a heading, number or duration is wrong.
     """
-    try:
-        rows = read_rows(path)
-    except ValueError as error:
-        raise ModelError(f'table = "{path}" {error}.') from error
-    if len(rows) < 2:
-        raise ModelError(f'table = "{path}" has no rows. Give a line of headings, and one for each operating point.')
-    headings = rows[0][1]
-    for number, line in rows[1:]:
-        if len(line) != len(headings):
-            raise ModelError(f"{path}, line {number}: {len(line)} cells, and there are {len(headings)} headings.")
-    columns = [
-        _column(path, heading, [(number, line[place]) for number, line in rows[1:]])
-        for place, heading in enumerate(headings)
-    ]
+    columns = [_column(one) for one in read_headed("table", path)]
     durations = [one.values for one in columns if one.what == "duration"]
     if len(durations) != 1 or min(durations[0]) < 0.0 or not sum(durations[0]) > 0.0:
         raise ModelError(f'{path} needs one column "duration [s]" of numbers of zero or more, not all zero.')
     return columns
 
 
-def _column(path: Path, heading: str, cells: list[tuple[int, str]]) -> Column:
+def _column(given: HeadedColumn) -> Column:
     """A column in SI units."""
-    match = _HEADING.fullmatch(heading)
-    pulley, _, what = match["what"].rpartition(" ") if match else ("", "", "")
+    pulley, _, what = given.what.rpartition(" ")
     if what not in _UNITS or bool(pulley) != (what in ("speed", "torque")):
         raise ModelError(
-            f'{path}: the heading "{heading.strip()}" is none of "duration [s]", "load", "NAME speed [rpm]" and '
+            f'{given.path}: the heading "{given.what}" is none of "duration [s]", "load", "NAME speed [rpm]" and '
             '"NAME torque [N m]". Correct it.'
         )
-    unit = (match["unit"] if match else None) or ""
-    return Column(what, pulley.strip(), [_number(path, line, cell, unit, _UNITS[what]) for line, cell in cells])
-
-
-def _number(path: Path, line: int, cell: str, given: str, unit: str) -> float:
-    try:
-        number = to_si(f"{float(cell)!r} {given}", unit) if given and unit else float(cell)
-        if not np.isfinite(number):
-            raise ValueError("must be a finite number")
-    except ValueError as error:
-        raise ModelError(f'{path}, line {line}: "{cell.strip()}" {reason(error)}. Correct this line.') from error
-    return number
+    return Column(what, pulley.strip(), given.values(_UNITS[what]))
 
 
 def durations_of(columns: list[Column]) -> FloatArray:

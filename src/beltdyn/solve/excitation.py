@@ -10,9 +10,11 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Run
+from beltdyn.solve.waves import torque_orders
 
 RIM, SHAFT, BELT = "pulley_speed", "shaft_speed", "belt"
 """What turns: the rim of a pulley, its shaft behind the hub chain, or the belt."""
+SPEED, LOAD, TURN = "speed", "load", "turn"
 _SAME = 0.01
 """Frequencies that differ by this part or less are drawn as one line."""
 
@@ -21,6 +23,8 @@ class Excitation(NamedTuple):
     """Something that repeats itself with what turns."""
 
     name: str
+    cause: str
+    """What repeats itself: `SPEED` or `LOAD` of a shaft, or a `TURN`, of which the amplitude is not known."""
     order: float
     """Waves in a turn."""
     turning: str
@@ -46,17 +50,17 @@ def own_excitations(drive: Drive) -> list[Excitation]:
     found = list[Excitation]()
     for number, one in enumerate(drive.pulleys):
         found += [
-            Excitation(f"speed of {one.name}, order {wave.order:g}", wave.order, SHAFT, number)
+            Excitation(f"speed of {one.name}, order {wave.order:g}", SPEED, wave.order, SHAFT, number)
             for wave in one.harmonics
         ]
         found += [
-            Excitation(f"load of {one.name}, order {wave.order:g}", wave.order, SHAFT, number)
+            Excitation(f"load of {one.name}, order {order:g}", LOAD, order, SHAFT, number)
             for load in one.load
             if load.schedule is None or load.schedule.at([0.0])[0] != 0.0
-            for wave in load.harmonics
+            for order in torque_orders(load)
         ]
-    found += [Excitation(f"turn of {one.name}", 1.0, RIM, number) for number, one in enumerate(drive.pulleys)]
-    return [*dict.fromkeys(found), Excitation("turn of the belt", 1.0, BELT)]
+    found += [Excitation(f"turn of {one.name}", TURN, 1.0, RIM, number) for number, one in enumerate(drive.pulleys)]
+    return [*dict.fromkeys(found), Excitation("turn of the belt", TURN, 1.0, BELT)]
 
 
 def given_excitations(orders: str, drive: Drive, number: int) -> list[Excitation]:
@@ -80,7 +84,7 @@ def given_excitations(orders: str, drive: Drive, number: int) -> list[Excitation
     found = [] if ".." in orders else [float(one) for one in numbers_in("orders", orders, "", 2)]
     if not found or found[0] <= 0.0:
         raise ModelError(f'orders = {orders!r} must be numbers above zero with commas between, such as "0.5, 1, 2".')
-    return [Excitation(f"order {order:g} of {name}", order, SHAFT, number) for order in found]
+    return [Excitation(f"order {order:g} of {name}", TURN, order, SHAFT, number) for order in found]
 
 
 def one_line_each(excitations: Sequence[Excitation], frequencies: FloatArray) -> tuple[list[str], FloatArray]:

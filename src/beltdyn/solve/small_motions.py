@@ -146,13 +146,15 @@ def _sticking_rate(tension: float, system: System) -> float:
     return float(_STICKS * system.law.normal.stiffness / slope.min()) if rough.any() else 0.0
 
 
-def about_steady(run: Run) -> SmallMotions:
+def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
     """A drive in steady running.
 
     Parameters
     ----------
     run
         From `steady_state`.
+    all_shafts
+        Whether motions of shafts of prescribed speed are among the unknowns, too.
     """
     search = search_from(run.drive, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
@@ -160,6 +162,10 @@ def about_steady(run: Run) -> SmallMotions:
     rims = slice(system.first_body, state.position.size - system.tensioners.size)
     seen = body_forces_at(system, np.zeros(1), state.position[None].copy(), state.velocity[None].copy())
     state.position[rims] = twists(system, seen.moment[0])
+    if all_shafts:
+        bodies = system.bodies.copy()
+        bodies["unknown"] = np.arange(bodies.size)
+        system = system._replace(bodies=bodies)
     return _linearised(run.drive, system, state, search.belt_parameter)
 
 

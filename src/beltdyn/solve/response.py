@@ -1,0 +1,124 @@
+"""An analysis: linear response of steady running to the harmonics of speeds and loads, over speed."""
+
+from pathlib import Path
+from typing import Any
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.number_range import numbers_in
+from beltdyn.results import Result, Run, Variable
+from beltdyn.solve.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
+from beltdyn.solve.forced_motion import ForcedMotion
+from beltdyn.solve.modes import SLIDING, STUCK
+from beltdyn.solve.operating_points import Axes, OperatingPoints, labels_of
+from beltdyn.solve.progress import Report
+from beltdyn.solve.response_answers import Answers
+from beltdyn.solve.response_comparison import Place, measured_amplitudes, run_up_amplitudes
+from beltdyn.solve.waves import averaged
+
+_KEPT = (
+    *("belt_speed", "largest_tension", "least_slip_safety"),
+    *("pulley_speed", "span_tension", "hub_load", "tensioner_position", "failure"),
+)
+"""Variables of operating points that are kept: what responses swing about."""
+
+
+def response(
+    drive: Drive,
+    *,
+    speed: str,
+    pulley: str | None = None,
+    points: int = 40,
+    dry_tensioners: str = SLIDING,
+    compare: Path | str | Run | None = None,
+    measured: Path | str | None = None,
+    at: float | None = None,
+    force_tolerance: float = 0.01,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Find the vibrations that the harmonics of speeds and loads excite, over speed: order cuts, by linear response.
+
+    Vibrations are small, about steady running at each speed, and have the frequencies of their orders. Loads are those
+    of the drive file at one instant; those over speed follow the speed. A speed without steady running is marked, and
+    the others stay.
+
+    Parameters
+    ----------
+    drive
+        The drive, with harmonics of a prescribed speed or of loads, or with torques over the angle of shafts.
+    speed
+        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in the sense in
+        which it turns.
+    pulley
+        The pulley whose speed is prescribed; by default the one that drives.
+    points
+        Number of speeds of a range.
+    dry_tensioners
+        "sliding" for tensioners whose dry friction is left out, as in large vibrations, or "stuck" for those that it
+        holds, as in small ones.
+    compare
+        A result file of `sweep`, or its results: amplitudes of the same orders in the run-up are put beside.
+    measured
+        A CSV file of measured amplitudes to put beside: a column "speed [rpm]", and columns such as
+        "span_tension crank-idler order 2 [N]".
+    at
+        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+    output
+        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
+
+    Returns
+    -------
+    Result
+        Along ``speed`` (rad/s, of the pulley in the attribute ``pulley``), ``excitation`` and pulley, span or tensioner
+        amplitudes ``NAME_amplitude`` and phases ``NAME_phase``: NAME is its mean, and amplitude times
+        cos(order times the angle of the exciting shaft + phase) beside.
+
+    Raises
+    ------
+    ModelError
+        If nothing excites the drive, options make no sense, or the drive cannot run steadily.
+    ConvergenceError
+        If no speed has steady running.
+
+    Examples
+    --------
+    >>> waves = [{"order": 2, "amplitude": 0.02}]
+    >>> shaking = drive.replace(pulley=[drive.pulleys[0].replace(harmonics=waves), drive.pulleys[1]])
+    >>> found = bd.response(shaking, speed="80, 120 rpm")
+    >>> found.dataset.span_tension_amplitude.dims
+    ('speed', 'excitation', 'span')
+    """
+    if dry_tensioners not in (SLIDING, STUCK):
+        raise ModelError(f'dry_tensioners = {dry_tensioners!r} is neither "{SLIDING}" nor "{STUCK}". Give one of them.')
+    given, exciting = held_at(averaged(drive), at), at_instant(drive, at)
+    number = driver_of(given) if pulley is None else given.number_of(pulley)
+    name, sense = given.pulleys[number].name, sense_of(given, number)
+    speeds = numbers_in("speed", speed, "rad/s", points)
+    if speeds[0] <= 0.0:
+        raise ModelError(f"speed = {speed!r} must be above zero. Begin at a higher speed.")
+    answers = Answers(exciting, number, speeds)
+    place, beside = Place(speeds, number, answers.excitations, labels_of(given)), dict[str, Any]()
+    if compare is not None:
+        beside |= run_up_amplitudes(compare, place)
+    if measured is not None:
+        beside |= measured_amplitudes(Path(measured), place)
+    axes: Axes = {"speed": (Variable(("speed",), "rad/s", f"Speed of {name}"), speeds)}
+    with OperatingPoints("response", given, axes, output, progress, overwrite, names=_KEPT) as table:
+        title = f"Response of {drive.title} over the speed of {name}"
+        table.attributes = {"title": title, "drive_as_given": drive.text, "pulley": name}
+        table.attributes["dry_tensioners"] = dry_tensioners
+        table.more, table.derive = answers.coordinates, lambda arrays: {**answers.variables(), **beside}
+        for row, value in enumerate(speeds):
+            run = table.find((row,), at_speed(given, number, sense * float(value)), force_tolerance)
+            if run is not None:
+                answers.take(row, run, ForcedMotion(run, dry_tensioners == STUCK))
+                table.notes = answers.warnings(table.arrays)
+    return table.result()
