@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 pytestmark = pytest.mark.browser
 
 Open = Callable[..., Any]
@@ -133,12 +134,11 @@ def test_wrong_values_and_layouts_are_told_and_undone(open_page: Open) -> None:
 def test_the_keyboard_is_enough(open_page: Open) -> None:
     page = open_page()
     page.locator('[data-pulley="alternator"]').focus()
-    before = page.get_by_label("center [m]", exact=True).input_value()
     for key in ("ArrowRight", "ArrowRight", "+", "ArrowUp"):
-        page.keyboard.press(key)
-        page.wait_for_timeout(250)
-    assert page.get_by_label("center [m]", exact=True).input_value() != before
-    assert page.get_by_label("radius [m]", exact=True).input_value() == "29 mm"
+        page.keyboard.press(key)  # without a pause: steps add up
+    expect = playwright.expect
+    expect(page.get_by_label("center [m]", exact=True)).to_have_value("0.002, 0.271", timeout=20_000)
+    expect(page.get_by_label("radius [m]", exact=True)).to_have_value("29 mm", timeout=20_000)
     page.keyboard.press("b")
     page.get_by_text("the belt").first.wait_for()
     page.keyboard.press("b")

@@ -255,8 +255,8 @@ export default {
       if (event.ctrlKey || event.metaKey || event.altKey) return;
       const step = this.step(event);
       const size = { "+": 1, "=": 1, "-": -1 }[event.key];
-      if (step) this.act("move", one.number, { x: (one.x + step[0]) / 1000, y: -(one.y + step[1]) / 1000 });
-      else if (size) this.act("size", one.number, { radius: Math.max(one.r + size * this.snap, this.snap) / 1000 });
+      if (step) this.act("nudge", one.number, { x: step[0] / 1000, y: -step[1] / 1000 });
+      else if (size) this.act("grow", one.number, { radius: (size * this.snap) / 1000 });
       else if (event.key === "b" || event.key === "B") this.act("flip", one.number);
       else if (event.key === "Delete" || event.key === "Backspace") this.act("remove", one.number);
       else return;
@@ -265,7 +265,7 @@ export default {
     pivotKey(event, one) {
       const step = this.step(event);
       if (!step) return;
-      this.act("pivot", one.number, { x: (one.pivot[0] + step[0]) / 1000, y: -(one.pivot[1] + step[1]) / 1000 });
+      this.act("nudge_pivot", one.number, { x: step[0] / 1000, y: -step[1] / 1000 });
       event.preventDefault();
     },
     wheel(event) {

@@ -6,7 +6,7 @@ from typing import Any
 
 from beltdyn.app.document import Edit
 from beltdyn.app.draft import Draft
-from beltdyn.app.scene import Circle, circles, groups, sketched
+from beltdyn.app.scene import Circle, circles, groups, length_in, sketched
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import written_like
@@ -27,6 +27,26 @@ _DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"
 def move(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
     """Put the center of a pulley to a place, m."""
     return _point(data, ("pulley", number, "center"), groups(data, "pulley")[number].get("center"), x, y)
+
+
+def nudge(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
+    """Move the center of a pulley by a step, m; nothing where it cannot be read."""
+    one = next((each for each in circles(data) if each.number == number), None)
+    return [] if one is None else move(data, number, one.x + right, one.y + up)
+
+
+def grow(data: Mapping[str, Any], number: int, more: float) -> list[Edit]:
+    """Make the radius of a pulley larger, m; nothing where it cannot be read."""
+    one = next((each for each in circles(data) if each.number == number), None)
+    return [] if one is None else resize(data, number, one.radius + more)
+
+
+def nudge_pivot(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
+    """Move the pivot of a tensioner by a step, m; nothing where it cannot be read."""
+    given = groups(data, "tensioner")[number].get("pivot")
+    point = [length_in(one) for one in given] if isinstance(given, list) and len(given) == 2 else [None, None]
+    x, y = point
+    return [] if x is None or y is None else move_pivot(data, number, x + right, y + up)
 
 
 def move_pivot(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:

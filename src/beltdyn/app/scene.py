@@ -132,7 +132,9 @@ def _ghosts(drive: Drive, rest: Path) -> list[dict[str, float]]:
 
 def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Draft) -> dict[str, Any]:
     x, y = _place(center[0], center[1])
+    given = groups(draft.data, "pulley")[one.number]
     pulley = None if drive is None else drive.pulleys[one.number]
+    drives = bool(given.get("speed")) if pulley is None else pulley.prescribed or pulley.driven_speed() > 0
     wrap = None if drive is None else math.degrees(drive.path.wrap_angles[one.number])
     return {
         "number": one.number,
@@ -141,7 +143,7 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
         "y": y,
         "r": MILLIMETRES * one.radius,
         "outside": one.side == "outside",
-        "drives": bool(pulley is not None and (pulley.prescribed or pulley.driven_speed() > 0)),
+        "drives": drives,
         "wrap": "" if wrap is None else f"{wrap:.1f}°",
         "wrong": bool(draft.told_below(("pulley", one.number))),
     }

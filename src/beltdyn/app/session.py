@@ -16,6 +16,8 @@ _FARTHEST = 1e3
 _ON_PULLEYS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, float]], list[Edit]]] = {
     "move": lambda data, number, to: placing.move(data, number, to["x"], to["y"]),
     "size": lambda data, number, to: placing.resize(data, number, to["radius"]),
+    "nudge": lambda data, number, to: placing.nudge(data, number, to["x"], to["y"]),
+    "grow": lambda data, number, to: placing.grow(data, number, to["radius"]),
     "flip": lambda data, number, to: placing.flip(data, number),
     "remove": lambda data, number, to: placing.remove(data, number),
     "earlier": lambda data, number, to: placing.shift(data, number, -1),
@@ -23,6 +25,7 @@ _ON_PULLEYS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, float]]
 }
 _ON_TENSIONERS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, float]], list[Edit]]] = {
     "pivot": lambda data, number, to: placing.move_pivot(data, number, to["x"], to["y"]),
+    "nudge_pivot": lambda data, number, to: placing.nudge_pivot(data, number, to["x"], to["y"]),
     "direction": lambda data, number, to: placing.turn_direction(data, number, to["x"], to["y"]),
 }
 
@@ -93,8 +96,8 @@ class Session:
         Parameters
         ----------
         action : object
-            "move", "size", "flip", "remove", "earlier" or "later" of a pulley, "pivot" or "direction" of a tensioner,
-            or "add".
+            "move", "size", "nudge" and "grow" (by a step), "flip", "remove", "earlier" or "later" of a pulley; "pivot",
+            "nudge_pivot" or "direction" of a tensioner; or "add".
         arguments : mapping
             The number of the pulley or tensioner, and numbers in m.
         """

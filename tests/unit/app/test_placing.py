@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from beltdyn.app import placing
-from beltdyn.app.document import Document
+from beltdyn.app.document import Document, Edit
 from beltdyn.app.draft import Draft, draft
 from beltdyn.app.workspace import EMPTY
 
@@ -23,6 +23,20 @@ def test_values_keep_the_units_of_the_file(alternator_text: str) -> None:
     document.apply(placing.move(document.data, 2, 0.0012, 0.28))
     assert document.data["pulley"][0]["radius"] == "76.5 mm"
     assert document.data["pulley"][2]["center"] == [0.0012, 0.28]
+
+
+def test_steps_of_keys_add_up(alternator_text: str) -> None:
+    document = Document(alternator_text)
+    for _ in range(3):
+        document.apply(placing.nudge(document.data, 2, 0.001, -0.001))
+        document.apply(placing.grow(document.data, 2, 0.001))
+        document.apply(placing.nudge_pivot(document.data, 0, 0.0, 0.001))
+    assert document.data["pulley"][2]["center"] == [0.003, 0.267]
+    assert document.data["pulley"][2]["radius"] == "31 mm"
+    assert document.data["tensioner"][0]["pivot"] == [0.1, 0.103]
+    document.apply([Edit("set", ("pulley", 2, "radius"), "x"), Edit("set", ("tensioner", 0, "pivot"), 1)])
+    assert placing.nudge(document.data, 2, 1.0, 0.0) == []
+    assert placing.nudge_pivot(document.data, 0, 1.0, 0.0) == []
 
 
 def test_a_pulley_given_by_its_diameter_keeps_it() -> None:
