@@ -10,10 +10,9 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import FreeNumber, Points
 from beltdyn.parts.change import converted, unit_at, value_at
-from beltdyn.solve.sensitivity import steady_neighbour
 from beltdyn.solve.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.staying import Standing, bring_to_stand
-from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady import steady_on_mesh, steady_state
 from beltdyn.solve.study_points import OperatingPoint, held
 from beltdyn.solve.watched import Running, Watched
 
@@ -162,9 +161,7 @@ class Designs:
             try:
                 sides = [small.drive(free.path, value + sense * step) for sense in (1.0, -1.0)]
                 for number, (point, one) in enumerate(zip(self._points, design.running, strict=True)):
-                    up, down = (
-                        self._read(Running(steady_neighbour(point.of(side), one.run)), number) for side in sides
-                    )
+                    up, down = (self._read(Running(steady_on_mesh(point.of(side), one.run)), number) for side in sides)
                     found[number, :, column] = (up - down) / (2.0 * step)
             except (ConvergenceError, ModelError) as error:
                 self.failed.append(f"no derivative with respect to {free.path}: {error}")

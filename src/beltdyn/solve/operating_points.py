@@ -58,6 +58,7 @@ VARIABLES = {
     ),
     "tensioner_position_after_yielding": Variable(_TENSIONER, "m or rad", "Position, held by dry friction as it fell"),
     "loss": Variable(("cause",), "W", "Power lost"),
+    "mesh_error": Variable((), "1", "Error of contact forces that the mesh leaves, over the largest of a pulley"),
     "failure": Variable((), "1", "Why there is no operating point", "str"),
 }
 """What is known of an operating point; dimensions of the table come first."""
@@ -263,6 +264,8 @@ class OperatingPoints:
         for name, values in values_by_name(run, summary).items():
             if name in self.arrays:
                 self.arrays[name][index] = values
+        if "mesh_error" in self.arrays:
+            self.arrays["mesh_error"][index] = run.resolution.errors["peak pressure"]
         for warning in run.warnings:
             self._warn(index, warning)
 

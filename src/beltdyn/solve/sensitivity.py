@@ -23,7 +23,7 @@ from beltdyn.solve.named_results import listed, names_in, unit_of, values_of
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.staying import bring_to_stand
-from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady import steady_on_mesh, steady_state
 from beltdyn.solve.sweep import without_schedules
 
 _PART = 0.01
@@ -31,12 +31,10 @@ _PART = 0.01
 _MOVE = 1e-3
 """Of a coordinate, whose zero is a matter of convention, for which effects are told, m."""
 _COORDINATES = ("center", "pivot", "point")
-_KEPT = ("simulation", "limits", "contact.stiffness", "contact.damping")
+_KEPT = ("simulation", "steady", "limits", "contact.stiffness", "contact.damping")
 """Where numbers stand that have no effect on steady running, or are those of the method."""
 _SWITCHES = ("schedule",)
 """Keys of what lies between 0 and 1."""
-_ANY_MESH = 0.999
-"""Tolerance of contact forces with which any mesh is fine enough, and kept."""
 
 
 class Number(NamedTuple):
@@ -168,31 +166,10 @@ def _derivatives(changes: SmallChanges, run: Run, number: Number, names: Sequenc
     change = CHANGE * number.step / _PART
 
     def at(value: float) -> dict[str, float]:
-        return values_of(steady_neighbour(changes.drive(number.path, value), run))
+        return values_of(steady_on_mesh(changes.drive(number.path, value), run))
 
     up, down = at(number.value + change), at(number.value - change)
     return np.array([(up[name] - down[name]) / (2.0 * change) for name in names])
-
-
-def steady_neighbour(drive: Drive, run: Run) -> Run:
-    """Steady running of a drive that differs a little from another one, on the mesh of that one.
-
-    Parameters
-    ----------
-    drive
-        The drive.
-    run
-        Steady running of the other one.
-
-    Raises
-    ------
-    ConvergenceError
-        If Newton's method does not get there from it.
-    """
-    found = steady_state(drive, force_tolerance=_ANY_MESH, start=run)
-    if found.dataset.sizes["node"] != run.dataset.sizes["node"]:
-        raise ConvergenceError("Newton's method does not follow so small a change.")
-    return found
 
 
 def _result(

@@ -14,7 +14,7 @@ from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.staying import FINER, bring_to_stand, stand
 from beltdyn.solve.steady_neighbour import require_neighbour, search_from, with_length_of
-from beltdyn.solve.steady_refinement import refine
+from beltdyn.solve.steady_refinement import MeshRule, against_coarser, is_fine, refine
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.solve.trajectory import Chunk
 from beltdyn.system.arrays import System
@@ -54,8 +54,8 @@ def steady_state(
         Number of equal elements, in place of the graded mesh.
     start
         Steady running of the same drive under other speeds, torques or loads, or of one that differs in some numbers.
-        The search begins there, on its mesh, of which the errors are taken over; where that fails, or the errors are
-        larger than `force_tolerance`, it begins at rest.
+        The search begins there, on its mesh, which is compared with a coarser one, and made anew where its errors are
+        larger than `force_tolerance`; where that fails, it begins at rest.
         It is quick where the length of the belt is known: of the same drive at another instant, or of copies of
         ``start.drive``.
     progress
@@ -88,24 +88,30 @@ def steady_state(
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     found = _continued(drive, start, instant, force_tolerance) if start is not None else None
-    search, band, errors, seconds = found or _from_rest(drive, instant, force_tolerance, elements)
-    duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
-    turns = drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
-    shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
-    title = f"{drive.title} in steady running, as at {instant:g} s"
-    with Recording(shown, search.constant, None, title, None) as recording:
-        recording.start(search.drive, search.constant, ())
-        recording.take(_running(search.constant, search.running(), duration))
-        recording.note(
-            drive_as_given=drive.text,
-            steady_at=instant,
-            wall_time=seconds,
-            **band,
-            belt_parameter=search.belt_parameter,
-            newton_iterations_of_search=search.iterations,
-            **{mesh_error_attribute(name): error for name, error in errors.items()},
-        )
-    return recording.run()
+    return _as_run(drive, instant, found or _from_rest(drive, instant, force_tolerance, elements))
+
+
+def steady_on_mesh(drive: Drive, start: Run) -> Run:
+    """Find the steady running of a drive on the mesh of another one, of which the errors are taken over.
+
+    Parameters
+    ----------
+    drive
+        The drive, with constant speeds and torques.
+    start
+        Steady running of one that differs a little.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is not found from there.
+    """
+    require_neighbour(drive, start, None)
+    instant = drive.simulation.duration
+    found = _continued(drive, start, instant, None)
+    if found is None:
+        raise ConvergenceError("Newton's method does not follow so small a change.")
+    return _as_run(drive, instant, found)
 
 
 class _Found(NamedTuple):
@@ -116,6 +122,7 @@ class _Found(NamedTuple):
     """Where dry friction holds tensioners; from rest that of the first mesh, on which forces as a whole are known."""
     errors: Mapping[str, float]
     """Of the mesh, relative."""
+    rule: MeshRule
     seconds: float
     """Of the search, s."""
 
@@ -127,26 +134,62 @@ def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: i
         search = SteadySearch(rest.drive, rest.system, rest.state, instant)
         search.run(rest)
         band = search.friction_band()
+        rule = MeshRule(rest.layer, rest.fineness) if elements is None else MeshRule(0.0, elements=elements)
         try:
-            errors = refine(search, rest, force_tolerance, elements)
+            errors, rule = refine(search, rule, force_tolerance)
             break
         except ConvergenceError:
             if elements is not None or trial == _MOST_STARTS:
                 raise
             rest = stand(rest.drive, fineness=FINER * rest.fineness)
-    return _Found(search, band, errors, time.perf_counter() - begun)
+    return _Found(search, band, errors, rule, time.perf_counter() - begun)
 
 
-def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float) -> _Found | None:
-    """Find steady running from that of a neighbour, on its mesh; None if that fails, or the mesh is too coarse."""
-    if start.resolution.errors["peak pressure"] > force_tolerance:
-        return None
+def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float | None) -> _Found | None:
+    """Find steady running from that of a neighbour, on its mesh, or on another one where that is too coarse.
+
+    None if that fails. Without a tolerance the errors of the mesh are taken over.
+    """
     installed = with_length_of(drive, start) or bring_to_stand(drive).drive
     search, begun = search_from(installed, start, instant), time.perf_counter()
+    rule = MeshRule(*start.dataset.attrs["mesh_rule"].tolist())
     if not search.resume():
         return None
-    errors = {name: error for name, error in start.resolution.errors.items() if np.isfinite(error)}
-    return _Found(search, search.friction_band(), errors, time.perf_counter() - begun)
+    if force_tolerance is None:
+        errors = {name: error for name, error in start.resolution.errors.items() if np.isfinite(error)}
+    else:
+        try:
+            errors, coarser = against_coarser(search, rule)
+            if not (is_fine(errors, force_tolerance) or rule.elements):
+                errors, rule = refine(coarser, rule.finer(1.0 / FINER), force_tolerance)
+                search = coarser
+        except ConvergenceError:
+            return None
+    band = search.friction_band(start.dataset.attrs)
+    return _Found(search, band, errors, rule, time.perf_counter() - begun)
+
+
+def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
+    """What was found, as the results of a run of two turns of the belt."""
+    search = found.search
+    duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
+    turns = drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
+    shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
+    title = f"{drive.title} in steady running, as at {instant:g} s"
+    with Recording(shown, search.constant, None, title, None) as recording:
+        recording.start(search.drive, search.constant, ())
+        recording.take(_running(search.constant, search.running(), duration))
+        recording.note(
+            drive_as_given=drive.text,
+            steady_at=instant,
+            wall_time=found.seconds,
+            **found.band,
+            belt_parameter=search.belt_parameter,
+            newton_iterations_of_search=search.iterations,
+            mesh_rule=np.array(found.rule),
+            **{mesh_error_attribute(name): error for name, error in found.errors.items()},
+        )
+    return recording.run()
 
 
 def require_steady(drive: Drive) -> None:

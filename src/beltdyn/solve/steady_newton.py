@@ -58,7 +58,7 @@ def find_steady(
     tolerance
         Size of the last step, m.
     most
-        Iterations, at most.
+        Iterations, at most; with none of them the tangent at the state is factorised.
     work
         From `steady_work`; the body forces in it are those of the state that was found.
 
@@ -70,6 +70,8 @@ def find_steady(
     equations = work.equations
     node_part, border_part = equations.node_part, equations.border_part
     assemble_steady(system, motion, anchor, True, equations)
+    if most == 0 and not factorise_ring(equations.matrix, True):
+        return SINGULAR, 0
     for iteration in range(1, most + 1):
         if not factorise_ring(equations.matrix, True):
             return SINGULAR, iteration

@@ -1,11 +1,14 @@
 """Meshes finer and finer, until contact forces, tensions and slip no longer depend on them."""
 
+from collections.abc import Mapping
+from copy import copy
 from typing import NamedTuple
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
 from beltdyn.model.graded_mesh import graded_mesh
 from beltdyn.solve.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
 from beltdyn.solve.steady_search import SteadySearch
@@ -35,52 +38,107 @@ class Solution(NamedTuple):
     """Of the rims behind the first one, relative."""
 
 
-def refine(search: SteadySearch, rest: Standing, tolerance: float, elements: int | None = None) -> dict[str, float]:
+class MeshRule(NamedTuple):
+    """How a mesh follows from where the belt touches."""
+
+    layer: float
+    """Length of the layers at the ends of arcs, m."""
+    fineness: float = 1.0
+    """Factor on the number of elements."""
+    elements: int = 0
+    """Number of equal elements in place of graded ones, at a fineness of 1; zero for graded ones."""
+
+    def finer(self, factor: float = FINER) -> "MeshRule":
+        """The rule of a mesh with so many times the elements."""
+        return self._replace(fineness=factor * self.fineness)
+
+
+def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:
     """Refine the mesh of a drive in steady running, which is changed in place.
 
     Parameters
     ----------
     search
         In steady running.
-    rest
-        The drive at rest, with the mesh from which the search began.
+    rule
+        Of its mesh. One of equal elements is made finer once to learn its errors.
     tolerance
         Change of contact forces from one mesh to the next, over the largest of a pulley, that is small enough.
-    elements
-        Number of elements of a mesh of equal ones, which is made finer once to learn its errors.
 
     Returns
     -------
-    dict of str to float
+    errors : dict of str to float
         Differences between the last two meshes, relative: "tension", "mean pressure", "peak pressure", "slip".
+    rule
+        That of the last mesh.
 
     Raises
     ------
     ConvergenceError
         If a finer mesh finds no steady running.
     """
-    fineness, before = rest.fineness if elements is None else 1.0, _solution(search)
+    before = _solution(search)
     while True:
-        fineness *= FINER
-        search.move_to(staying_system(search.drive, _finer(search, before, rest.layer, fineness, elements)))
+        rule = rule.finer()
+        search.move_to(_mesh(search.drive, before, rule))
         after = _solution(search)
         errors = _differences(before, after)
-        small = errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
-        if small or elements is not None or after.system.nodes > MOST_ELEMENTS:
-            return errors
+        if is_fine(errors, tolerance) or rule.elements or after.system.nodes > MOST_ELEMENTS:
+            return errors, rule
         before = after
 
 
-def _finer(search: SteadySearch, now: Solution, layer: float, fineness: float, elements: int | None) -> FloatArray:
-    """Lengths of the elements of a finer mesh, m."""
-    length = search.drive.belt_length
-    if elements is not None:
-        count = round(elements * fineness)
-        return np.full(count, length / count)
+def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, float], SteadySearch]:
+    """Compare steady running with that on a coarser mesh.
+
+    Parameters
+    ----------
+    search
+        In steady running.
+    rule
+        Of its mesh.
+
+    Returns
+    -------
+    errors
+        As those of `refine`.
+    coarser
+        Steady running on the mesh of ``rule.finer(1 / FINER)``.
+
+    Raises
+    ------
+    ConvergenceError
+        If the coarser mesh finds no steady running.
+    """
+    here, coarser = _solution(search), copy(search)
+    coarser.move_to(_mesh(search.drive, here, rule.finer(1.0 / FINER)))
+    search.iterations = coarser.iterations
+    return _differences(_solution(coarser), here), coarser
+
+
+def is_fine(errors: Mapping[str, float], tolerance: float) -> bool:
+    """Whether a mesh is fine enough.
+
+    Parameters
+    ----------
+    errors
+        Its errors, as from `refine`.
+    tolerance
+        As there.
+    """
+    return errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
+
+
+def _mesh(drive: Drive, now: Solution, rule: MeshRule) -> System:
+    """A mesh by a rule, with nodes where the belt touches and slides as it does now."""
+    length = drive.belt_length
+    if rule.elements:
+        count = round(rule.elements * rule.fineness)
+        return staying_system(drive, np.full(count, length / count))
     kinks = _kinks(now)
     arcs = found_arcs(now.system, now.state)
     within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
-    return graded_mesh(length, within, layer, fineness)
+    return staying_system(drive, graded_mesh(length, within, rule.layer, rule.fineness))
 
 
 def _kinks(now: Solution) -> list[float]:

@@ -4,6 +4,7 @@ A belt of which every point slides leaves the speeds of pulleys open, so that fr
 under a small part of the loads.  Each way is gone in as long steps as Newton's method takes.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -26,6 +27,7 @@ from beltdyn.system.constant_drive import (
     with_speeds_unknown,
 )
 from beltdyn.system.operating_point import operating_point
+from beltdyn.system.ring_matrix import clear, substitute
 from beltdyn.system.state import State
 
 _MOST = 25
@@ -154,37 +156,70 @@ class SteadySearch:
                 "asks for. Raise force_tolerance, such as to 0.05."
             )
 
-    def friction_band(self) -> dict[str, FloatArray]:
+    def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
         """Where dry friction holds tensioners at most, m or rad.
+
+        Parameters
+        ----------
+        known
+            What this has given for a neighbour, among others. The ends are then those by the tangent, times the
+            factors that were found there.
 
         Returns
         -------
         dict of str to ndarray, shape (K,)
             "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
-            they may stand: where the path had become longer before, and shorter. Nothing without friction.
+            they may stand: where the path had become longer before, and shorter. Nothing without friction. Beside them
+            "tensioner_factor_after_tensioning" and so on: ways to the ends over those by the tangent.
+        """
+        found, count = dict[str, FloatArray](), self.constant.tensioners.size
+        here, ends = self.state.position[-count:].copy(), list[tuple[FloatArray, FloatArray]]()
+        for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
+            push, mark = sense * dry_friction_of(self._tensioners, f"{name}_friction"), f"tensioner_factor_after_{name}"
+            if not np.any(push):
+                continue
+            way = self._pushed_by_tangent(push)
+            factor = None if known is None or mark not in known else np.atleast_1d(known[mark])
+            if factor is None:
+                end = self._pushed(push, ends)
+                if end is None:
+                    continue
+                ends.append((push, end))
+                moved = end[self.state.position.size - count :][:count] - here
+                factor = np.divide(moved, way, out=np.ones(count), where=way != 0.0)
+            found |= {f"tensioner_position_after_{name}": here + factor * way, mark: factor}
+        return found
+
+    def _pushed(self, push: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]) -> FloatArray | None:
+        """Unknowns where tensioners are pushed, N or N m; None if the way there ends before.
+
+        Ends that are known, each with its push, serve the guesses.
         """
         begin, moments, own = self._unknowns(), self._moments, self.constant.tensioners.push
-        given, count, found = own.copy(), own.size, dict[str, FloatArray]()
-        ends = list[tuple[FloatArray, FloatArray]]()
-        for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
-            push = sense * dry_friction_of(self._tensioners, f"{name}_friction")
+        given = own.copy()
 
-            def solve(part: float, guess: FloatArray, push: FloatArray = push) -> FloatArray | None:
-                own[:] = given + part * push
-                return self._solve(self.setting, guess)
+        def solve(part: float, guess: FloatArray) -> FloatArray | None:
+            own[:] = given + part * push
+            return self._solve(self.setting, guess)
 
-            square = float(push @ push)
-            if square == 0.0:
-                continue
-            shares = [(float(other @ push) / square, other, end) for other, end in ends]
-            passed = [(share, end) for share, other, end in shares if np.allclose(other, share * push)]
-            end = go_on(solve, *passed, (0.0, begin))
-            if end is not None:
-                ends.append((push, end))
-                found[f"tensioner_position_after_{name}"] = end[self.state.position.size - count :][:count]
+        parts = [(float(other @ push) / float(push @ push), other, end) for other, end in ends]
+        end = go_on(
+            solve, *((part, end) for part, other, end in parts if np.allclose(other, part * push)), (0.0, begin)
+        )
         own[:], self._moments = given, moments
         self._place(begin)
-        return found
+        return end
+
+    def _pushed_by_tangent(self, push: FloatArray) -> FloatArray:
+        """By how much tensioners move where they are pushed, N or N m, to first order, m or rad."""
+        system, matrix = self._at(self.setting), self._work.equations.matrix
+        anchor = anchor_at(system, self.state, False)
+        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, self._work)
+        clear(matrix, False)
+        unknown = system.bodies.unknown[-push.size :]
+        matrix.border_side[unknown] = push
+        substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
+        return np.asarray(self._work.ahead_border[unknown])
 
     def _unknowns(self) -> FloatArray:
         """All that steady running consists of, as one vector: position, velocity, speed of the belt."""

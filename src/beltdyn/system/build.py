@@ -14,7 +14,7 @@ from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
-from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
+from beltdyn.model.hysteresis import Passing, bending_at_points, passing_strains, rolling_resistances
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
@@ -80,9 +80,8 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
     system = _system_of(drive, belt, contact, "shared_node", lengths=lengths)
     element = system.element
     if given.bending_loss_factor > 0.0:
-        passing = passing_strains(drive)
-        modulus = passing.bending_share * given.bending_loss_factor * given.bending_stiffness
-        section = element.section._replace(bending_hysteresis=modulus, passing_length=passing.bending_length)
+        modulus, length = bending_at_points(drive)
+        section = element.section._replace(bending_hysteresis=modulus, passing_length=length)
         element = Quintic(section, element.elastic)
     return system._replace(element=element, frame=staying(system.control, system.length, belt.mass_per_length))
 

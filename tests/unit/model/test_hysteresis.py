@@ -7,6 +7,7 @@ from beltdyn.elements.hysteretic import CREEPING, hysteretic
 from beltdyn.model import Drive, install
 from beltdyn.model.hysteresis import (
     SMOOTHED,
+    bending_at_points,
     bending_resistance,
     compression_losses,
     passing_strains,
@@ -89,3 +90,16 @@ def test_only_grooves_compress(make_drive: MakeDrive) -> None:
     inside = np.array([pulley.side == "inside" for pulley in drive.pulleys])
     assert 0 < inside.sum() < inside.size
     np.testing.assert_array_equal(rolling_resistances(pressed) > 0.0, inside)
+
+
+def test_at_points_the_whole_loss_is_left(drive: Drive) -> None:
+    """Of the curvature exp(s / l), then 1: 1 within 1 % of 1/2."""
+    lossy = drive.replace(belt=drive.belt.replace(bending_loss_factor=0.2))
+    layer = (drive.belt.bending_stiffness / install(drive).tension) ** 0.5
+    modulus, length = bending_at_points(lossy)
+    assert modulus == pytest.approx(BENDING_SHARE * 0.2 * drive.belt.bending_stiffness)
+    s = np.linspace(-20.0 * layer, 0.0, 10_001)
+    curvature = np.exp(s / layer)
+    slope = curvature / layer
+    loss = np.trapezoid(curvature * slope * slope / np.hypot(slope, curvature / length), s)
+    assert loss == pytest.approx(0.5, rel=0.01)
