@@ -18,7 +18,7 @@ from beltdyn.machines.links import kinds as links
 from beltdyn.machines.loads import kinds as loads_
 from beltdyn.machines.profiles import kinds as profiles
 from beltdyn.machines.tensioners import kinds as tensioners
-from beltdyn.model import Belt, Contact, Drive, Harmonic, Limits, Pulley, Simulation, dumps, loads
+from beltdyn.model import Belt, Contact, Drive, Harmonic, Limits, Pulley, Simulation, Steady, dumps, loads
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
@@ -41,7 +41,7 @@ def kinds_of(family: ModuleType) -> list[type[Part]]:
 
 
 PARTS: dict[Path, list[type[Part]]] = {
-    DRIVE_FILE: [Belt, Pulley, Contact, Simulation, Limits],
+    DRIVE_FILE: [Belt, Pulley, Contact, Simulation, Steady, Limits],
     MACHINES: [Harmonic, *(kind for family in (loads_, links, tensioners) for kind in kinds_of(family))],
 }
 

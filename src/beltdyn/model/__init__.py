@@ -42,6 +42,7 @@ from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.simulation import Simulation
+from beltdyn.model.steady import Steady
 from beltdyn.model.study import OptimizationStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml_reader import json_schema, load, loads
@@ -88,6 +89,7 @@ __all__ = [
     "ServoMotor",
     "Simulation",
     "SlidingTensioner",
+    "Steady",
     "Step",
     "Table",
     "TensionerBalance",

@@ -25,6 +25,7 @@ from beltdyn.model.pulley import Pulley, friction_on
 from beltdyn.model.routing import radii, span_names
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.static_estimate import StaticEstimate
+from beltdyn.model.steady import Steady
 from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.parts.change import changed_arguments
 from beltdyn.parts.part import Part
@@ -36,8 +37,8 @@ class Drive(Part):
     """A belt drive: what is given, checked, and what follows from it.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner` and
-    `end` (lists), `simulation` and `limits`, each a part or a mapping of its arguments, `gravity`, and `name` and
-    `description`.
+    `end` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`, and `name`
+    and `description`.
 
     The parts hold what is given, and only that; copies (`replace`) and files are made of it. What follows belongs to
     the drive: `belt_length`, also of a belt of given tension; `path` and `centers`, where fixed tensioners hold their
@@ -59,6 +60,7 @@ class Drive(Part):
         (), alias="end", description="the groups [[end]], first and second, of a belt that is not closed"
     )
     simulation: Simulation = Field(description="the group [simulation]")
+    steady: Steady = Field(default_factory=Steady, description="the group [steady], the mesh of steady running")
     limits: Limits = Field(
         default_factory=Limits, description="the group [limits], what results are judged by; nothing is by default"
     )

@@ -74,7 +74,7 @@ def modes(
     pulley: str | None = None,
     at: float | None = None,
     count: int = 12,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     progress: Report | None = None,
 ) -> Result:
     """Find the modes of a drive: frequency, damping ratio, and what swings.
@@ -99,7 +99,8 @@ def modes(
     count
         How many modes to give, from the lowest frequency on.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh of steady running is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh of steady running is refined; by
+        default that of the drive, 0.01.
     progress
         Called now and then with a `Progress`.
 

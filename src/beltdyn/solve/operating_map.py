@@ -22,7 +22,7 @@ def operating_map(
     points: int = 40,
     load_points: int = 10,
     at: float | None = None,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -51,7 +51,8 @@ def operating_map(
     at
         At which instant loads and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
     output
         Result file (NetCDF4), written as points are found; without one the results stay in memory.
     progress

@@ -58,7 +58,7 @@ VARIABLES = {
     ),
     "tensioner_position_after_yielding": Variable(_TENSIONER, "m or rad", "Position, held by dry friction as it fell"),
     "loss": Variable(("cause",), "W", "Power lost"),
-    "mesh_error": Variable((), "1", "Error of contact forces that the mesh leaves, over the largest of a pulley"),
+    "mesh_error": Variable((), "1", "Error of the mesh"),
     "failure": Variable((), "1", "Why there is no operating point", "str"),
 }
 """What is known of an operating point; dimensions of the table come first."""
@@ -163,12 +163,12 @@ class OperatingPoints:
         """The operating point that was found last."""
         return self._near
 
-    def pass_by(self, drive: Drive, force_tolerance: float) -> None:
+    def pass_by(self, drive: Drive, force_tolerance: float | None) -> None:
         """Find an operating point on the way to another one, without noting it; parameters as for `find`."""
         with suppress(ConvergenceError):
             self._near = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
 
-    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float) -> Run | None:
+    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float | None) -> Run | None:
         """Find an operating point, from the one that was found before.
 
         Parameters

@@ -53,7 +53,7 @@ def sensitivity(
     of: str = "efficiency, least_slip_safety, largest_tension",
     numbers: str | None = None,
     at: float | None = None,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     progress: Report | None = None,
 ) -> Result:
     """Find how results of steady running change with the numbers of the drive file.
@@ -74,7 +74,8 @@ def sensitivity(
     at
         At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
     progress
         Called now and then with a `Progress`.
 

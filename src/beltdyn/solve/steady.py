@@ -23,6 +23,8 @@ from beltdyn.system.state_forces import body_forces_at
 
 _MOST_STARTS = 4
 """Meshes at rest from which steady running is sought."""
+_TOLERANCE = 0.01
+"""Error of contact forces unless another one is asked for."""
 _TURNS = 2.2
 """Turns of the belt in the results; means are taken over the last one."""
 
@@ -31,7 +33,7 @@ def steady_state(
     drive: Drive,
     *,
     at: float | None = None,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     elements: int | None = None,
     start: Run | None = None,
     progress: Report | None = None,
@@ -49,9 +51,10 @@ def steady_state(
     at
         At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
     elements
-        Number of equal elements, in place of the graded mesh.
+        Number of equal elements, in place of the graded mesh; by default as ``drive.steady`` says.
     start
         Steady running of the same drive under other speeds, torques or loads, or of one that differs in some numbers.
         The search begins there, on its mesh, which is compared with a coarser one, and made anew where its errors are
@@ -81,14 +84,17 @@ def steady_state(
     12.0
     """
     require_steady(drive)
-    _require_sense(force_tolerance, elements)
-    instant = drive.simulation.duration if at is None else at
     if start is not None:
         require_neighbour(drive, start, elements)
+    if force_tolerance is None and elements is None and drive.steady.mesh == "uniform":
+        elements = drive.elements
+    tolerance = next(one for one in (force_tolerance, drive.steady.force_tolerance, _TOLERANCE) if one is not None)
+    _require_sense(tolerance, elements)
+    instant = drive.simulation.duration if at is None else at
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    found = _continued(drive, start, instant, force_tolerance) if start is not None else None
-    return _as_run(drive, instant, found or _from_rest(drive, instant, force_tolerance, elements))
+    found = _continued(drive, start, instant, tolerance) if start is not None else None
+    return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, elements))
 
 
 def steady_on_mesh(drive: Drive, start: Run) -> Run:

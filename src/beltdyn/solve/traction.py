@@ -56,7 +56,7 @@ def traction(
     slip: str | None = None,
     points: int = 30,
     at: float | None = None,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -82,7 +82,8 @@ def traction(
     at
         At which instant speeds, loads and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
     output
         Result file (NetCDF4), written as points are found; without one the results stay in memory.
     progress
@@ -143,7 +144,7 @@ def traction(
     return table.result()
 
 
-def _driven_by_speed(drive: Drive, force_tolerance: float) -> Drive:
+def _driven_by_speed(drive: Drive, force_tolerance: float | None) -> Drive:
     """The drive with a driver that has a speed in place of its motor: that of steady running."""
     driver = driver_of(drive)
     if drive.pulleys[driver].prescribed:

@@ -54,6 +54,7 @@ def test_schema_knows_every_group() -> None:
         "tensioner",
         "end",
         "simulation",
+        "steady",
         "limits",
         "gravity",
         "name",

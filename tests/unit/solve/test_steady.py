@@ -56,6 +56,17 @@ def test_equal_elements(loaded: Drive, run: Run) -> None:
     assert found.dataset.sizes["node"] == 84
 
 
+def test_the_mesh_that_the_drive_file_names(loaded: Drive) -> None:
+    """As many equal elements as the belt has, of which the finer ones stand; an option comes before the file."""
+    uniform = loaded.with_({"steady.mesh": "uniform", "belt.elements": 40})
+    assert steady_state(uniform).dataset.sizes["node"] == 56
+    refined = steady_state(uniform, force_tolerance=0.01)
+    assert np.ptp(np.diff(refined.dataset.node_coordinate)) > 1e-3
+    rough = steady_state(loaded.with_({"steady.force_tolerance": 0.2}))
+    fine = steady_state(loaded.with_({"steady.force_tolerance": 1e-4}))
+    assert rough.dataset.sizes["node"] < fine.dataset.sizes["node"]
+
+
 def test_the_instant(loaded: Drive) -> None:
     """At a quarter of the ramp of speed."""
     found = steady_state(loaded, at=0.05 + 0.25 * 0.55)

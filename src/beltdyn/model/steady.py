@@ -1,0 +1,34 @@
+"""On what mesh the steady running of a drive is found."""
+
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from beltdyn.parts.part import Part
+from beltdyn.parts.quantity import Ratio
+
+
+class Steady(Part):
+    """The mesh of steady running, of maps and of all other analyses that begin with it."""
+
+    mesh: Literal["auto", "uniform"] = Field(
+        "auto",
+        description="the mesh: graded towards the ends of arcs and refined by the solution, or as many equal elements "
+        "as `belt.elements` says, as published",
+    )
+    force_tolerance: Ratio | None = Field(
+        None,
+        gt=0,
+        lt=1,
+        description="the error of contact forces, over the largest of a pulley, up to which a mesh is refined, below "
+        "1; 0.01 by default",
+    )
+
+    @model_validator(mode="after")
+    def _is_refined_or_not(self) -> Self:
+        if self.mesh == "uniform" and self.force_tolerance is not None:
+            raise ValueError(
+                f'force_tolerance = {self.force_tolerance:g} does not fit mesh = "uniform", which is not refined. '
+                'Remove it, or set mesh = "auto"'
+            )
+        return self
