@@ -111,7 +111,7 @@ class Designs:
         points: Sequence[OperatingPoint],
         instant: Points,
         watched: Sequence[Watched],
-        force_tolerance: float,
+        force_tolerance: float | None,
         tell: Callable[[float], None],
     ) -> None:
         self._drive, self.numbers, self._points, self._instant = drive, numbers, points, instant

@@ -20,7 +20,7 @@ def optimize(
     *,
     study: Path | str | OptimizationStudy,
     most: int = 60,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -41,7 +41,8 @@ def optimize(
     most
         How many designs to try, at most.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
     output
         Result file (NetCDF4), written as designs are tried, with the best drive file beside it; without one the
         results stay in memory.
