@@ -33,7 +33,7 @@ def response(
     compare: Path | str | Run | None = None,
     measured: Path | str | None = None,
     at: float | None = None,
-    force_tolerance: float = 0.01,
+    force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
     overwrite: bool = False,
@@ -66,7 +66,8 @@ def response(
     at
         At which instant loads and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined.
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
     output
         Result file (NetCDF4), written as points are found; without one the results stay in memory.
     progress
