@@ -268,18 +268,18 @@ def slip_through(run: Run) -> Iterator[Number]:
     tight, slack = gross_slip_tensions(
         300.0, friction, distance, radius, mass_per_length=drive.belt.mass_per_length, speed=rim
     )
-    sliding = run.dataset.sel(time=slice(1.6, 1.85))
-    spans, torque = sliding["span_tension"].mean("time").values, sliding["pulley_torque"].mean("time").values[1]
+    braking = run.dataset.sel(time=slice(1.6, 1.85))
+    spans, torque = braking["span_tension"].mean("time").values, braking["pulley_torque"].mean("time").values[1]
     limit = (tight - slack) * radius
     yield Number("tight span while it slips, N", tight, float(spans[1]), 0.02 * tight)
     yield Number("slack span while it slips, N", slack, float(spans[0]), 0.02 * slack)
     yield Number("largest torque of the belt on the conveyor, N m", limit, float(torque), 0.02 * limit)
     (load,) = conveyor.load
-    times, speeds = sliding["time"].values, sliding["pulley_speed"].values[:, 1]
+    times, speeds = braking["time"].values, braking["pulley_speed"].values[:, 1]
     braked = (limit - load.constant) / conveyor.inertia
     yield Number("deceleration, rad/s²", braked, float(np.polyfit(times, speeds, 1)[0]), 0.05 * abs(braked))
-    whole = run.dataset["sliding_speed"].sel(pulley="conveyor", time=slice(0.6, None))
-    since = float(whole["time"][int((np.abs(whole.values) > 0.001 * rim).argmax())])
+    sliding = np.abs(run.dataset["sliding_speed"].sel(time=slice(0.6, None))).max("pulley")
+    since = float(sliding["time"][int((sliding.values > 0.001 * rim).argmax())])
     yield Number("time at which it slips through, s", 0.6 + limit / load.constant, since, 0.03)
     yield Number("capstan margin at the end", 1.0, summarize(run).pulleys[1].margin, 0.02)
 

@@ -15,7 +15,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.path import Path
 
-FINENESS = 1.0
+FINENESS = 1.4
 """Of the mesh of a run over time, unless the number of elements is given."""
 _FIRST = 1.5
 """First element, over the length of the layers."""

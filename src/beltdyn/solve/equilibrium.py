@@ -2,7 +2,7 @@
 
 from beltdyn.model import Drive
 from beltdyn.results import StaticResult, static_result
-from beltdyn.solve.installation import bring_to_rest
+from beltdyn.solve.installation import bring_to_rest, on_equal_elements
 from beltdyn.solve.progress import Report
 from beltdyn.solve.recording import Recording
 from beltdyn.solve.static import standing
@@ -23,7 +23,7 @@ def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult
     -------
     StaticResult
         Shape of the belt, tensions, contact forces and hub loads. Its drive has the length, or the take-up, that gives
-        the installed tension.
+        the installed tension, and the mesh of equal elements that travels.
 
     Raises
     ------
@@ -36,6 +36,7 @@ def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult
     >>> rest.dataset.span_tension.values.round().tolist()  # N
     [27.0, 27.0]
     """
+    drive = on_equal_elements(drive)
     rest = bring_to_rest(drive, progress)
     system = standing(rest.system)
     recording = Recording(drive, system, None, f"{drive.title} at rest, in static equilibrium", progress)

@@ -1,6 +1,6 @@
 """The belt at rest in its drive, and the length with which it has the tension that is asked for.
 
-The tension at rest is the mean of the span tensions in static equilibrium, on the drive's own mesh: with contact,
+The tension at rest is the mean of the span tensions in static equilibrium, on a mesh of equal elements: with contact,
 bending, weight and spring-loaded tensioners, without friction.
 """
 
@@ -108,6 +108,7 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     ConvergenceError
         If there is no equilibrium in which the belt touches every pulley, or none with the tension asked for.
     """
+    given, drive = drive, on_equal_elements(drive)
     system = drive_system(drive)
     _tell(drive, progress, "compiling")
     compile_kernels(system, laid(system, drive.path))
@@ -115,7 +116,25 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     rest = _at_rest(drive)
     if drive.belt.installed_tension is not None:
         rest = tighten(rest, drive.belt.installed_tension, _at_rest)
-    return rest._replace(unstable=_unstable(rest))
+    found = rest._replace(unstable=_unstable(rest))
+    if drive is given:
+        return found
+    belt = found.drive.belt.replace(elements=given.belt.elements)
+    return found._replace(drive=found.drive.replace(belt=belt, simulation=given.simulation))
+
+
+def on_equal_elements(drive: Drive) -> Drive:
+    """Give the drive on the mesh that travels with the belt, on which equilibrium is found.
+
+    Parameters
+    ----------
+    drive
+        The drive; a number of elements that it leaves open is chosen for that mesh.
+    """
+    settings = drive.simulation
+    if settings.frame == "travelling":
+        return drive
+    return drive.replace(simulation=settings.replace(frame="travelling", start="equilibrium"))
 
 
 def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:

@@ -293,3 +293,14 @@ def test_equilibria_that_end_are_given_up(lost: float) -> None:
 
     assert not follow(64.0, balance)
     assert len(tried) < 20
+
+
+def test_equilibrium_is_found_on_equal_elements() -> None:
+    """Also of a drive whose runs have a mesh that stays in place, with the number that is chosen for equal ones."""
+    drive = load(str(files("beltdyn").joinpath("examples", "crossed_belt.toml")))
+    travelling = drive.replace(simulation=drive.simulation.replace(frame="travelling"))
+    rest, still = bring_to_rest(drive), equilibrium(drive)
+    assert rest.drive.simulation == drive.simulation
+    assert rest.drive.elements == drive.elements
+    assert still.dataset.sizes["node"] == still.drive.elements == travelling.elements > drive.elements
+    assert rest.tension == pytest.approx(bring_to_rest(travelling).tension, rel=1e-9)

@@ -67,7 +67,7 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
 
 
 def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output."""
+    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output at a time."""
     if evidence.drive.ends:
         return
     first, drive = evidence.window.first, evidence.drive
@@ -75,9 +75,11 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
         np.asarray(evidence.recorded[name]) for name in ("sliding_speed", "pulley_speed", "pulley_torque")
     )
     limit = SLIDING_LIMIT * np.max(np.abs(rim_speeds(speed, drive)[:, 0]))
-    times, reached = evidence.time[:first], np.abs(sliding[:first]) > limit
+    times, slid = evidence.time[:first], np.abs(sliding[:first]) > limit
+    beside = np.pad(slid, ((1, 1), (0, 0)))
+    reached = slid & (beside[:-2] | beside[2:])
     found, longest = [], 0.0
-    for number in np.flatnonzero(np.count_nonzero(reached, axis=0) > 1).tolist():
+    for number in np.flatnonzero(reached.any(axis=0)).tolist():
         when = reached[:, number]
         load = abs(torque[:first][when, number][0])
         found.append(
