@@ -106,6 +106,7 @@ _ALL = (
     ),
     Analysis("modes", "beltdyn.solve.modes:modes", "Find the modes of a drive: frequencies, damping, shapes."),
     Analysis("optimize", "beltdyn.solve.optimize:optimize", "Find the numbers of a drive that are best for a goal."),
+    Analysis("calibrate", "beltdyn.solve.calibrate:calibrate", "Fit numbers of a drive to measured results."),
     Analysis("campbell", "beltdyn.solve.campbell:campbell", "Find modes over speed, and critical speeds."),
     Analysis("response", "beltdyn.solve.response:response", "Find vibrations under harmonics, over speed."),
     # one line for each

@@ -43,7 +43,7 @@ from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
 from beltdyn.model.simulation import Simulation
 from beltdyn.model.steady import Steady
-from beltdyn.model.study import OptimizationStudy
+from beltdyn.model.study import CalibrationStudy, OptimizationStudy
 from beltdyn.model.tensioner_balance import TensionerBalance
 from beltdyn.model.toml_reader import json_schema, load, loads
 from beltdyn.model.toml_writer import dumps
@@ -55,6 +55,7 @@ __all__ = [
     "BandBrake",
     "Belt",
     "Brake",
+    "CalibrationStudy",
     "Constant",
     "Contact",
     "CosineRamp",

@@ -130,3 +130,40 @@ class OptimizationStudy(Part):
             if twice:
                 raise ValueError(f'{key} "{twice[0]}" stands twice. Remove one')
         return self
+
+
+class Measurement(Part):
+    """Measured results, in a table whose rows are operating points or other drives."""
+
+    table: Words = Field(description="the table, a CSV file with a line of headings, by its path from the study file")
+    state: Literal["steady", "rest"] = Field(
+        "steady", description="whether results were measured in steady running or with the belt at rest"
+    )
+    at: Time | None = Field(
+        None, description="the instant at which the rest of the drive is taken, in s; the end of the simulation"
+    )
+
+
+class CalibrationStudy(Part):
+    """Which numbers of a drive to fit, and what was measured.
+
+    The constructor's arguments are the groups of a study file, each a part or a mapping of its arguments.
+    """
+
+    fills_a_file: ClassVar[bool] = True
+
+    numbers: Annotated[tuple[FreeNumber, ...], Field(min_length=1)] = Field(
+        alias="number", description="the groups [[number]], numbers of the drive that are fitted"
+    )
+    measurements: Annotated[tuple[Measurement, ...], Field(min_length=1)] = Field(
+        alias="measurement", description="the groups [[measurement]], tables of measured results"
+    )
+    confidence: Ratio = Field(0.95, gt=0, lt=1, description="the confidence of the intervals")
+
+    @model_validator(mode="after")
+    def _fits_each_once(self) -> Self:
+        paths = [one.path for one in self.numbers]
+        twice = [path for path in paths if paths.count(path) > 1]
+        if twice:
+            raise ValueError(f'number "{twice[0]}" stands twice. Remove one')
+        return self

@@ -1,6 +1,7 @@
 """Analyses: a simulation over time, of one drive or many, a run-up, steady running, and rest; and their solvers."""
 
 from beltdyn.solve.batch import simulate_all
+from beltdyn.solve.calibrate import calibrate
 from beltdyn.solve.campbell import campbell
 from beltdyn.solve.duty import duty
 from beltdyn.solve.equilibrium import equilibrium
@@ -35,6 +36,7 @@ __all__ = [
     "StepError",
     "Stepwise",
     "bring_to_rest",
+    "calibrate",
     "campbell",
     "duty",
     "equilibrium",

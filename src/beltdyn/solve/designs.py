@@ -10,11 +10,12 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import FreeNumber, Points
 from beltdyn.parts.change import converted, unit_at, value_at
+from beltdyn.solve.found_state import FoundState, Resting, Running
 from beltdyn.solve.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.staying import Standing, bring_to_stand
-from beltdyn.solve.steady import steady_on_mesh, steady_state
+from beltdyn.solve.steady import steady_state
 from beltdyn.solve.study_points import OperatingPoint, held
-from beltdyn.solve.watched import Running, Watched
+from beltdyn.solve.watched import Watched
 
 _DIGITS = 6
 """Of numbers, over the distance of their bounds."""
@@ -80,7 +81,7 @@ class Design:
     given: Drive | None = None
     """With constant speeds and torques."""
     rest: Standing | None = None
-    running: tuple[Running, ...] = ()
+    states: tuple[FoundState, ...] = ()
 
 
 class Designs:
@@ -102,6 +103,8 @@ class Designs:
         As for `steady_state`.
     tell
         Called with the part of a design that is done, 0 to 1.
+    at_rest
+        Whether results are those of the belt at rest, in place of steady running.
     """
 
     def __init__(
@@ -113,9 +116,12 @@ class Designs:
         watched: Sequence[Watched],
         force_tolerance: float | None,
         tell: Callable[[float], None],
+        *,
+        at_rest: bool = False,
     ) -> None:
         self._drive, self.numbers, self._points, self._instant = drive, numbers, points, instant
         self.watched, self._tolerance, self._tell = watched, force_tolerance, tell
+        self._at_rest = at_rest
         self.failed: list[str] = []
         """Derivatives that were not found, and why."""
 
@@ -129,22 +135,29 @@ class Designs:
         near
             A design from whose states the search begins; by default each operating point begins at that before it.
         """
-        running: list[Running] = []
+        states: list[FoundState] = []
         where = ""
         try:
             given = held(self._drive.with_(changes), self._instant)
             rest = bring_to_stand(given)
             for number, point in enumerate(self._points):
                 where = f"at {point.label}: " if len(self._points) > 1 else ""
-                last = running[-1].run if running else None
-                start = near.running[number].run if near is not None and near.running else last
-                there = point.of(rest.drive)
-                running.append(Running(steady_state(there, force_tolerance=self._tolerance, start=start)))
+                states.append(self._state(point, rest, near.states[number] if near and near.states else None, states))
                 self._tell((number + 1) / len(self._points))
-            values = np.array([self._read(one, number) for number, one in enumerate(running)])
+            values = np.array([self._read(one, number) for number, one in enumerate(states)])
         except (ConvergenceError, ModelError) as error:
             return Design(changes, f"{where}{error}", np.full((len(self._points), len(self.watched)), np.nan))
-        return Design(changes, "", values, given, rest, tuple(running))
+        return Design(changes, "", values, given, rest, tuple(states))
+
+    def _state(
+        self, point: OperatingPoint, rest: Standing, near: FoundState | None, before: Sequence[FoundState]
+    ) -> FoundState:
+        """The state of a drive at an operating point, found from one nearby or from that before it."""
+        if self._at_rest:
+            return Resting(rest)
+        start = near or (before[-1] if before else None)
+        run = start.run if isinstance(start, Running) else None
+        return Running(steady_state(point.of(rest.drive), force_tolerance=self._tolerance, start=run))
 
     def derivatives(self, design: Design) -> FloatArray:
         """Derivatives of watched results by the numbers of a design, shape (points, results, numbers).
@@ -160,13 +173,13 @@ class Designs:
             value, step = design.changes[free.path], CHANGE * (free.largest - free.least)
             try:
                 sides = [small.drive(free.path, value + sense * step) for sense in (1.0, -1.0)]
-                for number, (point, one) in enumerate(zip(self._points, design.running, strict=True)):
-                    up, down = (self._read(Running(steady_on_mesh(point.of(side), one.run)), number) for side in sides)
+                for number, (point, one) in enumerate(zip(self._points, design.states, strict=True)):
+                    up, down = (self._read(one.neighbour(point.of(side)), number) for side in sides)
                     found[number, :, column] = (up - down) / (2.0 * step)
             except (ConvergenceError, ModelError) as error:
                 self.failed.append(f"no derivative with respect to {free.path}: {error}")
         return np.nan_to_num(found)
 
-    def _read(self, running: Running, point: int) -> FloatArray:
+    def _read(self, state: FoundState, point: int) -> FloatArray:
         """The watched results at an operating point."""
-        return np.array([one.read(running) if one.at[point] else np.nan for one in self.watched])
+        return np.array([one.read(state) if one.at[point] else np.nan for one in self.watched])

@@ -17,7 +17,8 @@ from beltdyn.solve.headed_table import HeadedColumn, read_headed
 from beltdyn.solve.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 
-_UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
+UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
+"""What columns hold, and their SI units."""
 _MEANS = ("pulley_slip", "power", "hub_load", "span_tension", "loss")
 _EXPONENT = 3.0
 """Of the load in the life of ball bearings (ISO 281)."""
@@ -126,12 +127,12 @@ def read_duty(path: Path) -> list[Column]:
 def _column(given: HeadedColumn) -> Column:
     """A column in SI units."""
     pulley, _, what = given.what.rpartition(" ")
-    if what not in _UNITS or bool(pulley) != (what in ("speed", "torque")):
+    if what not in UNITS or bool(pulley) != (what in ("speed", "torque")):
         raise ModelError(
             f'{given.path}: the heading "{given.what}" is none of "duration [s]", "load", "NAME speed [rpm]" and '
             '"NAME torque [N m]". Correct it.'
         )
-    return Column(what, pulley.strip(), given.values(_UNITS[what]))
+    return Column(what, pulley.strip(), given.values(UNITS[what]))
 
 
 def durations_of(columns: list[Column]) -> FloatArray:

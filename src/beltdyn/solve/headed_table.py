@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import to_si
 from beltdyn.parts.table_file import read_rows
 
@@ -27,7 +26,7 @@ class HeadedColumn(NamedTuple):
     """Numbers of lines, and what stands there."""
 
     def values(self, unit: str) -> list[float]:
-        """Numbers in an SI unit, or as they are where either has none.
+        """Numbers in an SI unit, or as they are where either has none; those in % as parts of one.
 
         Raises
         ------
@@ -39,12 +38,12 @@ class HeadedColumn(NamedTuple):
     def _number(self, line: int, cell: str, unit: str) -> float:
         try:
             number = to_si(f"{float(cell)!r} {self.unit}", unit) if self.unit and unit else float(cell)
+            if self.unit == "%" and not unit:
+                number *= 0.01
             if not np.isfinite(number):
                 raise ValueError("must be a finite number")
         except ValueError as error:
-            raise ModelError(
-                f'{self.path}, line {line}: "{cell.strip()}" {reason(error)}. Correct this line.'
-            ) from error
+            raise ModelError(f'{self.path}, line {line}: "{cell.strip()}" {error}. Correct this line.') from error
         return number
 
 

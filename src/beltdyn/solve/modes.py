@@ -133,12 +133,25 @@ def modes(
         held = drive if speed is None else _at_speed(drive, speed, pulley, at)
         run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
         motions, state = about_steady(run), _running(run)
+    result = modes_about(motions, count)
+    return Result(result.dataset.assign_attrs(title=f"Modes of {drive.title}, {state}"), result.drive)
+
+
+def modes_about(motions: SmallMotions, count: int) -> Result:
+    """Find the modes of small motions about a state, with sliding and with stuck tensioners.
+
+    Parameters
+    ----------
+    motions
+        The drive about the state.
+    count
+        How many modes to give, from the lowest frequency on.
+    """
     points, dry = belt_points(motions), dry_tensioners(motions.drive)
     found = [_find(motions, points, count, SLIDING if dry.size else "")]
     if dry.size:
         found.append(_find(motions.with_stuck(dry), points, count, STUCK))
-    result = _result(motions, points, found)
-    return Result(result.dataset.assign_attrs(title=f"Modes of {drive.title}, {state}"), result.drive)
+    return _result(motions, points, found)
 
 
 def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | None, count: int) -> None:

@@ -7,8 +7,14 @@ import numpy as np
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest
-from beltdyn.results import Run, summarize
+from beltdyn.results import Run, Variable, summarize
 from beltdyn.solve.operating_points import VARIABLES, labels_of, values_by_name
+
+OF_MODES = {
+    "frequency": Variable(("span",), "Hz", "Lowest frequency of the modes in which the span swings most"),
+    "damping_ratio": Variable(("span",), "1", "Damping ratio of that mode"),
+}
+"""Results of modes that have names; those of one kind are by numbers."""
 
 
 def listed(text: str) -> list[str]:
@@ -36,7 +42,7 @@ def values_of(run: Run) -> dict[str, float]:
 
 
 def names_of(drive: Drive) -> list[str]:
-    """Names of the scalar results of a drive in steady running; of some there may be no value.
+    """Names of the scalar results of a drive in steady running, and of its modes; of some there may be no value.
 
     Parameters
     ----------
@@ -44,7 +50,7 @@ def names_of(drive: Drive) -> list[str]:
         The drive.
     """
     labels, found = labels_of(drive), list[str]()
-    for name, variable in VARIABLES.items():
+    for name, variable in (VARIABLES | OF_MODES).items():
         if variable.dtype != "str" and len(variable.dims) < 2:
             found += [f"{name}[{label}]" for label in labels[variable.dims[0]]] if variable.dims else [name]
     return found
@@ -90,7 +96,7 @@ def unit_of(name: str, drive: Drive) -> str:
         The drive, whose tensioners move along a line or turn.
     """
     variable, _, label = name.removesuffix("]").partition("[")
-    unit = VARIABLES[variable].units
+    unit = (VARIABLES | OF_MODES)[variable].units
     if unit == "m or rad":
         turning = {one.pulley: one.turns for one in drive.moving_tensioners}
         unit = "rad" if turning.get(label, all(turning.values())) else "m"

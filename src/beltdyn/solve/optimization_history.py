@@ -13,18 +13,15 @@ from beltdyn.model import Drive
 from beltdyn.model.toml_editor import edited
 from beltdyn.model.toml_reader import loads
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.results.atomic import atomic_path, require_replaceable
-from beltdyn.results.dataset import is_result
 from beltdyn.results.shown import VARIOUS
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.designs import Design, Free
+from beltdyn.solve.found_drive import found_file, headed, require_free, write_found
 from beltdyn.solve.goals import Aims, Limit
 from beltdyn.solve.study_points import OperatingPoint
 
 _KEPT = 1e-4
 """Part of a limit by which it may be violated."""
-_FIRST_LINE = "# The best drive that `beltdyn optimize` found."
-"""Of a drive file that is written."""
 
 _NUMBER, _REQUIREMENT, _DESIGN = ("number",), ("requirement",), ("design",)
 _BOTH = ("point", "result")
@@ -63,11 +60,6 @@ _COORDINATES = {
 }
 
 
-def best_file(output: Path) -> Path:
-    """The drive file beside a result file."""
-    return output.with_suffix(".toml")
-
-
 class History:
     """Designs as they are tried; an interruption keeps them.
 
@@ -104,8 +96,7 @@ class History:
         self._drive, self._numbers, self._points, self._aims = drive, numbers, points, aims
         self._path, self._overwrite = None if output is None else Path(output), overwrite
         if self._path is not None:
-            require_replaceable(self._path, is_result, overwrite)
-            require_replaceable(best_file(self._path), _is_best, overwrite)
+            require_free(self._path, overwrite)
         self.tried: list[Design] = []
         self._final: Design | None = None
         self._status, self._ended, self._warned = "running", "interrupted", list[str]()
@@ -144,7 +135,7 @@ class History:
     def result(self) -> Result:
         """What was found until now."""
         start, best = self.tried[0], self._final or self.best
-        text = f"{_FIRST_LINE}\n{edited(self._drive, best.changes)}"
+        text = headed(edited(self._drive, best.changes), "optimize")
         arrays = self._singles(start, best) | self._of_numbers(best) | self._of_designs()
         arrays |= self._of_requirements(start, best) | {"start_result": start.values, "best_result": best.values}
         watched, numbers = self._aims.watched, [one.path for one in self._numbers]
@@ -167,7 +158,7 @@ class History:
         return Result(result.dataset.assign_attrs(more), result.drive)
 
     def _singles(self, start: Design, best: Design) -> dict[str, ArrayLike]:
-        named = {} if self._path is None else {"best_file": str(best_file(self._path))}
+        named = {} if self._path is None else {"best_file": str(found_file(self._path))}
         return {
             "goal_at_start": self._aims.goal_of(start.values),
             "goal_found": self._aims.goal_of(best.values),
@@ -250,11 +241,4 @@ class History:
         with uninterrupted():
             result = self.result()
             result.save(self._path, self._overwrite)
-            with atomic_path(best_file(self._path), _is_best, self._overwrite) as temporary:
-                temporary.write_text(str(result.dataset.attrs["best_drive"]), encoding="utf-8")
-
-
-def _is_best(path: Path) -> bool:
-    """Tell whether a drive file was written by an optimisation."""
-    with path.open("rb") as file:
-        return file.read(len(_FIRST_LINE)) == _FIRST_LINE.encode()
+            write_found(self._path, str(result.dataset.attrs["best_drive"]), self._overwrite)

@@ -15,7 +15,7 @@ from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.solve.flowing_start import with_passage
 from beltdyn.solve.static import standing
-from beltdyn.solve.staying import anchor_at, bring_to_stand
+from beltdyn.solve.staying import Standing, anchor_at, bring_to_stand
 from beltdyn.solve.steady_neighbour import search_from
 from beltdyn.solve.vibrations import Vibrations
 from beltdyn.system.arrays import System
@@ -126,7 +126,17 @@ def about_rest(drive: Drive) -> SmallMotions:
     """
     if drive.ends:
         raise ModelError("the belt is open, and modes are those of a closed belt. Look at a run with `beltdyn run`.")
-    rest = bring_to_stand(drive)
+    return about_standing(bring_to_stand(drive))
+
+
+def about_standing(rest: Standing) -> SmallMotions:
+    """The same as `about_rest` of a drive that is at rest already.
+
+    Parameters
+    ----------
+    rest
+        It at rest.
+    """
     held = constant_drive(standing(rest.system), 0.0)
     held.profiles.segment.offset[:] = 0.0
     held = held._replace(hysteresis=held.hysteresis[:0].view(np.recarray))

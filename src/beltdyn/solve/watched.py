@@ -1,8 +1,7 @@
 """Results that a study watches at its operating points: by name, distances of modes from orders, and clearances."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,40 +12,10 @@ from beltdyn.model.carrier import moved
 from beltdyn.model.clearance import Surroundings, distance_from_belt
 from beltdyn.model.study import Obstacle, Order
 from beltdyn.parts.quantity import RPM
-from beltdyn.results import Run
 from beltdyn.solve.changed_drive import driver_of
-from beltdyn.solve.modes import modes
-from beltdyn.solve.named_results import unit_of, values_of
+from beltdyn.solve.found_state import FoundState
+from beltdyn.solve.named_results import unit_of
 from beltdyn.solve.study_points import OperatingPoint, speed_of
-
-_MODES = 12
-"""How many modes are looked for at first."""
-_MOST_MODES = 200
-
-
-@dataclass(frozen=True)
-class Running:
-    """A drive in steady running at an operating point, and what is known of it."""
-
-    run: Run
-    _modes: dict[int, tuple[FloatArray, list[str]]] = field(default_factory=dict)
-
-    @cached_property
-    def values(self) -> dict[str, float]:
-        """Its scalar results by name."""
-        return values_of(self.run)
-
-    def modes_up_to(self, frequency: float) -> tuple[FloatArray, list[str]]:
-        """Frequencies (Hz) and kinds of its modes, at least up to a frequency if there are so many."""
-        count = _MODES
-        while True:
-            if count not in self._modes:
-                found = modes(self.run.drive, about=self.run, count=count).dataset
-                self._modes[count] = found["frequency"].values, [str(kind) for kind in found["kind"].values]
-            frequencies, kinds = self._modes[count]
-            if frequencies.max() > frequency or frequencies.size < count or count >= _MOST_MODES:
-                return frequencies, kinds
-            count *= 2
 
 
 @dataclass(frozen=True)
@@ -56,7 +25,7 @@ class Watched:
     name: str
     unit: str
     """SI unit; empty for a pure number."""
-    read: Callable[[Running], float]
+    read: Callable[[FoundState], float]
     at: FloatArray
     """1 at the operating points at which it counts, 0 at others."""
     derivative: str = "implicit function theorem"
@@ -75,7 +44,7 @@ def named(name: str, drive: Drive, count: int) -> Watched:
     count
         Number of operating points.
     """
-    return Watched(name, unit_of(name, drive), lambda running: running.values.get(name, np.nan), np.ones(count))
+    return Watched(name, unit_of(name, drive), lambda state: state.value(name), np.ones(count))
 
 
 def distance_from_order(order: Order, drive: Drive, points: Sequence[OperatingPoint]) -> Watched:
@@ -107,8 +76,8 @@ def distance_from_order(order: Order, drive: Drive, points: Sequence[OperatingPo
         )
     low, high = (order.order * speed / (2.0 * np.pi) for speed in (order.least_speed, order.largest_speed))
 
-    def read(running: Running) -> float:
-        frequencies, kinds = running.modes_up_to((1.0 + order.distance) * high)
+    def read(state: FoundState) -> float:
+        frequencies, kinds = state.modes_up_to((1.0 + order.distance) * high)
         counted = frequencies[[kind in order.kinds for kind in kinds]]
         return float(np.min(np.maximum(counted / high - 1.0, 1.0 - counted / low), initial=np.inf))
 
@@ -128,11 +97,10 @@ def clearance(one: Obstacle, count: int) -> Watched:
         Number of operating points.
     """
 
-    def read(running: Running) -> float:
-        drive = running.run.drive
-        path, belt = drive.path, drive.belt
-        if drive.carriers:
-            path = moved(path, drive.carriers, running.run.dataset["tensioner_position"].values[-1])
+    def read(state: FoundState) -> float:
+        drive = state.drive
+        positions = np.array([state.value(f"tensioner_position[{one.pulley}]") for one in drive.moving_tensioners])
+        path, belt = moved(drive.path, drive.carriers, positions), drive.belt
         radii = np.array([pulley.radius for pulley in drive.pulleys])
         around = Surroundings(radii, belt.pitch_offset, belt.back_offset)
         return distance_from_belt(path, around, one.center, one.radius)

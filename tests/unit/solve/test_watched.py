@@ -9,10 +9,10 @@ from beltdyn.model import Drive
 from beltdyn.model.study import Obstacle, Order
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.changed_drive import at_speed
-from beltdyn.solve.modes import modes
+from beltdyn.solve.found_state import Running
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.study_points import OperatingPoint
-from beltdyn.solve.watched import Running, clearance, distance_from_order
+from beltdyn.solve.watched import clearance, distance_from_order
 
 
 @pytest.fixture(scope="module")
@@ -40,13 +40,6 @@ def test_distance_from_the_band_of_an_order() -> None:
     assert distance() == pytest.approx(max(11 / 12 - 1, 1 - 11 / 10))
     assert distance(kinds=["rotational", "coupled"]) == pytest.approx(0.2)
     assert distance(kinds=["coupled"]) == pytest.approx(1.5)
-
-
-def test_modes_are_found_up_to_a_frequency(running: Running) -> None:
-    frequencies, _ = running.modes_up_to(300.0)
-    assert frequencies.max() > 300.0
-    few = modes(running.run.drive, about=running.run, count=4).dataset.frequency.values
-    np.testing.assert_allclose(frequencies[:4], few, rtol=1e-6)
 
 
 def test_clearance_of_a_bolt_above_the_upper_span(running: Running) -> None:

@@ -1,0 +1,193 @@
+"""An analysis: numbers of a drive with which its results are nearest to measured ones, and how well these tell them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.model import Drive
+from beltdyn.model.study import CalibrationStudy
+from beltdyn.model.toml_editor import edited
+from beltdyn.model.toml_reader import loads, read_study
+from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.shown import VARIOUS
+from beltdyn.signals import uninterrupted
+from beltdyn.solve.designs import Free, free_number
+from beltdyn.solve.fitting import Fit, fit
+from beltdyn.solve.found_drive import headed, require_free, write_found
+from beltdyn.solve.named_results import unit_of
+from beltdyn.solve.progress import Report
+from beltdyn.solve.residuals import MOST, Residuals
+
+_UNLIKELY = 1e-3
+"""Probability of residuals so large, below which deviations or the drive are doubtful."""
+
+_NUMBER, _MEASURED = ("number",), ("measured",)
+_VARIABLES = {
+    "residual_deviation": Variable((), "1", "Deviation of residuals, over that of measurements or relative"),
+    "start": Variable(_NUMBER, VARIOUS, "Start"),
+    "fitted": Variable(_NUMBER, VARIOUS, "Fitted"),
+    "standard_error": Variable(_NUMBER, VARIOUS, "Standard error"),
+    "lower": Variable(_NUMBER, VARIOUS, "Lower end of the interval"),
+    "upper": Variable(_NUMBER, VARIOUS, "Upper end of the interval"),
+    "number_unit": Variable(_NUMBER, "1", "Unit", "str"),
+    "correlation": Variable(("number", "other_number"), "1", "Correlation of errors"),
+    "measured_value": Variable(_MEASURED, VARIOUS, "Measured"),
+    "start_value": Variable(_MEASURED, VARIOUS, "Start"),
+    "fitted_value": Variable(_MEASURED, VARIOUS, "Fitted"),
+    "residual": Variable(_MEASURED, "1", "Residual, over the deviation or relative"),
+    "measured_unit": Variable(_MEASURED, "1", "Unit", "str"),
+}
+_COORDINATES = {
+    "number": Variable(_NUMBER, "1", "Number", "str"),
+    "other_number": Variable(("other_number",), "1", "Number", "str"),
+    "measured": Variable(_MEASURED, "1", "Measured result", "str"),
+    "row": Variable(_MEASURED, "1", "Row", "str"),
+}
+
+
+def calibrate(
+    drive: Drive,
+    *,
+    study: Path | str | CalibrationStudy,
+    force_tolerance: float | None = None,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    r"""Fit numbers of a drive to measured results, with confidence intervals.
+
+    A study names the numbers and tables of measurements: results of steady running or at rest, such as slip over
+    torque, frequencies of spans, or the place of a tensioner over the tension. Numbers are those of least squares, and
+    their intervals follow from the derivatives of results and the deviations of measurements; where tables give none,
+    measurements have the same relative one, which is estimated.
+
+    Parameters
+    ----------
+    drive
+        The drive, at which the search starts.
+    study
+        The study file, TOML.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
+        drive, 0.01.
+    output
+        Result file (NetCDF4), with the calibrated drive file beside it; without one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Replace any regular file by the results, and not only earlier results.
+
+    Returns
+    -------
+    Result
+        Along ``number`` ``fitted``, ``standard_error``, ``lower`` and ``upper``; along ``measured`` what was measured
+        and what the drive gives. Its drive is the calibrated one, of which the attribute ``best_drive`` is the text.
+
+    Raises
+    ------
+    ModelError
+        If the study is none, or does not fit the drive.
+    ConvergenceError
+        If the drive that is given has no such state, or measurements do not tell the numbers.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> rows = ["driven torque [N m], pulley_slip[driven] [%]", "-0.5, 0.06", "-1, 0.12", "-2, 0.24"]
+    >>> _ = Path("slip.csv").write_text("\n".join(rows))
+    >>> study = bd.CalibrationStudy(
+    ...     number=[{"path": "belt.youngs_modulus", "least": "50 MPa", "largest": "200 MPa"}],
+    ...     measurement=[{"table": "slip.csv"}],
+    ... )
+    >>> found = bd.calibrate(drive, study=study)
+    >>> bool(found.dataset.lower < found.dataset.fitted)
+    True
+    """
+    path = None if output is None else Path(output)
+    if path is not None:
+        require_free(path, overwrite)
+    given = study if isinstance(study, CalibrationStudy) else read_study(study, CalibrationStudy)
+    base = Path() if isinstance(study, CalibrationStudy) else Path(study).parent
+    numbers = tuple(free_number(drive, one) for one in given.numbers)
+    fitting = Residuals(drive, numbers, given, base, force_tolerance, progress)
+    first = fitting.start()
+    found = fit(fitting.residuals, fitting.jacobian, first, given.confidence, known=fitting.known, most=MOST)
+    result = _result(drive, numbers, fitting, found, given.confidence)
+    if path is not None:
+        with uninterrupted():
+            result.save(path, overwrite)
+            write_found(path, str(result.dataset.attrs["best_drive"]), overwrite)
+    return result
+
+
+def _result(drive: Drive, numbers: Sequence[Free], fitting: Residuals, found: Fit, confidence: float) -> Result:
+    """Fitted numbers and results."""
+    ranges = np.array([one.largest - one.least for one in numbers])
+    fitted = np.array([one.least for one in numbers]) + found.numbers * ranges
+    errors = found.errors * ranges
+    on = fitting.on
+    names = [
+        (watched.name, label, unit_of(watched.name, drive))
+        for series in fitting.series
+        for label in series.labels
+        for watched in series.designs.watched
+    ]
+    shown = [one for one, there in zip(names, on, strict=True) if there]
+    text = headed(edited(drive, dict(zip((one.path for one in numbers), fitted.tolist(), strict=True))), "calibrate")
+    arrays: dict[str, ArrayLike] = {
+        "residual_deviation": found.spread,
+        "start": [one.start for one in numbers],
+        "fitted": fitted,
+        "standard_error": errors,
+        "lower": fitted - found.reach * errors,
+        "upper": fitted + found.reach * errors,
+        "number_unit": [one.unit for one in numbers],
+        "correlation": found.correlation,
+        "measured_value": fitting.measured[on],
+        "start_value": fitting.first[on],
+        "fitted_value": fitting.values(found.numbers)[on],
+        "residual": found.residuals,
+        "measured_unit": [unit for _, _, unit in shown],
+    }
+    labels: Mapping[str, ArrayLike] = {
+        "number": [one.path for one in numbers],
+        "other_number": [one.path for one in numbers],
+        "measured": [name for name, _, _ in shown],
+        "row": [label for _, label, _ in shown],
+    }
+    warnings = list(_warnings(numbers, fitting, found))
+    result = build_result(
+        "calibrate",
+        loads(text),
+        {name: (_VARIABLES[name], values) for name, values in arrays.items()},
+        {name: (one, labels[name]) for name, one in _COORDINATES.items()},
+        warnings,
+    )
+    more = {"drive_as_given": drive.text, "best_drive": text, "confidence": confidence}
+    more["title"] = f"{drive.title}: calibrated with {np.sum(on)} measured values, intervals of {confidence:.0%}"
+    return Result(result.dataset.assign_attrs(more), result.drive)
+
+
+def _warnings(numbers: Sequence[Free], fitting: Residuals, found: Fit) -> Iterator[str]:
+    """What makes the fit doubtful."""
+    from scipy import stats
+
+    yield from dict.fromkeys(failure for series in fitting.series for failure in series.designs.failed)
+    if not found.told:
+        yield (
+            "the measurements do not tell all numbers: some change the same results in the same way. Fit fewer "
+            "numbers, or measure something else."
+        )
+    at_bounds = [one.path for one, part in zip(numbers, found.numbers, strict=True) if min(part, 1.0 - part) < 1e-6]
+    if at_bounds:
+        yield f"{', '.join(at_bounds)}: the fit is at a bound, where intervals do not hold. Widen it."
+    left = found.residuals.size - len(numbers)
+    if fitting.known and left > 0:
+        squares = float(found.residuals @ found.residuals)
+        if stats.chi2.sf(squares, left) < _UNLIKELY:
+            yield (
+                f"residuals are {found.spread:.2g} times as large as their deviations say: the drive does not describe "
+                "the measurements, or they are less certain."
+            )
