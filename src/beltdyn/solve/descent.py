@@ -1,11 +1,17 @@
-"""The search for the best design: sequential quadratic programming (SLSQP of SciPy) on goal and limits of a study.
+"""The search for the best design: linear programs in a trust region (Fletcher and Sainz de la Maza 1989).
 
-The worst of several numbers has kinks, so that the goal becomes one more unknown t, of which every number is a limit:
-the least t with t >= g_k(x), and with all limits of the study.
+With the results at a design and their derivatives, goal and limits are straight.  The best step of at most a part D of
+the ways between bounds is that of the linear program
+
+    least  t + M s + e sum |d|,   g_k + G_k d <= t,   c_j + C_j d + s >= 0,   |d| <= D,   s >= 0,
+
+with the numbers g_k of the goal, of which the worst counts, the distances c_j from limits, and the largest violation s.
+A step is taken where max g + M max(0, -c) falls by a part of what is expected; D grows where it does as expected, and
+shrinks where it does not, or where the design does not run.
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,21 +20,39 @@ from beltdyn.solve.designs import Design, Designs
 from beltdyn.solve.goals import Aims
 
 _SETTLED = 1e-5
-"""Change of the goal at which the search ends, over the scale of the goal."""
-_CAUTION = 3.0
-"""The scale of the goal over its change along the whole way between bounds: the first step is a third of a way."""
-_REFUSED = 10.0
-"""How much worse than any limit a design without steady running counts, over the scale of the goal and of limits."""
+"""Expected fall of goal and violations at which the search ends, over their scales."""
+_FIRST_PART, _LARGEST_PART, _LEAST_PART = 0.15, 0.5, 1e-4
+"""Part of the ways between bounds that the first, the largest and the least step may take."""
+_TAKEN, _POOR, _GOOD = 0.1, 0.3, 0.7
+"""Fall over the expected one from which a step is taken, below which the next is shorter, and from which longer."""
+_LONGER, _SHORTER, _MUCH_SHORTER = 2.0, 0.4, 0.25
+_PENALTY = 100.0
+"""M, with the goal over its scale, and violations over that of their limits."""
+_LAZINESS = 1e-5
+"""e: what does not matter stays as it is."""
 _UNBOUND = 1e3
 """Distance from a limit of a result that has no value there, such as the slip safety of a pulley without load."""
 
 
-class Enough(Exception):
-    """As many designs as were asked for have been tried."""
+class _Place(NamedTuple):
+    """A design as the search sees it."""
+
+    parts: FloatArray
+    """Of the ways from the least to the largest values, shape (n,)."""
+    design: Design
+    goals: FloatArray
+    """Over the scale of the goal."""
+    distances: FloatArray
+    """From limits, over their scales."""
+
+    @property
+    def merit(self) -> float:
+        """What is to fall."""
+        return float(np.max(self.goals) + _PENALTY * max(0.0, -np.min(self.distances, initial=0.0)))
 
 
 class Descent:
-    """Tries designs, each from the states of the last one, until none is better.
+    """Tries designs, each from the states of the last one that was better, until none is.
 
     Parameters
     ----------
@@ -44,10 +68,6 @@ class Descent:
 
     def __init__(self, designs: Designs, aims: Aims, most: int, note: Callable[[Design], None]) -> None:
         self._designs, self._aims, self._most, self._note = designs, aims, most, note
-        self._count = 1
-        self._known: dict[bytes, Design] = {}
-        self._slopes: dict[bytes, FloatArray] = {}
-        self._near: Design | None = None
         self._ranges = np.array([one.largest - one.least for one in designs.numbers])
         self._goal_scale, self._scales = 1.0, np.ones(0)
 
@@ -59,76 +79,68 @@ class Descent:
         str
             Why it ended.
         """
-        from scipy.optimize import Bounds, NonlinearConstraint, minimize
-
-        numbers = self._designs.numbers
-        first = np.array([(one.start - one.least) / (one.largest - one.least) for one in numbers])
-        self._near = start
-        self._known[self._key(first)] = start
-        goals, slack = self._aims.goal_values(start.values), self._aims.distances(start.values)
+        parts = np.array([(one.start - one.least) / (one.largest - one.least) for one in self._designs.numbers])
         derivatives = self._designs.derivatives(start)
-        steepest = np.abs(self._aims.goal_values(derivatives)[int(np.argmax(goals))] * self._ranges).max()
-        self._goal_scale = _CAUTION * float(steepest) or 1.0
-        limits = np.array([limit.value for limit in self._aims.limits for _ in range(self._aims.places(limit))])
-        self._scales = np.maximum(np.abs(np.nan_to_num(slack)), np.maximum(np.abs(limits), 1e-12))
-        self._slopes[self._key(first)] = self._scaled_slopes(derivatives)
-        unknowns = np.append(first, float(np.max(goals)) / self._goal_scale)
-        downhill = np.append(np.zeros(len(numbers)), 1.0)
-        search: Callable[..., Any] = minimize
-        constraint = NonlinearConstraint(self._distances, 0.0, np.inf, self._distance_slopes)
-        try:
-            found = search(
-                lambda z: float(z[-1]) + _REFUSED * bool(self._at(z[:-1]).failure),
-                unknowns,
-                jac=lambda _: downhill,
-                method="SLSQP",
-                bounds=Bounds(np.append(0.0 * first, -np.inf), np.append(0.0 * first + 1.0, np.inf)),
-                constraints=constraint,
-                options={"ftol": _SETTLED, "maxiter": self._most},
-            )
-        except Enough:
-            return f"{self._most} designs were tried"
-        return "no better design was found nearby" if found.status in (0, 8) else str(found.message)
+        self._set_scales(start, derivatives)
+        here, reach, tried = self._place(parts, start), _FIRST_PART, 1
+        step, expected = self._step(here, derivatives, reach)
+        while expected > _SETTLED and reach > _LEAST_PART:
+            if tried >= self._most:
+                return f"{self._most} designs were tried"
+            ahead = self._try(here, step)
+            tried += 1
+            if ahead is None:
+                reach *= _MUCH_SHORTER
+            else:
+                fall = (here.merit - ahead.merit) / expected
+                if fall >= _TAKEN:
+                    here, derivatives = ahead, self._designs.derivatives(ahead.design)
+                reach = min(reach * (_LONGER if fall >= _GOOD else _SHORTER if fall < _POOR else 1.0), _LARGEST_PART)
+            step, expected = self._step(here, derivatives, reach)
+        return "no design nearby is better"
 
-    def _key(self, parts: FloatArray) -> bytes:
-        return np.array([one.at(part) for one, part in zip(self._designs.numbers, parts, strict=True)]).tobytes()
+    def _set_scales(self, start: Design, derivatives: FloatArray) -> None:
+        """Measure the goal by its change along the whole way between bounds, limits by themselves."""
+        worst = int(np.argmax(self._aims.goal_values(start.values)))
+        self._goal_scale = float(np.abs(self._aims.goal_values(derivatives)[worst] * self._ranges).max()) or 1.0
+        limits = [abs(limit.value) or 1.0 for limit in self._aims.limits for _ in range(self._aims.places(limit))]
+        self._scales = np.array(limits)
 
-    def _at(self, parts: FloatArray) -> Design:
-        """The design at parts of the ways between bounds."""
-        key = self._key(parts)
-        if key not in self._known:
-            if self._count >= self._most:
-                raise Enough
-            changes = {one.path: one.at(part) for one, part in zip(self._designs.numbers, parts, strict=True)}
-            design = self._designs.find(changes, self._near)
-            self._known[key] = design
-            self._count += 1
-            self._note(design)
-        return self._known[key]
+    def _place(self, parts: FloatArray, design: Design) -> _Place:
+        distances = np.nan_to_num(self._aims.distances(design.values) / self._scales, nan=_UNBOUND, posinf=_UNBOUND)
+        return _Place(parts, design, self._aims.goal_values(design.values) / self._goal_scale, distances)
 
-    def _distances(self, z: FloatArray) -> FloatArray:
-        """Distances of t from the numbers of the goal, and from limits; far beyond all without steady running."""
-        design = self._at(z[:-1])
-        if design.failure:
-            count = self._aims.goal_values(design.values).size + self._scales.size
-            return np.full(count, -_REFUSED)
-        goals = z[-1] - self._aims.goal_values(design.values) / self._goal_scale
-        limits = np.nan_to_num(self._aims.distances(design.values) / self._scales, nan=_UNBOUND, posinf=_UNBOUND)
-        return np.asarray(np.nan_to_num(np.concatenate([goals, limits]), nan=_UNBOUND))
+    def _try(self, here: _Place, step: FloatArray) -> _Place | None:
+        """A design a step ahead; None if it does not run."""
+        parts = np.clip(here.parts + step, 0.0, 1.0)
+        changes = {one.path: one.at(part) for one, part in zip(self._designs.numbers, parts, strict=True)}
+        design = self._designs.find(changes, here.design)
+        self._note(design)
+        return None if design.failure else self._place(parts, design)
 
-    def _distance_slopes(self, z: FloatArray) -> FloatArray:
-        """Their derivatives by the unknowns."""
-        key = self._key(z[:-1])
-        if key not in self._slopes:
-            design = self._at(z[:-1])
-            if design.failure:
-                return np.zeros((self._distances(z).size, z.size))
-            self._near = design
-            self._slopes[key] = self._scaled_slopes(self._designs.derivatives(design))
-        return self._slopes[key]
+    def _step(self, here: _Place, derivatives: FloatArray, reach: float) -> tuple[FloatArray, float]:
+        """The best step by the linear program, and by how much goal and violations are to fall."""
+        from scipy.optimize import linprog
 
-    def _scaled_slopes(self, derivatives: FloatArray) -> FloatArray:
-        goals = -self._aims.goal_values(derivatives) / self._goal_scale
-        rows = np.concatenate([goals, self._aims.distances(derivatives) / self._scales[:, None]]) * self._ranges
-        last = np.concatenate([np.ones(len(goals)), np.zeros(self._scales.size)])
-        return np.column_stack([rows, last])
+        program: Callable[..., Any] = linprog
+        goals = self._aims.goal_values(derivatives) * self._ranges / self._goal_scale
+        limits = self._aims.distances(derivatives) * self._ranges / self._scales[:, None]
+        count = self._ranges.size
+        last = np.zeros((len(goals) + len(limits), 2))
+        last[: len(goals), 0], last[len(goals) :, 1] = -1.0, -1.0
+        slopes = np.concatenate([goals, -limits])
+        found = program(
+            np.concatenate([np.full(2 * count, _LAZINESS), [1.0, _PENALTY]]),
+            A_ub=np.hstack([slopes, -slopes, last]),
+            b_ub=np.concatenate([-here.goals, here.distances]),
+            bounds=[
+                *((0.0, float(min(reach, room))) for room in 1.0 - here.parts),
+                *((0.0, float(min(reach, room))) for room in here.parts),
+                (None, None),
+                (0.0, None),
+            ],
+        )
+        if found.x is None:
+            return np.zeros(count), 0.0
+        step = np.asarray(found.x[:count] - found.x[count : 2 * count])
+        return step, float(here.merit - found.x[-2] - _PENALTY * found.x[-1])
