@@ -69,6 +69,9 @@ def read_measured(path: Path, drive: Drive) -> MeasuredTable:
         _take(table, column, drive)
     if not table.results:
         raise ModelError(f'{path} holds no result. Give a column such as "pulley_slip[{drive.pulleys[-1].name}]".')
+    for name, values in table.results.items():
+        if not np.isfinite(values).any():
+            raise ModelError(f"{path}: {name} was not measured in any row. Fill in the column, or remove it.")
     for name, sizes in table.deviations.items():
         if name not in table.results or np.any(sizes[np.isfinite(table.results[name])] <= 0.0):
             raise ModelError(f'{path}: "± {name}" needs a column "{name}" beside it, and deviations above zero.')
