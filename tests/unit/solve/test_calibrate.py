@@ -105,8 +105,8 @@ def test_what_measurements_do_not_tell(drive: Drive, slips: FloatArray, tmp_path
 
 @pytest.mark.slow
 def test_intervals_hold_the_true_numbers_as_often_as_they_say(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
-    """Of 60 calibrations with noise, intervals of 90 % hold the true stiffness in 54, within 3 deviations of 2.3."""
-    rng, held, count = np.random.default_rng(11), 0, 60
+    """Of 20 calibrations with noise, intervals of 90 % hold the true stiffness in 18, within 3 deviations of 1.3."""
+    rng, held, count = np.random.default_rng(11), 0, 20
     for _ in range(count):
         write(tmp_path, slips * (1.0 + DEVIATION * rng.standard_normal(slips.size)), DEVIATION * slips)
         file = study_file(tmp_path)
