@@ -1,0 +1,154 @@
+"""Verified: modes and linear response, against vibrations over time, and against formulas by hand."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import beltdyn as bd
+from beltdyn.arrays import ComplexArray, FloatArray
+from beltdyn.model import Drive
+from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.results import Run
+from beltdyn.solve.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
+from beltdyn.solve.flutter import flutter_shift
+from beltdyn.solve.forced_motion import ForcedMotion
+from beltdyn.solve.modes import modes
+from beltdyn.solve.response import response
+from beltdyn.solve.small_motions import SmallMotions, about_steady
+from beltdyn.solve.steady import steady_state
+from beltdyn.solve.vibrations import Vibrations
+
+SPEED, TORQUE = 120.0, -45.0
+STEADY = {"kind": "constant", "value": SPEED}
+
+
+def over_time(drive: Drive, duration: float, torque: dict[str, Any], **driver: Any) -> Run:
+    """Case 2 with a steep friction law from steady running on, on a mesh that stays, in steps of 0.1 ms."""
+    first, second = drive.pulleys
+    settings = drive.simulation.replace(
+        duration=duration, output_interval=2e-4, max_step=1e-4, frame="staying", start="steady"
+    )
+    pulleys = [first.replace(speed=STEADY, **driver), second.replace(torque=torque)]
+    return bd.simulate(drive.replace(pulley=pulleys, simulation=settings))
+
+
+def case_2() -> Drive:
+    return better(loaded_two_pulley(1e5), 80)
+
+
+def exponents(values: FloatArray, step: float, count: int) -> ComplexArray:
+    """Eigenvalues of a sum of so many exponentials, 1/s (matrix pencil, Hua and Sarkar 1990)."""
+    rows = np.lib.stride_tricks.sliding_window_view(values, values.size // 2)
+    space = np.linalg.svd(rows, full_matrices=False)[2][:count].T
+    found: ComplexArray = np.linalg.eigvals(np.linalg.pinv(space[:-1]) @ space[1:])
+    return np.asarray(np.log(found.astype(complex)) / step)
+
+
+def nearest_of(values: ComplexArray, frequency: float) -> complex:
+    return complex(values[np.argmin(np.abs(values.imag - 2.0 * np.pi * frequency))])
+
+
+@pytest.mark.slow
+def test_vibrations_after_a_small_knock(measured: Callable[..., None]) -> None:
+    """A step of the load by 0.4 %: rotation and both spans ring as their modes say, to 0.5 %, and die away."""
+    knock = {"kind": "step", "time": 0.01, "before": TORQUE, "value": TORQUE - 0.2}
+    run = over_time(case_2(), 0.22, knock)
+    found = modes(run.drive, count=3).dataset
+    assert found.kind.values.tolist() == ["rotational", "span", "span"]
+    dataset = run.dataset
+    after, step = dataset.time.values > 0.0105, 2e-4
+    seen = [dataset.pulley_speed.values[after, 1], *dataset.mid_span_displacement.values[after].T.astype(float)]
+    for number, values in enumerate(seen):
+        expected = complex(found.growth_rate[number] + 2j * np.pi * found.frequency[number])
+        ringing = nearest_of(exponents(values - values[-50:].mean(), step, 10), float(found.frequency[number]))
+        measured(frequency=ringing.imag / (2.0 * np.pi), decay=ringing.real, expected=float(found.frequency[number]))
+        assert ringing.imag == pytest.approx(expected.imag, rel=5e-3)
+        assert ringing.real == pytest.approx(expected.real, rel=0.06)
+        if number == 0:
+            assert ringing.real == pytest.approx(expected.real, rel=5e-3)
+
+
+@pytest.mark.slow
+def test_forced_vibrations_over_time(measured: Callable[..., None]) -> None:
+    """A wave of 0.2 % in the speed of the driver: amplitude and phase of order 2 when the start has died away."""
+    waves = [{"order": 2, "amplitude": 0.002}]
+    run = over_time(case_2(), 0.4, {"kind": "constant", "value": TORQUE}, harmonics=waves)
+    linear = response(run.drive, speed=f"{SPEED} rad/s").dataset.isel(speed=0, excitation=0)
+    turns = 8.0 * np.pi / SPEED
+    last = run.dataset.isel(time=run.dataset.time.values > float(run.dataset.time[-1]) - turns)
+    angle = 2.0 * SPEED * last.time.values
+    fit = np.column_stack([np.ones(angle.size), np.cos(angle), np.sin(angle)])
+    for name in ("span_tension", "pulley_speed", "pulley_torque"):
+        parts = np.linalg.lstsq(fit, last[name].values, rcond=None)[0]
+        amplitude, phase = np.hypot(parts[1], parts[2]), np.arctan2(-parts[2], parts[1])
+        expected = linear[f"{name}_amplitude"].values
+        measured(**{name: amplitude[1], f"expected_{name}": expected[1]})
+        np.testing.assert_allclose(amplitude, expected, rtol=5e-3)
+        np.testing.assert_allclose(np.exp(1j * (phase - linear[f"{name}_phase"].values)), 1.0, atol=5e-3)
+
+
+STIFFNESS, DAMPING, ROTOR = 200.0, 0.05, 3e-3
+HUBS: dict[str, dict[str, Any]] = {
+    "isolator": {"kind": "isolator", "stiffness": STIFFNESS, "damping": DAMPING, "inertia": ROTOR},
+    "decoupler": {"kind": "one_way_clutch", "locking_damping": 5.0, "inertia": ROTOR},
+}
+
+
+@pytest.mark.parametrize("kind", HUBS)
+def test_rotor_behind_its_rim(kind: str) -> None:
+    """(k + i w c) / (k + i w c - w^2 J), whatever the belt does; a locked clutch has its damping alone."""
+    drive = better(loaded_two_pulley())
+    driver, driven = drive.pulleys
+    hub = driven.replace(hub=[HUBS[kind]], inertia=0.05)
+    motion = ForcedMotion(steady_state(drive.replace(pulley=[driver, hub])), stuck=False)
+    spring, damper = (STIFFNESS, DAMPING) if kind == "isolator" else (0.0, HUBS[kind]["locking_damping"])
+    own = np.sqrt(STIFFNESS / ROTOR)
+    for frequency in own * np.array([0.3, 0.9, 1.0, 1.1, 3.0]):
+        found = motion.answer(float(frequency), {0: 1e-3}, {})
+        rate = spring + 1j * frequency * damper
+        expected = rate / (rate - frequency**2 * ROTOR)
+        assert found["shaft_speed"][1] / found["pulley_speed"][1] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def motions() -> SmallMotions:
+    """Case 2 in steady running."""
+    return about_steady(steady_state(better(loaded_two_pulley(1e5))))
+
+
+@pytest.fixture(scope="module")
+def first_order(motions: SmallMotions) -> Pencil:
+    return pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
+
+
+@pytest.fixture(scope="module")
+def every(first_order: Pencil) -> ComplexArray:
+    return all_eigenvalues(first_order)[0]
+
+
+@pytest.mark.slow
+def test_number_and_pairs_of_modes(motions: SmallMotions, first_order: Pencil, every: ComplexArray) -> None:
+    """Two eigenvalues a coordinate; the place of node 0 is one less, and each free motion has one eigenvalue less."""
+    coordinates, free = motions.free.shape
+    assert every.size == 2 * (coordinates - 1) - free
+    assert every.size <= first_order.size
+    above, below = every[every.imag > 0.0], every[every.imag < 0.0]
+    assert above.size == below.size
+    first, second = (values[np.lexsort((values.real, values.imag))] for values in (above, below.conj()))
+    np.testing.assert_allclose(first, second, rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_growth_near_contact_is_that_of_all_eigenvalues(
+    motions: SmallMotions, first_order: Pencil, every: ComplexArray
+) -> None:
+    """Of the vibrations near the frequency of the belt on its contact none is taken for another, or for none."""
+    shift, state = flutter_shift(motions.system), motions.state
+    found = Vibrations(motions.system).fastest_growing(0.0, state.position, state.velocity, shift)
+    near = every[np.argsort(np.abs(every - shift))]
+    assert np.abs(near - found).min() < 1e-6 * abs(shift)
+    assert found.real >= near[:24].real.max() - 1e-6 * abs(shift)
+    by_pencil = nearest(first_order, shift, 24)[0]
+    np.testing.assert_allclose(np.sort(by_pencil[:24].real), np.sort(near[:24].real), rtol=1e-6)
