@@ -192,7 +192,7 @@ export default {
         this.drag = { kind: "pan", start: [event.clientX, event.clientY], view: { ...this.view }, moved: false };
         return;
       }
-      if (what.kind === "move") this.choose(what.number);
+      if (what.kind === "move") this.$emit("choose", { number: what.number });
       const offset = what.from ? [what.from[0] - start[0], what.from[1] - start[1]] : [0, 0];
       this.drag = { ...what, start, offset, to: null, radius: 0, moved: false };
       if (what.kind === "move" && event.currentTarget.focus) event.currentTarget.focus({ preventScroll: true });

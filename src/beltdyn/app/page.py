@@ -211,7 +211,10 @@ class Page:
         """Do what was done on the canvas; while a drag goes on only show what would follow."""
         edits = self.session.edits_of(told.get("action"), told)
         if told.get("done"):
-            self.apply(edits)
+            self.session.apply(edits)
+            if told.get("action") == "add":
+                self._tabs.value = "pulley"
+            self.update()
         else:
             self._canvas.show(scene(self.session.preview(edits)), self.session.selected)
 
