@@ -144,5 +144,5 @@ def study(run: bd.Run, folder: Path) -> Iterator[str]:
 def draw_orders(run: bd.Run, path: Path) -> None:
     """Draw the orders of the tension of the tightest span in a run-up."""
     figure = new_figure()
-    orders(run, "span_tension", "compressor-crank", "crank", figure.add_subplot())
+    orders(run, "span_tension", "compressor-crank", "crank", ax=figure.add_subplot())
     figure.savefig(path)
