@@ -195,4 +195,4 @@ def choose_graded_elements(belt: OnPath, path: Path, tension: float) -> Choice:
     arcs = Laid.on(path, belt.belt_length, path.longest_span).arcs()
     number = graded_mesh(belt.belt_length, arcs, layer).size
     reason = f"a mesh that stays in place, with short ones within {1e3 * layer:.2g} mm of the ends of arcs"
-    return Choice("belt.elements", number, "", reason)
+    return Choice("belt.elements", min(number, MOST), "", reason if number <= MOST else f"no more; {reason}")

@@ -8,6 +8,7 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.model.defaults import MOST
 from beltdyn.model.graded_mesh import FINENESS
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.staying import Standing, anchor_at, bring_to_stand, stand
@@ -81,9 +82,9 @@ def _require_steady(drive: Drive) -> None:
 def _meshed(drive: Drive) -> Standing:
     """The drive at rest on a graded mesh of about the number of elements that it asks for."""
     rest = bring_to_stand(drive)
-    wanted, count = drive.belt.elements, rest.system.nodes
-    fineness = FINENESS if wanted is None else rest.fineness * wanted / count
-    return stand(rest.drive, fineness=fineness)
+    given = drive.belt.elements
+    fineness = rest.fineness * (given or MOST) / rest.system.nodes
+    return stand(rest.drive, fineness=fineness if given else min(FINENESS, fineness))
 
 
 def _running(rest: Standing) -> State:

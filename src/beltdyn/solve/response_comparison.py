@@ -10,7 +10,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.parts.messages import suggest
-from beltdyn.results import Run, Variable, derived, open_run
+from beltdyn.results import Run, Variable, open_run
 from beltdyn.solve.excitation import Excitation
 from beltdyn.solve.headed_table import HeadedColumn, read_headed
 from beltdyn.solve.operating_points import Axes
@@ -81,6 +81,8 @@ def run_up_amplitudes(given: Run | Path | str, place: Place) -> Axes:
 
 def _orders_of(run: Run, name: str, number: int, place: Place) -> FloatArray:
     """Amplitudes of the excitations' orders in a result, over the speed of the pulley, shape (n, excitations)."""
+    from beltdyn.results import derived  # xarray, which other analyses do without
+
     speeds, recorded = np.abs(run.dataset["shaft_speed"].values), _recorded(run, name, number)
     found = np.empty((place.speeds.size, len(place.excitations)))
     for column, one in enumerate(place.excitations):
