@@ -16,7 +16,7 @@ from beltdyn.solve.steady import require_steady
 from beltdyn.solve.steady_refinement import errors_at_rest
 from beltdyn.solve.steady_search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.build import flowing_system
+from beltdyn.system.build import flowing_system, smoothed_over_time
 from beltdyn.system.state import State
 
 
@@ -64,7 +64,7 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
     direction = anchor_at(rest.system, rest.state, True).direction
     state = _running(rest) if steady else rest.state
     speed = float(rest.system.frame.speed[0])
-    flowing = flowing_system(rest.system, direction)
+    flowing = flowing_system(smoothed_over_time(rest.system), direction)
     errors = errors_at_rest(rest)
     return Beginning(rest.drive, flowing, with_passage(rest.system, state, speed), mesh_errors=errors)
 

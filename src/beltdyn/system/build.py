@@ -14,7 +14,14 @@ from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
-from beltdyn.model.hysteresis import Passing, bending_at_points, passing_strains, rolling_resistances
+from beltdyn.model.hysteresis import (
+    KEPT_OVER_TIME,
+    OVER_TIME,
+    Passing,
+    bending_at_points,
+    passing_strains,
+    rolling_resistances,
+)
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
@@ -84,6 +91,24 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
         section = element.section._replace(bending_hysteresis=modulus, passing_length=length)
         element = Quintic(section, element.elastic)
     return system._replace(element=element, frame=staying(system.control, system.length, belt.mass_per_length))
+
+
+def smoothed_over_time(system: System) -> System:
+    """The same belt on a mesh that stays, with the hysteresis of bending that runs over time can afford.
+
+    Parameters
+    ----------
+    system
+        From `staying_system`.
+    """
+    element = system.element
+    if not isinstance(element, Quintic):
+        return system
+    section = element.section._replace(
+        bending_hysteresis=element.section.bending_hysteresis / KEPT_OVER_TIME,
+        passing_length=element.section.passing_length * OVER_TIME,
+    )
+    return system._replace(element=Quintic(section, element.elastic))
 
 
 def flowing_system(system: System, direction: FloatArray) -> System:
