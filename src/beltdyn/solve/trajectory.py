@@ -27,7 +27,7 @@ class Chunk:
         Length of the step that ends there, s; zero at the start.
     position, velocity : ndarray, shape (k, n N + D)
         Nodal coordinates and coordinates of bodies, and their rates.
-    work : ndarray, shape (k, 8)
+    work : ndarray, shape (k, 10)
         In the order of `system.arrays.ENERGY_WORKS`, since time zero, J.
     forces : BodyForces
         Of each state; `system.state_forces.body_forces_at` finds them where a method does not know them.
