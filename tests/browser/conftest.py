@@ -14,7 +14,12 @@ import pytest
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 
+PATIENCE = 300_000
+"""Time within which the page answers, on a machine that has much else to do too, ms."""
 _NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+
+
+playwright.expect.set_options(timeout=PATIENCE)
 
 
 @pytest.fixture(scope="session")
@@ -43,7 +48,7 @@ class Server:
     def end(self) -> str:
         """End it, and give what it said of errors."""
         self.process.terminate()
-        _, said = self.process.communicate(timeout=30)
+        _, said = self.process.communicate(timeout=300)
         return said
 
 
@@ -74,11 +79,12 @@ def open_page(browser: Any, server: Server) -> Iterator[Callable[..., Any]]:
     def opened(width: int = 1400, height: int = 900, scheme: str = "light") -> Any:
         context = browser.new_context(viewport={"width": width, "height": height}, color_scheme=scheme)
         contexts.append(context)
+        context.set_default_timeout(PATIENCE)
         page = context.new_page()
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("request", watch)
         page.goto(server.address)
-        page.wait_for_selector(".bd-canvas", timeout=30_000)
+        page.wait_for_selector(".bd-canvas")
         page.wait_for_function("document.querySelector('.bd-canvas').getAttribute('aria-label') !== ''")
         return page
 

@@ -17,8 +17,6 @@ playwright = pytest.importorskip("playwright.sync_api", reason="pip install play
 pytestmark = pytest.mark.browser
 
 Open = Callable[..., Any]
-LONG = 240_000
-"""Time for an analysis and for kernels that are compiled, ms."""
 
 
 def shoot(page: Any, name: str) -> None:
@@ -89,14 +87,14 @@ def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(open_page: Open, folde
     enter(page, "duration [s]", "20 ms")
     shoot(page, "newcomer_layout")
     page.get_by_role("button", name="Running").click()
-    page.get_by_text(re.compile("running, computed in")).wait_for(timeout=LONG)
+    page.get_by_text(re.compile("running, computed in")).wait_for()
     assert page.get_by_text("efficiency").count() == 1
     shoot(page, "newcomer_running")
     page.get_by_role("button", name="Run", exact=True).click()
-    page.get_by_text("run: completed").wait_for(timeout=LONG)
+    page.get_by_text("run: completed").wait_for()
     page.get_by_role("button", name="Look at it").click()
     report = page.frame_locator("iframe.bd-report")
-    report.locator("canvas").first.wait_for(timeout=30_000)
+    report.locator("canvas").first.wait_for()
     page.wait_for_timeout(1500)
     shoot(page, "newcomer_report")
     with page.expect_download() as kept:
@@ -137,8 +135,8 @@ def test_the_keyboard_is_enough(open_page: Open) -> None:
     for key in ("ArrowRight", "ArrowRight", "+", "ArrowUp"):
         page.keyboard.press(key)  # without a pause: steps add up
     expect = playwright.expect
-    expect(page.get_by_label("center [m]", exact=True)).to_have_value("0.002, 0.271", timeout=20_000)
-    expect(page.get_by_label("radius [m]", exact=True)).to_have_value("29 mm", timeout=20_000)
+    expect(page.get_by_label("center [m]", exact=True)).to_have_value("0.002, 0.271")
+    expect(page.get_by_label("radius [m]", exact=True)).to_have_value("29 mm")
     page.keyboard.press("b")
     page.get_by_text("the belt").first.wait_for()
     page.keyboard.press("b")
@@ -214,7 +212,7 @@ def test_a_server_that_is_killed_is_told_of_and_the_drive_can_be_kept(open_page:
     page.keyboard.press("Delete")
     page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
     server.process.kill()
-    page.get_by_text("The server has ended").wait_for(timeout=30_000)
+    page.get_by_text("The server has ended").wait_for()
     shoot(page, "killed")
     with page.expect_download() as kept:
         page.get_by_role("link", name="Keep the drive file").click()

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
-from beltdyn.app.document import Location
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import Told, told_apart
+from beltdyn.parts.toml_edits import Location
 
 _FILES = ("file", "catalogue")
 """Keys whose values are paths of files that are read."""

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Set
 from typing import Any, Literal, NamedTuple
 
 from beltdyn.app import placing
-from beltdyn.app.document import Edit, Location
 from beltdyn.app.forms import Field, fields, kinds, value_at
+from beltdyn.parts.toml_edits import Edit, Location
 
 
 class Row(NamedTuple):

@@ -6,10 +6,10 @@ from typing import Any
 from nicegui import ui
 from nicegui.elements.mixins.validation_element import ValidationElement
 
-from beltdyn.app.document import Edit, Location
 from beltdyn.app.form_rows import Row, edits_of_entry, edits_of_kind, edits_of_value, rows
 from beltdyn.app.forms import Field, as_value, value_at
 from beltdyn.app.session import Session
+from beltdyn.parts.toml_edits import Edit, Location
 
 _TYPED = ("number", "text", "point", "numbers")
 

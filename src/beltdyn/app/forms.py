@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
 
-from beltdyn.app.document import Location
 from beltdyn.app.scene import groups
 from beltdyn.model import Drive, read_catalogue
 from beltdyn.parts.error_location import ErrorLocation
+from beltdyn.parts.toml_edits import Location
 
 Form = Literal["text", "number", "choice", "flag", "point", "numbers", "group", "groups"]
 

@@ -9,7 +9,6 @@ from nicegui.events import KeyEventArguments
 
 from beltdyn.app.analysis_view import AnalysisView
 from beltdyn.app.canvas import Canvas
-from beltdyn.app.document import Edit
 from beltdyn.app.file_menu import FileMenu
 from beltdyn.app.form_view import FormView
 from beltdyn.app.numbers_view import NumbersView
@@ -17,6 +16,7 @@ from beltdyn.app.scene import groups, scene
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import Workspace
 from beltdyn.errors import BeltdynError
+from beltdyn.parts.toml_edits import Edit
 
 _TABS = ("drive", "belt", "pulley", "tensioner", "contact", "simulation", "limits")
 _LISTS = ("pulley", "tensioner")

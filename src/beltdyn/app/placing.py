@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from beltdyn.app.document import Edit
 from beltdyn.app.draft import Draft
 from beltdyn.app.scene import Circle, circles, groups, length_in, sketched
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import written_like
+from beltdyn.parts.toml_edits import Edit
 
 _FIRST_RADIUS = 0.05
 _SMALLEST_RADIUS = 0.005

@@ -5,11 +5,12 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from beltdyn.app import placing
-from beltdyn.app.document import Document, Edit
+from beltdyn.app.document import Document
 from beltdyn.app.draft import Draft, draft
 from beltdyn.app.scene import groups
 from beltdyn.app.workspace import EMPTY, Workspace
 from beltdyn.errors import ModelError
+from beltdyn.parts.toml_edits import Edit
 
 _FARTHEST = 1e3
 """Coordinate up to which the canvas is believed, m."""

@@ -1,20 +1,18 @@
 """Numbers changed in the text of a drive file, which keeps its comments, its order and its units."""
 
 import math
-import re
 from collections.abc import Mapping
 from typing import Any
-
-import tomlkit
 
 from beltdyn.model.drive import Drive
 from beltdyn.model.toml_reader import loads
 from beltdyn.model.toml_writer import dumps
 from beltdyn.parts.change import steps_of, unit_at
 from beltdyn.parts.error_location import entry_name
-from beltdyn.parts.quantity import to_si
+from beltdyn.parts.quantity import written_like
+from beltdyn.parts.text_file import parse_toml
+from beltdyn.parts.toml_edits import Edit, Location, changed_data, changed_text
 
-_WITH_UNIT = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(\S.*?)\s*")
 _DIGITS = 10
 
 
@@ -46,31 +44,31 @@ def edited(drive: Drive, changes: Mapping[str, float]) -> str:
     >>> bd.loads(text).belt.width
     0.012
     """
-    changed, document = drive.with_(changes), tomlkit.parse(drive.text)
+    changed, data = drive.with_(changes), parse_toml(drive.text)
     try:
-        for path, value in changes.items():
-            _set(document, path, value, unit_at(drive, path))
-        text = tomlkit.dumps(document)
-        if _near(loads(text).data, changed.data):
+        edits = [_edit(data, path, value, unit_at(drive, path)) for path, value in changes.items()]
+        text = changed_text(drive.text, edits, changed_data(data, edits))
+        if text is not None and _near(loads(text).data, changed.data):
             return text
     except (LookupError, ValueError):
         pass
     return dumps(changed)
 
 
-def _set(document: Any, path: str, value: float, unit: str) -> None:
-    """Set a number that stands in a document.
+def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
+    """The edit that changes a number that stands in a drive file.
 
     Raises
     ------
     KeyError, IndexError
         If nothing stands there.
     """
-    holder, (*steps, last) = document, steps_of(path)
-    for step in steps:
-        holder = holder[_key(holder, step)]
-    key = _key(holder, last)
-    holder[key] = _as_given(holder[key], value, unit)
+    given: Any = data
+    location: Location = ()
+    for step in steps_of(path):
+        key = _key(given, step)
+        given, location = given[key], (*location, key)
+    return Edit("set", location, written_like(value, given, unit, _DIGITS))
 
 
 def _key(holder: Any, step: str) -> str | int:
@@ -79,14 +77,6 @@ def _key(holder: Any, step: str) -> str | int:
         return step
     names = [entry_name(one) or str(number) for number, one in enumerate(holder, 1)]
     return names.index(step) if step in names else int(step) - 1
-
-
-def _as_given(given: object, value: float, unit: str) -> float | str:
-    """A number in the unit that stands there."""
-    match = _WITH_UNIT.fullmatch(given) if isinstance(given, str) else None
-    if match is None:
-        return float(f"{value:.{_DIGITS}g}")
-    return f"{value / to_si(f'1 {match[1]}', unit):.{_DIGITS}g} {match[1]}"
 
 
 def _near(one: Any, other: Any) -> bool:

@@ -65,8 +65,8 @@ def to_si(text: str, unit: str) -> float:
     return _convert(number, given, unit)
 
 
-def written_like(value: float, given: object, unit: str) -> float | str:
-    """Write a number with the unit that another one is written with, with seven digits.
+def written_like(value: float, given: object, unit: str, digits: int = 7) -> float | str:
+    """Write a number with the unit that another one is written with.
 
     Parameters
     ----------
@@ -76,6 +76,8 @@ def written_like(value: float, given: object, unit: str) -> float | str:
         How the other one stands in a drive file: a number, or text such as ``"25 mm"``.
     unit : str
         The SI unit.
+    digits : int
+        Digits that are written.
 
     Returns
     -------
@@ -85,10 +87,10 @@ def written_like(value: float, given: object, unit: str) -> float | str:
     match = _NUMBER.fullmatch(given) if isinstance(given, str) and len(given) <= _LONGEST_TEXT else None
     if match is not None and match["unit"]:
         try:
-            return f"{value / to_si('1 ' + match['unit'], unit):.7g} {match['unit']}"
+            return f"{value / to_si('1 ' + match['unit'], unit):.{digits}g} {match['unit']}"
         except ValueError:
             pass  # an unknown unit is no use
-    return float(f"{value:.7g}")
+    return float(f"{value:.{digits}g}")
 
 
 def _convert(number: float, given: str, unit: str) -> float:

@@ -6,7 +6,8 @@ from importlib.resources import files
 
 import pytest
 
-from beltdyn.app.document import Document, Edit
+from beltdyn.app.document import Document
+from beltdyn.parts.toml_edits import Edit
 
 EXAMPLES = sorted(one.name for one in files("beltdyn").joinpath("examples").iterdir() if one.name.endswith(".toml"))
 NEW = {"name": "new", "center": [0.1, 0.2], "radius": "20 mm", "load": [{"kind": "resistance", "constant": 2.0}]}

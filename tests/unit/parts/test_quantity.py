@@ -43,3 +43,8 @@ def test_any_other_text_is_a_value_error(text: str) -> None:
 )
 def test_a_number_is_written_with_the_unit_of_another(value: float, like: object, written: float | str) -> None:
     assert written_like(value, like, "m") == written
+
+
+def test_more_digits_are_written_where_they_are_asked_for() -> None:
+    assert written_like(0.0123456789012, "1 mm", "m") == "12.34568 mm"
+    assert written_like(0.0123456789012, "1 mm", "m", 10) == "12.3456789 mm"
