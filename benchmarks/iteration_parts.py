@@ -17,7 +17,7 @@ from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
 from beltdyn.published import better, two_pulley
-from beltdyn.solve.installation import bring_to_rest
+from beltdyn.solve.rest.installation import bring_to_rest
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system

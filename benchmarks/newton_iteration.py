@@ -14,7 +14,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.model import Drive
 from beltdyn.published import two_pulley
-from beltdyn.solve.installation import bring_to_rest
+from beltdyn.solve.rest.installation import bring_to_rest
 from beltdyn.system.arrays import Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system

@@ -20,9 +20,9 @@ from beltdyn.model import ERROR_LIMITS, layer_lengths
 from beltdyn.paper.distribution import distribution, find_peak, fit_line
 from beltdyn.published import RISE, better, loaded_two_pulley, two_pulley
 from beltdyn.solve import find_equilibrium
-from beltdyn.solve.installation import drawn_in
+from beltdyn.solve.integrators.trajectory import Chunk, Statistics, drive_task
+from beltdyn.solve.rest.installation import drawn_in
 from beltdyn.solve.simulate import choose_integrator
-from beltdyn.solve.trajectory import Chunk, Statistics, drive_task
 from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import at_rest

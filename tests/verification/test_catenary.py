@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
-from beltdyn.solve.static import find_equilibrium
-from beltdyn.solve.vibrations import Vibrations
+from beltdyn.solve.rest.static import find_equilibrium
+from beltdyn.solve.vibration.vibrations import Vibrations
 from beltdyn.stretch import StretchParameters
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system

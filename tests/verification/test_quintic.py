@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 from beltdyn.model import Belt, Drive
 from beltdyn.published import two_pulley
-from beltdyn.solve.static import find_equilibrium, standing
+from beltdyn.solve.rest.static import find_equilibrium, standing
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid, straight

@@ -15,11 +15,11 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Path
 from beltdyn.results import Run
 from beltdyn.results.derived.wear import wear_by_belt
-from beltdyn.solve.recording import Recording
-from beltdyn.solve.result_layout import result_layout
+from beltdyn.solve.integrators.trajectory import drive_task
+from beltdyn.solve.observation.recording import Recording
+from beltdyn.solve.observation.result_layout import result_layout
+from beltdyn.solve.rest.static import find_equilibrium, standing
 from beltdyn.solve.simulate import choose_integrator
-from beltdyn.solve.static import find_equilibrium, standing
-from beltdyn.solve.trajectory import drive_task
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system

@@ -131,7 +131,7 @@ def _modes(asked: Asked) -> Shown:
 def _steady(asked: Asked) -> Run:
     """Steady running under a speed and loads: from that before where there is one, which is quick."""
     from beltdyn.solve import steady_state
-    from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, with_load
+    from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, with_load
 
     known = _known.get(asked.tab)
     if known is None or known.text != asked.text:

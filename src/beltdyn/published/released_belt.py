@@ -6,7 +6,7 @@ import numpy as np
 
 from beltdyn.model import Belt
 from beltdyn.published.cases import two_pulley
-from beltdyn.solve.static import Equilibrium, find_equilibrium
+from beltdyn.solve.rest.static import Equilibrium, find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import State, laid

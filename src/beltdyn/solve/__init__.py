@@ -5,19 +5,19 @@ from beltdyn.solve.calibrate import calibrate
 from beltdyn.solve.campbell import campbell
 from beltdyn.solve.duty import duty
 from beltdyn.solve.equilibrium import equilibrium
-from beltdyn.solve.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.installation import Rest, bring_to_rest
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.standard import StandardIntegrator
+from beltdyn.solve.integrators.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 from beltdyn.solve.modes import modes
 from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.optimize import optimize
 from beltdyn.solve.progress import BatchProgress, Progress
 from beltdyn.solve.response import response
+from beltdyn.solve.rest.installation import Rest, bring_to_rest
+from beltdyn.solve.rest.static import Equilibrium, find_equilibrium
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.simulate import simulate
-from beltdyn.solve.standard import StandardIntegrator
-from beltdyn.solve.static import Equilibrium, find_equilibrium
 from beltdyn.solve.steady import steady_state
-from beltdyn.solve.stepwise import ErrorControl, FixedSteps, StepError, Stepwise
 from beltdyn.solve.sweep import sweep
 from beltdyn.solve.tensioner_sheet import tensioner_sheet
 from beltdyn.solve.traction import traction

@@ -13,12 +13,12 @@ from beltdyn.model.toml_reader import loads, read_study
 from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.shown import VARIOUS
 from beltdyn.signals import uninterrupted
-from beltdyn.solve.designs import Free, free_number
-from beltdyn.solve.fitting import Fit, fit
-from beltdyn.solve.found_drive import headed, require_free, write_found
-from beltdyn.solve.named_results import unit_of
 from beltdyn.solve.progress import Report
-from beltdyn.solve.residuals import MOST, Residuals
+from beltdyn.solve.studies.designs import Free, free_number
+from beltdyn.solve.studies.fitting import Fit, fit
+from beltdyn.solve.studies.found_drive import headed, require_free, write_found
+from beltdyn.solve.studies.named_results import unit_of
+from beltdyn.solve.studies.residuals import MOST, Residuals
 
 _UNLIKELY = 1e-3
 """Probability of residuals so large, below which deviations or the drive are doubtful."""

@@ -17,7 +17,7 @@ import numpy as np
 from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
-from beltdyn.solve.engine import accelerate
+from beltdyn.solve.integrators.engine import accelerate
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe

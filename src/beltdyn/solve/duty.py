@@ -12,10 +12,10 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Variable
-from beltdyn.solve.changed_drive import at_speed, held_at, with_load, with_torque
-from beltdyn.solve.headed_table import HeadedColumn, read_headed
-from beltdyn.solve.operating_points import VARIABLES, Axes, OperatingPoints
 from beltdyn.solve.progress import Report
+from beltdyn.solve.steady_running.changed_drive import at_speed, held_at, with_load, with_torque
+from beltdyn.solve.steady_running.operating_points import VARIABLES, Axes, OperatingPoints
+from beltdyn.solve.studies.headed_table import HeadedColumn, read_headed
 
 UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}
 """What columns hold, and their SI units."""

@@ -2,11 +2,11 @@
 
 from beltdyn.model import Drive
 from beltdyn.results import StaticResult, static_result
-from beltdyn.solve.installation import bring_to_rest, on_equal_elements
+from beltdyn.solve.integrators.trajectory import Chunk
+from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Report
-from beltdyn.solve.recording import Recording
-from beltdyn.solve.static import standing
-from beltdyn.solve.trajectory import Chunk
+from beltdyn.solve.rest.installation import bring_to_rest, on_equal_elements
+from beltdyn.solve.rest.static import standing
 
 
 def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult:

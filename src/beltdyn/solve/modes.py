@@ -12,12 +12,12 @@ from beltdyn.parts.number_range import numbers_in
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of
-from beltdyn.solve.eigenvalues import pencil, swinging
-from beltdyn.solve.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.solve.progress import Report
-from beltdyn.solve.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of
+from beltdyn.solve.vibration.eigenvalues import pencil, swinging
+from beltdyn.solve.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
+from beltdyn.solve.vibration.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
 
 REST, STEADY = "rest", "steady"
 SLIDING, STUCK = "sliding", "stuck"

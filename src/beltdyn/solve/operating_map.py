@@ -8,9 +8,9 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of, with_load
-from beltdyn.solve.operating_points import OperatingPoints, serpentine
 from beltdyn.solve.progress import Report
+from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of, with_load
+from beltdyn.solve.steady_running.operating_points import OperatingPoints, serpentine
 
 
 def operating_map(

@@ -7,12 +7,12 @@ from beltdyn.model import Drive
 from beltdyn.model.study import OptimizationStudy
 from beltdyn.model.toml_reader import read_study
 from beltdyn.results import Result
-from beltdyn.solve.descent import Descent
-from beltdyn.solve.designs import Designs, free_number
-from beltdyn.solve.goals import aims_of
-from beltdyn.solve.optimization_history import History
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.study_points import held, study_points
+from beltdyn.solve.studies.descent import Descent
+from beltdyn.solve.studies.designs import Designs, free_number
+from beltdyn.solve.studies.goals import aims_of
+from beltdyn.solve.studies.optimization_history import History
+from beltdyn.solve.studies.study_points import held, study_points
 
 
 def optimize(

@@ -19,11 +19,11 @@ from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
 from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES
-from beltdyn.solve.named_results import listed, names_in, unit_of, values_of
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.small_changes import CHANGE, SmallChanges
-from beltdyn.solve.staying import bring_to_stand
+from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_on_mesh, steady_state
+from beltdyn.solve.studies.named_results import listed, names_in, unit_of, values_of
+from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.sweep import without_schedules
 
 _PART = 0.01

@@ -8,16 +8,16 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
 from beltdyn.results import Run, mesh_error_attribute, require_room
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
-from beltdyn.solve.flowing_start import Beginning, begin_flowing
-from beltdyn.solve.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.installation import bring_to_rest
-from beltdyn.solve.observer import Arrays
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.settling import Start
+from beltdyn.solve.integrators.standard import Name, StandardIntegrator
+from beltdyn.solve.integrators.trajectory import Integrator, drive_task
+from beltdyn.solve.observation.observer import Arrays
+from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Report
-from beltdyn.solve.recording import Recording
-from beltdyn.solve.settling import Start
-from beltdyn.solve.standard import Name, StandardIntegrator
+from beltdyn.solve.rest.installation import bring_to_rest
 from beltdyn.solve.steady import require_steady, steady_state
-from beltdyn.solve.trajectory import Integrator, drive_task
+from beltdyn.solve.steady_running.flowing_start import Beginning, begin_flowing
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid

@@ -10,13 +10,13 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, mesh_error_attribute
+from beltdyn.solve.integrators.trajectory import Chunk
+from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.recording import Recording
-from beltdyn.solve.staying import FINER, bring_to_stand, stand
-from beltdyn.solve.steady_neighbour import require_neighbour, search_from, with_length_of
-from beltdyn.solve.steady_refinement import MeshRule, against_coarser, is_fine, refine
-from beltdyn.solve.steady_search import SteadySearch
-from beltdyn.solve.trajectory import Chunk
+from beltdyn.solve.rest.staying import FINER, bring_to_stand, stand
+from beltdyn.solve.steady_running.neighbour import require_neighbour, search_from, with_length_of
+from beltdyn.solve.steady_running.refinement import MeshRule, against_coarser, is_fine, refine
+from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at

@@ -11,10 +11,10 @@ from beltdyn.model import Drive
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import to_si
 from beltdyn.results import Run
+from beltdyn.solve.integrators.settling import Settling
+from beltdyn.solve.observation.slip_through import SlipThrough
 from beltdyn.solve.progress import Report
-from beltdyn.solve.settling import Settling
 from beltdyn.solve.simulate import record_run
-from beltdyn.solve.slip_through import SlipThrough
 
 _Part = TypeVar("_Part", bound=Part)
 _LEAD = 0.1

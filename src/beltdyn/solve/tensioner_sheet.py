@@ -16,10 +16,10 @@ from beltdyn.model.tensioner_balance import held_belt
 from beltdyn.parts.messages import reason
 from beltdyn.parts.quantity import to_si
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.solve.installation import looked_at
-from beltdyn.solve.operating_points import Axes
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.staying import bring_to_stand, stand
+from beltdyn.solve.rest.installation import looked_at
+from beltdyn.solve.rest.staying import bring_to_stand, stand
+from beltdyn.solve.steady_running.operating_points import Axes
 
 _FINENESS = 1.2
 """Of the meshes."""

@@ -14,10 +14,10 @@ from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Run, Variable, summarize
-from beltdyn.solve.changed_drive import at_speed, driver_of, held_at, sense_of, with_pulley
-from beltdyn.solve.operating_points import Axes, OperatingPoints
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of, with_pulley
+from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints
 
 _FIRST, _LAST = 5e-4, 0.6
 """Slips between which gross slip is looked for."""

@@ -21,7 +21,7 @@ def unbalanced(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
         raise ConvergenceError("no equilibrium.")
 
-    monkeypatch.setattr(sys.modules["beltdyn.solve.installation"], "find_equilibrium", fail)
+    monkeypatch.setattr(sys.modules["beltdyn.solve.rest.installation"], "find_equilibrium", fail)
 
 
 def test_it_shows_and_writes_the_drive_at_rest(run_main: RunMain, drive_file: Path) -> None:

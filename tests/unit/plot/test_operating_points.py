@@ -9,7 +9,7 @@ from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Variable
-from beltdyn.solve.operating_points import OperatingPoints
+from beltdyn.solve.steady_running.operating_points import OperatingPoints
 
 
 def made(drive: Drive, kind: str, **sizes: int) -> Result:

@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.model import Belt, Constant, Drive, Pulley
 from beltdyn.model.instants import Instants
-from beltdyn.solve.trajectory import Statistics, Task
+from beltdyn.solve.integrators.trajectory import Statistics, Task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight

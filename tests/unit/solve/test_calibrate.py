@@ -12,9 +12,9 @@ from beltdyn.model import CalibrationStudy, Drive, loads
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solve.calibrate import calibrate
-from beltdyn.solve.found_state import Resting
-from beltdyn.solve.staying import bring_to_stand
+from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.studies.found_state import Resting
 
 TRUE_MODULUS = 1.08e9
 TORQUES = np.array([-15.0, -30.0, -45.0, -60.0, -75.0])

@@ -12,7 +12,7 @@ from beltdyn.solve.compilation import usable_cores
 COMPILE = """
 from beltdyn.published import loaded_two_pulley
 from beltdyn.solve.compilation import compile_kernels
-from beltdyn.solve.engine import dispatch
+from beltdyn.solve.integrators.engine import dispatch
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 

@@ -14,7 +14,7 @@ from beltdyn import open_run, simulate
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import expected_bytes
-from beltdyn.solve.result_layout import result_layout
+from beltdyn.solve.observation.result_layout import result_layout
 from beltdyn.system.build import drive_system
 
 Change = Callable[..., Drive]

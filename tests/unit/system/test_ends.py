@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.solve.engine import accelerate
+from beltdyn.solve.integrators.engine import accelerate
 from beltdyn.system.arrays import Motion
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.discretization import curve_lengths

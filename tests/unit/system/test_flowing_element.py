@@ -13,7 +13,7 @@ from beltdyn.elements.quintic import QUINTIC
 from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path
 from beltdyn.model.graded_mesh import Laid
-from beltdyn.solve.staying import laid_state
+from beltdyn.solve.rest.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import belt_system, flowing_system, staying_system

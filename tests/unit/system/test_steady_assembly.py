@@ -9,8 +9,8 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, Path
 from beltdyn.model.graded_mesh import Laid
-from beltdyn.solve.staying import anchor_at, laid_state
-from beltdyn.solve.steady_newton import SteadyWork, steady_work
+from beltdyn.solve.rest.staying import anchor_at, laid_state
+from beltdyn.solve.steady_running.newton import SteadyWork, steady_work
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, staying_system
 from beltdyn.system.constant_drive import constant_drive, drive_shafts, with_speeds_unknown

@@ -9,11 +9,11 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive, Pulley
 from beltdyn.model.instants import Instants
-from beltdyn.solve.alpha_advance import REACHED
-from beltdyn.solve.engine import advance, restart
-from beltdyn.solve.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.integrator_state import Settings, empty_steps, new_state
-from beltdyn.solve.trajectory import Chunk, Statistics, Task
+from beltdyn.solve.integrators.alpha_advance import REACHED
+from beltdyn.solve.integrators.engine import advance, restart
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.integrator_state import Settings, empty_steps, new_state
+from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.motion import new_equations

@@ -9,7 +9,7 @@ from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.solve import find_equilibrium
-from beltdyn.solve.engine import accelerate
+from beltdyn.solve.integrators.engine import accelerate
 from beltdyn.system.arrays import NO_TANGENT, Motion, System
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system

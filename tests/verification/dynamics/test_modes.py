@@ -10,9 +10,9 @@ import beltdyn as bd
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt, Drive
 from beltdyn.published.cases import better, loaded_two_pulley
-from beltdyn.solve.eigenvalues import pencil, swinging
 from beltdyn.solve.modes import modes
-from beltdyn.solve.vibrations import Vibrations
+from beltdyn.solve.vibration.eigenvalues import pencil, swinging
+from beltdyn.solve.vibration.vibrations import Vibrations
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight
 

@@ -17,7 +17,7 @@ from beltdyn.model import Drive, loads
 from beltdyn.results import Run
 from beltdyn.results.closure import largest_closure
 from beltdyn.solve import equilibrium, simulate
-from beltdyn.solve.vibrations import Vibrations
+from beltdyn.solve.vibration.vibrations import Vibrations
 from beltdyn.system.build import belt_system
 from beltdyn.system.state import straight
 

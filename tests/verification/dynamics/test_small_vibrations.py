@@ -11,14 +11,14 @@ from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Run
-from beltdyn.solve.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
-from beltdyn.solve.flutter import flutter_shift
-from beltdyn.solve.forced_motion import ForcedMotion
 from beltdyn.solve.modes import modes
 from beltdyn.solve.response import response
-from beltdyn.solve.small_motions import SmallMotions, about_steady
 from beltdyn.solve.steady import steady_state
-from beltdyn.solve.vibrations import Vibrations
+from beltdyn.solve.vibration.eigenvalues import Pencil, all_eigenvalues, nearest, pencil
+from beltdyn.solve.vibration.flutter import flutter_shift
+from beltdyn.solve.vibration.forced_motion import ForcedMotion
+from beltdyn.solve.vibration.small_motions import SmallMotions, about_steady
+from beltdyn.solve.vibration.vibrations import Vibrations
 
 SPEED, TORQUE = 120.0, -45.0
 STEADY = {"kind": "constant", "value": SPEED}

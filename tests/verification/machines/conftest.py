@@ -9,7 +9,7 @@ import xarray as xr
 
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
-from beltdyn.solve.static import find_equilibrium
+from beltdyn.solve.rest.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.first_order import FirstOrder

@@ -24,8 +24,8 @@ from scipy.optimize import brentq, curve_fit
 from beltdyn.model import Drive
 from beltdyn.model.carrier import Carrier, carriers_of, moved
 from beltdyn.model.instants import Instants
-from beltdyn.solve.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.trajectory import Chunk, Statistics, Task
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
 from beltdyn.system.state import State
 
 Make = Callable[..., Drive]

@@ -12,8 +12,8 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
 from beltdyn.model.instants import Instants
-from beltdyn.solve.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.trajectory import Chunk, Statistics, Task
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
 from beltdyn.system.build import belt_system
 from beltdyn.system.discretization import belt_section
 from beltdyn.system.observations import Observations

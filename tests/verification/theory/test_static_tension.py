@@ -11,7 +11,7 @@ import pytest
 
 from beltdyn.model import Drive, install
 from beltdyn.solve import find_equilibrium
-from beltdyn.solve.installation import drawn_in
+from beltdyn.solve.rest.installation import drawn_in
 from beltdyn.system.build import drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid

@@ -10,7 +10,7 @@ from beltdyn.model import Belt, Drive
 from beltdyn.paper.numbers import power_of_ten
 from beltdyn.paper.runs import Runs
 from beltdyn.paper.statement import Finding, Number, Section, Statement, verdict
-from beltdyn.solve.static import find_equilibrium
+from beltdyn.solve.rest.static import find_equilibrium
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system
 from beltdyn.system.discretization import belt_section

@@ -17,7 +17,7 @@ from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, new_figure
 from beltdyn.published import two_pulley
 from beltdyn.published.released_belt import closed, on_pulleys, release, released_belt
-from beltdyn.solve.static import Equilibrium
+from beltdyn.solve.rest.static import Equilibrium
 
 _PAPER_ITERATIONS = 55
 _PAPER_UNKNOWNS = 60

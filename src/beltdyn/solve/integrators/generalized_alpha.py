@@ -1,0 +1,116 @@
+"""Generalised-alpha behind the interface of all integrators."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.solve.integrators.alpha_advance import REACHED
+from beltdyn.solve.integrators.engine import advance, restart
+from beltdyn.solve.integrators.integrator_state import (
+    IntegratorState,
+    Settings,
+    Steps,
+    empty_steps,
+    new_state,
+)
+from beltdyn.solve.integrators.trajectory import Chunk, Task
+from beltdyn.system.arrays import BodyForces
+from beltdyn.system.motion import new_equations
+from beltdyn.system.state import crossing_time
+
+_ROOM = 64
+"""Steps handed out at once, at most."""
+_STEPS_AT_ONCE = 8000
+_FIRST_STEP = 1e-6
+_NEWTON_FRACTION = 0.01
+_CROSSINGS = 2.0
+"""The drive vibrates on its belt about as slowly as an axial wave crosses it so often.  Until that turns, errors that
+pull the same way add up: a step is long from sqrt(rtol) times this time."""
+_FINE = 1e-4
+"""The default tolerance; looser ones leave vibrations to numerical damping."""
+_NUMERICAL_SHARE = 10.0
+"""Part of the losses that numerical damping may take, over rtol.  The losses err by about five times this part: waves
+that errors of time excite have an energy of fourth order in the step, and are lost in contact."""
+
+
+@dataclass(frozen=True)
+class GeneralizedAlpha:
+    """Generalised-alpha with variable steps.
+
+    Attributes
+    ----------
+    spectral_radius : float
+        At infinite frequency, 0 (strongest damping) to 1 (none).
+    rtol : float
+        Local error per unit of time over the velocity scale of the task; less for long steps.
+    max_step : float or None
+        s.
+    """
+
+    spectral_radius: float
+    rtol: float
+    max_step: float | None = None
+    name: ClassVar[str] = "generalized_alpha"
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate; see `Integrator`."""
+        system, start = task.system, task.start
+        period = _CROSSINGS * crossing_time(system)
+        settings = Settings(
+            spectral_radius=self.spectral_radius,
+            velocity_tolerance=self.rtol * task.velocity_scale,
+            newton_fraction=_NEWTON_FRACTION,
+            max_step=self.max_step or task.instants.end,
+            long_step=self.rtol**0.5 * period,
+            output_interval=task.instants.interval,
+            numerical_share=_NUMERICAL_SHARE * self.rtol if self.rtol <= _FINE else np.inf,
+            averaging_time=period,
+        )
+        first_step = min(_FIRST_STEP, settings.max_step)
+        state = new_state(system, 0.0, first_step, start.position, start.velocity)
+        equations = new_equations(system)
+        budget = max(1, _STEPS_AT_ONCE // system.length.size)
+        yield Chunk.start(system, start)
+        for stop in task.stops:
+            restart(system, state, equations)
+            while state.clock.time < stop:
+                steps = empty_steps(system, min(_ROOM, budget))
+                status, filled = advance(system, settings, state, equations, stop, budget, steps)
+                _count(task, state)
+                yield _chunk(steps, filled, state)
+                if status != REACHED:
+                    raise ConvergenceError(_message(task, state, self))
+
+
+def _chunk(steps: Steps, filled: int, state: IntegratorState) -> Chunk:
+    """The filled part of the room for steps."""
+    forces = BodyForces(*(array[:filled] for array in steps.forces))
+    rows = {name: array[:filled] for name, array in steps._asdict().items() if name != "forces"}
+    return Chunk(**rows, forces=forces, reached=float(state.clock.time))
+
+
+def _count(task: Task, state: IntegratorState) -> None:
+    """Hand the counters on."""
+    task.statistics.steps = int(state.counts.steps)
+    task.statistics.rejected_steps = int(state.counts.rejected + state.counts.failed)
+    task.statistics.newton_iterations = int(state.counts.iterations)
+
+
+def _message(task: Task, state: IntegratorState, method: GeneralizedAlpha) -> str:
+    """Where and when the state ended, and what to try."""
+    places, accelerations = (
+        vector[: task.system.first_body].reshape(-1, len(task.system.scale) // task.system.points)[:, :2]
+        for vector in (state.position, state.acceleration)
+    )
+    worst = int(np.argmax(np.hypot(accelerations[:, 0], accelerations[:, 1])))
+    x, y = places[worst]
+    undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
+    return (
+        f"the simulation cannot go on at t = {state.clock.time:.6g} s: a time step of 1e-11 s is still too long. "
+        f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
+        f"another simulation.rtol than {method.rtol:g}, or a gentler start; leave out what [contact] gives beside "
+        "friction, so that it is chosen."
+    )

@@ -1,0 +1,176 @@
+"""What goes before a run-up and is not recorded: the drive reaches its first speed, and its transients die."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.machines.profiles.functions import go_on
+from beltdyn.model import Drive, Pulley
+from beltdyn.model.instants import Instants
+from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
+from beltdyn.solve.integrators.trajectory import Chunk, Integrator, Statistics, drive_task
+from beltdyn.solve.progress import Progress, Report
+from beltdyn.system.arrays import System
+from beltdyn.system.build_machines import profile_arrays
+from beltdyn.system.observe import observe_motion
+from beltdyn.system.state import State
+
+_WINDOWS = 20
+"""Windows in the longest time, at most."""
+_LAST = LEAST_WINDOWS - 1
+"""Changes from window to window that tell how transients die."""
+_SLOWEST = 0.9
+"""Largest part of a change that is taken to be left in the next one."""
+
+
+class Start(NamedTuple):
+    """Where a run begins."""
+
+    system: System
+    """Its arrays; the angles of prescribed pulleys go on from those that they have."""
+    state: State
+    attributes: dict[str, float | str]
+    """What is said of it, global attributes of the dataset."""
+
+
+@dataclass(frozen=True)
+class Settling:
+    """A run from rest to the first speed of a pulley, and there until the transients have died.
+
+    Means and standard deviations of the span tensions are taken over windows. How they change from window to
+    window, and how fast these changes get smaller, tells what is left of the start.
+
+    Attributes
+    ----------
+    pulley : int
+        Number of the pulley.
+    speed : float
+        Its first speed, rad/s.
+    lead : float
+        Time in which it is reached, s.
+    longest : float
+        Longest time at this speed, s.
+    """
+
+    pulley: int
+    speed: float
+    lead: float
+    longest: float
+
+    def __call__(
+        self, drive: Drive, system: System, state: State, integrator: Integrator, progress: Report | None, /
+    ) -> Start:
+        """Settle.
+
+        Parameters
+        ----------
+        drive
+            That of the run to come.
+        system
+            Its arrays.
+        state
+            At rest.
+        integrator
+            Method of time integration.
+        progress
+            Whom to tell.
+
+        Returns
+        -------
+        Start
+            The state at the end. Its attributes are ``settling_time`` (s, with the lead), and ``settling_left``: what
+            is left of the start in the span tensions, over the largest mean one.
+        """
+        before = self._before(drive)
+        slower = system._replace(profiles=profile_arrays(before.pulleys))
+        task = drive_task(drive, slower, state, Statistics())
+        window = self._window(drive.pulleys[self.pulley])
+        stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)
+        instants = Instants(drive.simulation.output_interval, float(stops[-1]))
+        task = replace(task, instants=instants, breakpoints=(*before.breakpoints, *stops.tolist()))
+        left = _Left()
+        for reached, states in _between(integrator(task), stops):
+            if progress is not None:
+                progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "settling"))
+            last = states.only(slice(-1, None))
+            if reached in stops and reached - self.lead > 0.5 * window:
+                seen = observe_motion(slower, states.position, states.velocity, states.forces, _first(states))
+                left.take(states.time, seen.span_tension)
+                if left.known and left.part < SETTLED:
+                    break
+        end = State(last.position[0], last.velocity[0], np.zeros_like(last.velocity[0]))
+        time = float(last.time[0])
+        return Start(_going_on(drive, system, slower, time), end, {"settling_time": time, "settling_left": left.part})
+
+    def _before(self, drive: Drive) -> Drive:
+        """The drive that reaches the first speed and stays there."""
+        pulleys = list(drive.pulleys)
+        speed = {"kind": "cosine_ramp", "start": 0.0, "end": self.lead, "value": self.speed}
+        pulleys[self.pulley] = pulleys[self.pulley].replace(speed=speed)
+        return drive.replace(pulley=pulleys)
+
+    def _window(self, pulley: Pulley) -> float:
+        """Time over which means are taken, s."""
+        return float(min(max(least_window(pulley, self.speed), self.longest / _WINDOWS), self.longest))
+
+
+class _Left:
+    """What is left of the start, from the changes of the tensions."""
+
+    def __init__(self) -> None:
+        self._windows: list[FloatArray] = []
+
+    def take(self, time: FloatArray, tension: FloatArray) -> None:
+        """Add a window: times of states, shape (k,), s, and the tensions, shape (k, spans), N."""
+        weight = np.gradient(time) * np.sin(np.pi * (time - time[0]) / np.ptp(time)) ** 2
+        weight = (weight / weight.sum())[:, None]
+        tension = np.nan_to_num(tension)
+        mean = np.sum(weight * tension, axis=0)
+        deviation = np.sqrt(np.sum(weight * (tension - mean) ** 2, axis=0))
+        self._windows.append(np.stack([mean, deviation]))
+
+    @property
+    def known(self) -> bool:
+        """Whether there are windows enough to tell."""
+        return len(self._windows) > _LAST
+
+    @property
+    def part(self) -> float:
+        """What is left, over the largest mean tension; NaN of too few windows, or without tension.
+
+        Changes that fall by the factor r from window to window leave the sum r^2 + r^3 + ... = r^2 / (1 - r) of the
+        last but one.
+        """
+        scale = float(np.max(self._windows[-1][0])) if self.known else 0.0
+        if not scale > 0.0:
+            return float("nan")
+        changes = np.abs(np.diff(self._windows[-_LAST - 1 :], axis=0)).max(axis=(1, 2)) / scale
+        earlier, late = (float(np.max(half)) for half in np.split(changes, 2))
+        ratio = min((late / earlier) ** (2.0 / _LAST), _SLOWEST) if earlier > 0.0 else 0.0
+        return late * ratio**2 / (1.0 - ratio)
+
+
+def _between(chunks: Iterator[Chunk], stops: FloatArray) -> Iterator[tuple[float, Chunk]]:
+    """The states from one of the stops to the next, and of what goes on the last states alone."""
+    waiting = list[Chunk]()
+    for chunk in chunks:
+        waiting += [chunk] if len(chunk.time) else []
+        at = float(stops[np.argmin(np.abs(stops - chunk.reached))])
+        if abs(at - chunk.reached) < 1e-9 * at:
+            yield at, Chunk.join(waiting)
+            waiting = [waiting[-1].only(slice(-1, None))]
+
+
+def _first(states: Chunk) -> BoolArray:
+    return np.asarray(np.arange(len(states.time)) == 0)
+
+
+def _going_on(drive: Drive, system: System, before: System, time: float) -> System:
+    """Arrays of a drive whose prescribed angles go on from what they were in another system at a time."""
+    profiles = profile_arrays(drive.pulleys)
+    prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
+    go_on(profiles, before.profiles, prescribed, time)
+    return system._replace(profiles=profiles)

@@ -1,0 +1,229 @@
+"""The paper's "any standard integrator": SUNDIALS CVODE and IDA, and SciPy's BDF and Radau, on the same equations.
+
+The unknowns are y = (positions, velocities, works): the powers of the energy account are integrated along.  With
+multipliers, the accelerations come from Eq. 26 with its constant matrices; with shared nodes from Eq. 27.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Literal, Protocol
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model.instants import SAME
+from beltdyn.solve.integrators.step_bound import StepBound
+from beltdyn.solve.integrators.stepwise import POSITION_TIME, first_order_chunk
+from beltdyn.solve.integrators.trajectory import Chunk, Task
+from beltdyn.system.first_order import FirstOrder
+
+Name = Literal["cvode", "ida", "bdf", "radau"]
+
+_ROOM = 64
+"""States between steps that are handed out at once, at most."""
+_RELATIVE = 1e-9
+_PART = 0.02
+"""Error that one step may make, over that of the run: the errors of steps add up."""
+_HUGE = 1e30
+_HIGHEST_A_STABLE_ORDER = 2
+"""Of the backward differentiation formulas: higher orders feed the belt's fast vibrations, which nothing damps."""
+
+
+@dataclass(frozen=True)
+class StandardIntegrator:
+    """A method of SUNDIALS or SciPy.
+
+    Attributes
+    ----------
+    name : str
+        "cvode", "ida", "bdf" or "radau".
+    rtol : float
+        Allowed error of velocities over the velocity scale of the task; positions may err by what that makes in a
+        millisecond.  A single step may make a fiftieth of it.
+    max_step : float or None
+        s.
+    """
+
+    name: Name
+    rtol: float
+    max_step: float | None = None
+
+    def __call__(self, task: Task) -> Iterator[Chunk]:
+        """Integrate; see `Integrator`."""
+        equations = FirstOrder(task.system)
+        tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, POSITION_TIME)
+        bound = StepBound(task.system, _PART * self.rtol * task.velocity_scale)
+        y, time = equations.pack(task.start), 0.0
+        yield Chunk.start(task.system, task.start)
+        written = 1
+        for stop in task.stops:
+            make = _Sundials if self.name in ("cvode", "ida") else _SciPy
+            equations.jump(float(np.nextafter(time, np.inf)), y)
+            solver: _Solver = make(_Leg(self, equations, tolerances, time, y, stop))
+            bound.restart()
+            while solver.time < stop:
+                before = solver.time
+                try:
+                    solver.step(min(stop, bound.end(before, *equations.unpack(solver.y)[:2])))
+                except _SolverError as error:
+                    raise self._give_up(before, error) from error
+                task.statistics.steps += solver.time > before  # SUNDIALS returns once more where it has interpolated
+                task.statistics.evaluations = equations.evaluations
+                count = task.instants.until(solver.time)
+                for first in range(written, count, _ROOM):
+                    instants = task.instants[np.arange(first, min(first + _ROOM, count))]
+                    yield _chunk(equations, solver, instants[instants < solver.time - SAME], before)
+                if solver.time > before:
+                    yield _chunk(equations, solver, np.array([solver.time]), before)
+                written = count
+            time, y = stop, solver.at(stop)
+
+    def _give_up(self, time: float, reason: Exception) -> ConvergenceError:
+        """The error for a solver that stopped at a time, s."""
+        return ConvergenceError(
+            f"the integrator {self.name} cannot go on at t = {time:.6g} s ({reason}). "
+            f'Try a larger simulation.rtol than {self.rtol:g}, or simulation.integrator = "generalized_alpha".'
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Leg:
+    """The way from one stop to the next, for a library's solver."""
+
+    method: StandardIntegrator
+    equations: FirstOrder
+    tolerances: FloatArray
+    start: float
+    y: FloatArray
+    stop: float
+
+    @property
+    def begin(self) -> float:
+        """Instant just after the start, where profiles have jumped, s."""
+        return float(np.nextafter(self.start, np.inf))
+
+
+class _SolverError(Exception):
+    """A library's solver has given up; the message is its own."""
+
+
+class _Solver(Protocol):
+    """A library's solver on its way from one stop to the next."""
+
+    time: float
+    y: FloatArray
+    """Unknowns at this time."""
+
+    def step(self, farthest: float) -> None:
+        """Take one step of the solver's own choice that ends before an instant (s), or on it."""
+
+    def at(self, time: float) -> FloatArray:
+        """Unknowns at an instant of the last step, s."""
+
+
+class _SciPy:
+    """An implicit method of SciPy."""
+
+    def __init__(self, leg: _Leg) -> None:
+        from scipy.integrate import BDF, Radau
+
+        kind = BDF if leg.method.name == "bdf" else Radau
+        self._solver = kind(
+            leg.equations.rates,
+            leg.begin,
+            leg.y,
+            leg.stop,
+            max_step=leg.method.max_step or np.inf,
+            rtol=_RELATIVE,
+            atol=leg.tolerances,
+            jac=leg.equations.jacobian,
+        )
+        if kind is BDF:  # which takes no largest order, but none whose error it thinks huge
+            self._solver.error_const[_HIGHEST_A_STABLE_ORDER + 1] = _HUGE
+        self.time, self.y, self._longest = leg.start, leg.y, self._solver.max_step
+
+    def step(self, farthest: float) -> None:
+        self._solver.max_step = min(self._longest, farthest - self.time)
+        try:
+            message = self._solver.step()
+        except ValueError as error:  # infinite forces
+            raise _SolverError(str(error)) from error
+        if self._solver.status == "failed":
+            raise _SolverError(message)
+        self.time, self.y = float(self._solver.t), self._solver.y
+
+    def at(self, time: float) -> FloatArray:
+        return np.asarray(self._solver.dense_output()(time))
+
+
+class _Sundials:
+    """CVODE or IDA, with the exact dense Jacobian."""
+
+    def __init__(self, leg: _Leg) -> None:
+        options = {
+            "rtol": _RELATIVE,
+            "atol": leg.tolerances,
+            "max_step": leg.method.max_step or 0.0,
+            "max_order": _HIGHEST_A_STABLE_ORDER,
+        }
+        if leg.method.name == "cvode":
+            self._solver = _cvode(leg.equations, options)
+            self._solver.init_step(leg.begin, leg.y)
+        else:
+            self._solver = _ida(leg.equations, options)
+            self._solver.init_step(leg.begin, leg.y, leg.equations.rates(leg.begin, leg.y))
+        self.time, self.y, self._stop = leg.start, leg.y, leg.stop
+
+    def step(self, farthest: float) -> None:
+        result = self._solver.step(self._stop, method="onestep", tstop=farthest)
+        if not result.success:
+            raise _SolverError(result.message)
+        self.time, self.y = float(np.ravel(result.t)[-1]), np.array(np.atleast_2d(result.y)[-1])
+
+    def at(self, time: float) -> FloatArray:
+        return np.array(np.atleast_2d(self._solver.step(time).y)[-1])
+
+
+def _cvode(equations: FirstOrder, options: dict[str, Any]) -> Any:
+    """CVODE on dy/dt = f(t, y)."""
+    from_sundials = _import_sundials()
+
+    def rates(t: float, y: FloatArray, result: FloatArray) -> None:
+        result[:] = equations.rates(t, y)
+
+    def jacobian(t: float, y: FloatArray, _: FloatArray, result: FloatArray) -> None:
+        result[:] = equations.jacobian(t, y)
+
+    return from_sundials.cvode.CVODE(rates, jacfn=jacobian, **options)
+
+
+def _ida(equations: FirstOrder, options: dict[str, Any]) -> Any:
+    """IDA on dy/dt - f(t, y) = 0."""
+    from_sundials = _import_sundials()
+
+    def residual(t: float, y: FloatArray, slope: FloatArray, result: FloatArray) -> None:
+        result[:] = slope - equations.rates(t, y)
+
+    def jacobian(t: float, y: FloatArray, _s: FloatArray, _r: FloatArray, by_slope: float, result: FloatArray) -> None:
+        result[:] = by_slope * np.eye(y.size) - equations.jacobian(t, y)
+
+    return from_sundials.ida.IDA(residual, jacfn=jacobian, **options)
+
+
+def _import_sundials() -> Any:
+    """The package scikit-sundae, an optional extra."""
+    try:
+        import sksundae
+    except ImportError as error:
+        raise ModelError(
+            'simulation.integrator is "cvode" or "ida", which need scikit-sundae: it is not installed. '
+            'pip install "beltdyn[integrators]", or choose "generalized_alpha", "bdf" or "radau".'
+        ) from error
+    return sksundae
+
+
+def _chunk(equations: FirstOrder, solver: _Solver, time: FloatArray, before: float) -> Chunk:
+    """States at some instants of the solver's last step, which began at a time, s."""
+    y = np.array([solver.at(float(instant)) for instant in time]).reshape(len(time), equations.size)
+    return first_order_chunk(equations, time, y, solver.time - before, solver.time)

@@ -1,0 +1,302 @@
+"""From states to results: observe what the integrator hands out, record it, and tell of progress."""
+
+import time
+from collections.abc import Callable
+from math import prod
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray, IntArray
+from beltdyn.errors import SlipError
+from beltdyn.model import Drive
+from beltdyn.results import (
+    RECORDED,
+    FileRecorder,
+    MemoryRecorder,
+    Recorder,
+    Run,
+    Status,
+    provenance,
+)
+from beltdyn.results.schema import FILTER_REACH, FILTERED
+from beltdyn.signals import uninterrupted
+from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.integrators.trajectory import Chunk, Statistics, interpolated
+from beltdyn.solve.observation.band_limit import BandLimit
+from beltdyn.solve.observation.observer import WORKS, Arrays, Observer
+from beltdyn.solve.observation.outlook import step_bound
+from beltdyn.solve.observation.result_layout import result_layout
+from beltdyn.solve.progress import Pace, Phase, Progress, Report
+from beltdyn.system.arrays import System
+from beltdyn.system.state import laid
+
+_SECONDS_BETWEEN_WRITES = 0.25
+_MOST_WAITING = 512
+"""States that wait to be observed."""
+_BLOCK = 512
+"""Outputs that are made at a time."""
+
+
+class Recording:
+    """A run in the making: a context that closes the results whatever happens.
+
+    An interruption (Ctrl-C) ends the recording with the status "interrupted" and goes no further; an error ends it
+    with the status "failed" and goes on to the caller.
+
+    Parameters
+    ----------
+    drive, system
+        What is simulated.
+    output
+        Result file, or None for memory.
+    title
+        Title of the dataset.
+    progress
+        Whom to tell.
+    overwrite
+        Replace any regular file, and not only earlier results.
+    **attributes
+        Global attributes of the dataset, which an analysis adds.
+
+    Raises
+    ------
+    ModelError
+        If the file cannot be written, or would replace one that is no result.
+    """
+
+    def __init__(
+        self,
+        drive: Drive,
+        system: System,
+        output: Path | str | None,
+        title: str,
+        progress: Report | None,
+        overwrite: bool = False,
+        **attributes: str,
+    ) -> None:
+        self.statistics = Statistics()
+        self.watch: Callable[[Arrays], None] | None = None
+        self.integrator: str = drive.simulation.integrator
+        self._drive, self._system, self._progress = drive, system, progress
+        self._path = Path(output) if output is not None else None
+        self._title, self._about = title, attributes
+        layout, origin = result_layout(drive, system), provenance(drive.text, title) | attributes
+        self._recorder: Recorder = (
+            FileRecorder(self._path, layout, origin, overwrite) if self._path else MemoryRecorder(layout, origin)
+        )
+        self._instants = drive.simulation.instants
+        self._filter = BandLimit(self._instants.interval)
+        self._filtered = FILTER_REACH
+        self._observer = Observer(drive, system, layout.belt_coordinate)
+        self._findings: dict[str, Any] = {}
+        self._waiting: list[Chunk] = []
+        self._before: tuple[Chunk, Arrays] | None = None
+        self._done: Arrays = {}
+        self._written = 0
+        self._reached = self._step = 0.0
+        self._pace = Pace()
+        self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
+        self._ended: float | None = None
+        self._cpu_started, self._cpu_ended = time.process_time(), 0.0
+
+    def __enter__(self) -> Self:
+        """Begin; see the class."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        """Write what waits and close the results with their status."""
+        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
+        if isinstance(error, SlipError):
+            self._findings["slips_through"] = error.fault
+        self.end("interrupted" if interrupted else "completed" if kind is None else "failed")
+        return interrupted
+
+    def end(self, status: Status) -> None:
+        """Write what waits, and close the results with their status; "failed" if what waits cannot be written."""
+        with uninterrupted():
+            written = False
+            try:
+                self._write()
+                written = True
+            finally:
+                self._recorder.close(status if written else "failed", self._attributes() | self._findings)
+
+    def prepare(self) -> None:
+        """Compile the kernels, so that the time taken is that of the simulation."""
+        self.tell(0.0, "compiling")
+        compile_kernels(self._system, laid(self._system, self._drive.path))
+        self._compiled = self._started = time.perf_counter()
+        self._cpu_started = time.process_time()
+
+    def start(self, drive: Drive, system: System, unstable: tuple[str, ...]) -> None:
+        """Note that the state at time zero is known.
+
+        Parameters
+        ----------
+        drive, system
+            What is simulated, with the length of the belt, or the take-up, that was found for its installed tension.
+        unstable
+            Names of the pulleys whose tensioners are not in stable balance at rest.
+        """
+        layout = result_layout(drive, system)
+        if drive is not self._drive:
+            attributes = provenance(drive.text, self._title) | {**self._about, "drive_as_given": self._drive.text}
+            self._recorder.revise(layout, attributes)
+        if unstable:
+            self._findings["unstable_tensioners"] = ", ".join(unstable)
+        self._drive, self._system = drive, system
+        self._observer = Observer(drive, system, layout.belt_coordinate)
+        self._started = time.perf_counter()
+
+    def take(self, chunk: Chunk, phase: Phase = "integrating") -> None:
+        """Take states; they are recorded a few at a time."""
+        if len(chunk.time):
+            self._waiting.append(chunk)
+            self._step = float(chunk.step[-1])
+        self._reached = chunk.reached
+        self.tell(chunk.reached, phase)
+        states = sum(len(chunk.time) for chunk in self._waiting)
+        if states > _MOST_WAITING or time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
+            self._write()
+
+    def tell(self, reached: float, phase: Phase) -> None:
+        """Tell of progress."""
+        if self._progress is not None:
+            duration = self._drive.simulation.duration
+            outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
+            elapsed = time.perf_counter() - self._started if phase == "integrating" else 0.0
+            bound = step_bound(self._drive, self.statistics, reached)
+            pace = self._pace.at(elapsed, reached)
+            self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound, pace))
+
+    def note(self, **facts: Any) -> None:
+        """Add global attributes to the dataset."""
+        self._findings |= facts
+
+    def check(self) -> None:
+        """Look, when all is done, whether the belt may have fluttered."""
+        self._write()
+        self._ended, self._cpu_ended = time.perf_counter(), time.process_time()
+        flutter = self._observer.find_flutter()
+        self._findings |= flutter.attributes if flutter else {}
+        self._findings["check_time"] = time.perf_counter() - self._ended
+
+    def run(self) -> Run:
+        """The run that was recorded."""
+        return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
+
+    def _write(self) -> None:
+        """Record what waits, as a whole even if a signal comes meanwhile."""
+        with uninterrupted():
+            if self._waiting:
+                self._record()
+        self._last_write = time.perf_counter()
+
+    def _record(self) -> None:
+        """Record the outputs that lie in the steps to the states that wait."""
+        states = Chunk.join(self._waiting)
+        self._waiting.clear()
+        before = self._before[0].time[0] if self._before else -self._instants.interval
+        shown = states.around(self._instants, before)
+        shown[-1] = True  # the next step may hold an output
+        seen, for_spectra = self._observer.see(states, shown)
+        self._take_for_spectra(states, for_spectra)
+        states = states.only(shown)
+        if self._before is not None:
+            states = Chunk.join([self._before[0], states])
+            seen = {name: np.concatenate([self._before[1][name], values]) for name, values in seen.items()}
+        self._before = states.only(slice(-1, None)), {name: values[-1:] for name, values in seen.items()}
+        end = self._instants.until(float(states.time[-1]))
+        for first in range(self._written, end, _BLOCK):
+            numbers = np.arange(first, min(first + _BLOCK, end))
+            outputs = self._outputs(states, seen, numbers)
+            self._recorder.append(outputs)
+            self._written += len(numbers)
+            if self.watch is not None:
+                self.watch(outputs)
+
+    def _outputs(self, states: Chunk, seen: Arrays, numbers: IntArray) -> Arrays:
+        """Every recorded variable at some instants, by their numbers; fields at some of these."""
+        instants = self._instants[numbers]
+        moments = {"time": instants, "field_time": instants[self._instants.has_fields(numbers)]}
+        for_spectra = self._for_spectra()
+        places = {name: states.locate(moment) for name, moment in moments.items()}
+        dims = {name: RECORDED[name].dims[0] for name in seen}
+        result = {name: interpolated(values, *places[dims[name]]) for name, values in seen.items()}
+        for name in WORKS:
+            done = result[name]
+            before = self._done.get(name, done[:1])
+            result[name] = np.diff(done, axis=0, prepend=before)
+            self._done[name] = done[-1:] if len(done) else before
+        bodies, nodes = self._bodies(*states.at(instants)), self._nodes(states, moments["field_time"])
+        return {
+            **result,
+            **bodies,
+            **nodes,
+            **for_spectra,
+            **moments,
+            "step_size": states.step[places["time"][0]],
+        }
+
+    def _take_for_spectra(self, states: Chunk, seen: Arrays) -> None:
+        """Hand what is recorded for spectra to the filter."""
+        known = seen | self._bodies(states.position, states.velocity)
+        self._channels = {name: known[name].shape[1:] for name in FILTERED if name in known}
+        flat = [known[name].reshape(len(states.time), -1) for name in self._channels]
+        self._filter.take(states.time, np.hstack(flat))
+
+    def _for_spectra(self) -> Arrays:
+        """What is recorded for spectra: the next outputs for which all states that they need have come."""
+        end = min(self._instants.until(self._filter.known_until), self._filtered + _BLOCK)
+        instants = self._instants[np.arange(self._filtered, end)]
+        self._filtered += len(instants)
+        values = self._filter.at(instants)
+        columns = np.split(values, np.cumsum([prod(shape) for shape in self._channels.values()])[:-1], axis=1)
+        parts = zip(self._channels.items(), columns, strict=True)
+        filtered = {f"filtered_{name}": part.reshape(-1, *shape) for (name, shape), part in parts}
+        return {"filtered_time": instants, **filtered}
+
+    def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
+        """Coordinates and speeds of bodies, from states of shape (k, n N + D)."""
+        system = self._system
+        nodes, pulleys = system.first_body, len(system.pulleys)
+        shafts, tensioners = nodes + system.pulleys.shaft, position.shape[1] - len(system.tensioners)
+        carried = {"tensioner_position": position[:, tensioners:], "tensioner_speed": velocity[:, tensioners:]}
+        return {
+            **(carried if len(system.tensioners) else {}),
+            "pulley_speed": velocity[:, nodes : nodes + pulleys],
+            "pulley_angle": position[:, nodes : nodes + pulleys],
+            "shaft_speed": velocity[:, shafts],
+            "shaft_angle": position[:, shafts],
+        }
+
+    def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
+        """Coordinates and velocities of nodes."""
+        system = self._system
+        shape = len(instants), system.nodes * system.points, len(system.scale) // system.points
+        names = "nodal_coordinates", "nodal_velocities"
+        return {
+            name: motion[:, : system.first_body].reshape(shape)
+            for name, motion in zip(names, states.at(instants), strict=True)
+        }
+
+    def _attributes(self) -> dict[str, Any]:
+        """Statistics of the solver, known at the end."""
+        wall = (self._ended or time.perf_counter()) - self._compiled
+        cpu = (self._cpu_ended or time.process_time()) - self._cpu_started
+        return {
+            "integrator": self.integrator,
+            "steps": self.statistics.steps,
+            "rejected_steps": self.statistics.rejected_steps,
+            "newton_iterations": self.statistics.newton_iterations,
+            "evaluations": self.statistics.evaluations,
+            "wall_time": wall,
+            "cpu_time": cpu,
+            "compile_time": self._compiled - self._begun,
+            "start_time": self._started - self._compiled,
+        }

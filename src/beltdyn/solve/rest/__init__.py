@@ -1,0 +1,1 @@
+"""The belt at rest in its drive, on both meshes."""

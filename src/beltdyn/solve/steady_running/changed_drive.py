@@ -1,0 +1,125 @@
+"""Drives at other operating points: a speed in place of a motor, other loads, a prescribed speed of any pulley."""
+
+from math import floor
+
+from beltdyn.errors import ModelError
+from beltdyn.machines import Constant
+from beltdyn.machines.loads.load import Load
+from beltdyn.model import Drive, Pulley
+from beltdyn.solve.rest.staying import bring_to_stand
+from beltdyn.solve.sweep import without_schedules
+
+
+def held_at(drive: Drive, at: float | None) -> Drive:
+    """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    at
+        The instant, s; by default the end of the simulation.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no length that gives the installed tension.
+    """
+    held = at_instant(drive, at)
+    return held if held.belt.installed_tension is None else bring_to_stand(held).drive
+
+
+def at_instant(drive: Drive, at: float | None) -> Drive:
+    """Hold speeds, torques and schedules as they are at an instant (s), by default the end of the simulation."""
+    return without_schedules(drive, drive.simulation.duration if at is None else at)[0]
+
+
+def sense_of(drive: Drive, number: int) -> float:
+    """Sense in which a pulley turns, 1 or -1: that of its prescribed speed, or else the positive one."""
+    speed = drive.pulleys[number].speed
+    return -1.0 if speed is not None and float(speed.at([0.0])[0]) < 0.0 else 1.0
+
+
+def driver_of(drive: Drive) -> int:
+    """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor.
+
+    Raises
+    ------
+    ModelError
+        If nothing drives.
+    """
+    for drives in (lambda one: one.prescribed, lambda one: any(map(is_motor, one.load))):
+        found = [number for number, one in enumerate(drive.pulleys) if drives(one)]
+        if found:
+            return found[0]
+    raise ModelError(
+        "nothing drives the belt: no pulley has a speed or a motor. Name the pulley whose speed to prescribe."
+    )
+
+
+def is_motor(load: Load) -> bool:
+    """Whether a load drives its shaft."""
+    return load.driven_speed != 0.0
+
+
+def at_speed(drive: Drive, number: int, speed: float) -> Drive:
+    """Prescribe the speed of a pulley, in place of its motor, torque and loads.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    number
+        Number of the pulley.
+    speed
+        rad/s.
+    """
+    other = drive.pulleys[number].replace(speed=Constant(value=speed), torque=None, load=(), harmonics=())
+    return with_pulley(drive, number, other)
+
+
+def with_torque(drive: Drive, number: int, torque: float) -> Drive:
+    """Give the shaft of a pulley a torque (N m), in place of its torque and loads, but for motors."""
+    one = drive.pulleys[number]
+    if one.prescribed:
+        raise ModelError(
+            f"{one.name} has a prescribed speed, and takes whatever torque it needs. Give the torque of another pulley."
+        )
+    motors = tuple(load for load in one.load if is_motor(load))
+    return with_pulley(drive, number, one.replace(torque=Constant(value=torque), load=motors))
+
+
+def with_load(drive: Drive, factor: float) -> Drive:
+    """Multiply all torques and loads, but for those of motors.
+
+    A load times 1.3 is the load and another one with the schedule 0.3, as schedules reach up to 1.
+
+    Parameters
+    ----------
+    drive
+        With constant torques and schedules.
+    factor
+        Zero or more.
+    """
+    if factor == 1.0:
+        return drive
+    pulleys = [one.replace(torque=_scaled(one, factor), load=_multiplied(one.load, factor)) for one in drive.pulleys]
+    return drive.replace(pulley=pulleys)
+
+
+def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
+    """The drive with another pulley in the place of one."""
+    return drive.replace(pulley=[*drive.pulleys[:number], pulley, *drive.pulleys[number + 1 :]])
+
+
+def _scaled(pulley: Pulley, factor: float) -> Constant | None:
+    return None if pulley.torque is None else Constant(value=factor * float(pulley.torque.at([0.0])[0]))
+
+
+def _multiplied(loads: tuple[Load, ...], factor: float) -> tuple[Load, ...]:
+    found = list[Load]()
+    for load in loads:
+        whole, part = (1, 0.0) if is_motor(load) else (floor(factor), factor - floor(factor))
+        given = 1.0 if load.schedule is None else float(load.schedule.at([0.0])[0])
+        found += [load] * whole + [load.replace(schedule=Constant(value=part * given))] * (part > 0.0)
+    return tuple(found)

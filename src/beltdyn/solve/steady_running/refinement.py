@@ -1,0 +1,215 @@
+"""Meshes finer and finer, until contact forces, tensions and slip no longer depend on them."""
+
+from collections.abc import Mapping
+from copy import copy
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.model.graded_mesh import graded_mesh
+from beltdyn.solve.rest.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
+from beltdyn.solve.steady_running.search import SteadySearch
+from beltdyn.system.arrays import System
+from beltdyn.system.build import staying_system
+from beltdyn.system.centreline import centreline_points
+from beltdyn.system.observations import Observations
+from beltdyn.system.observe import observe
+from beltdyn.system.state import State
+
+_OF_TENSION = 0.3
+"""Change of tensions that is small enough, over that of contact forces."""
+_POINTS = 200
+"""Points of an arc at which two meshes are compared."""
+_LEAST_SLIP = 1e-4
+"""Slip against which differences of slip are measured, at least."""
+
+
+class Solution(NamedTuple):
+    """Steady running on a mesh, or rest."""
+
+    system: System
+    state: State
+    seen: Observations
+    """What is seen there, one instant."""
+    slips: FloatArray
+    """Of the rims behind the first one, relative."""
+
+
+class MeshRule(NamedTuple):
+    """How a mesh follows from where the belt touches."""
+
+    layer: float
+    """Length of the layers at the ends of arcs, m."""
+    fineness: float = 1.0
+    """Factor on the number of elements."""
+    elements: int = 0
+    """Number of equal elements in place of graded ones, at a fineness of 1; zero for graded ones."""
+
+    def finer(self, factor: float = FINER) -> "MeshRule":
+        """The rule of a mesh with so many times the elements."""
+        return self._replace(fineness=factor * self.fineness)
+
+
+def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:
+    """Refine the mesh of a drive in steady running, which is changed in place.
+
+    Parameters
+    ----------
+    search
+        In steady running.
+    rule
+        Of its mesh. One of equal elements is made finer once to learn its errors.
+    tolerance
+        Change of contact forces from one mesh to the next, over the largest of a pulley, that is small enough.
+
+    Returns
+    -------
+    errors : dict of str to float
+        Differences between the last two meshes, relative: "tension", "mean pressure", "peak pressure", "slip".
+    rule
+        That of the last mesh.
+
+    Raises
+    ------
+    ConvergenceError
+        If a finer mesh finds no steady running.
+    """
+    before = _solution(search)
+    while True:
+        rule = rule.finer()
+        search.move_to(_mesh(search.drive, before, rule))
+        after = _solution(search)
+        errors = _differences(before, after)
+        if is_fine(errors, tolerance) or rule.elements or after.system.nodes > MOST_ELEMENTS:
+            return errors, rule
+        before = after
+
+
+def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, float], SteadySearch]:
+    """Compare steady running with that on a coarser mesh.
+
+    Parameters
+    ----------
+    search
+        In steady running.
+    rule
+        Of its mesh.
+
+    Returns
+    -------
+    errors
+        As those of `refine`.
+    coarser
+        Steady running on the mesh of ``rule.finer(1 / FINER)``.
+
+    Raises
+    ------
+    ConvergenceError
+        If the coarser mesh finds no steady running.
+    """
+    here, coarser = _solution(search), copy(search)
+    coarser.move_to(_mesh(search.drive, here, rule.finer(1.0 / FINER)))
+    search.iterations = coarser.iterations
+    return _differences(_solution(coarser), here), coarser
+
+
+def is_fine(errors: Mapping[str, float], tolerance: float) -> bool:
+    """Whether a mesh is fine enough.
+
+    Parameters
+    ----------
+    errors
+        Its errors, as from `refine`.
+    tolerance
+        As there.
+    """
+    return errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
+
+
+def _mesh(drive: Drive, now: Solution, rule: MeshRule) -> System:
+    """A mesh by a rule, with nodes where the belt touches and slides as it does now."""
+    length = drive.belt_length
+    if rule.elements:
+        count = round(rule.elements * rule.fineness)
+        return staying_system(drive, np.full(count, length / count))
+    kinks = _kinks(now)
+    arcs = found_arcs(now.system, now.state)
+    within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
+    return staying_system(drive, graded_mesh(length, within, rule.layer, rule.fineness))
+
+
+def _kinks(now: Solution) -> list[float]:
+    """Where friction begins or ends to be fully used, in ascending order along the belt, m."""
+    system, seen, found = now.system, now.seen, list[float]()
+    starts = np.cumsum(system.length) - system.length
+    along = (starts[:, None] + system.length[:, None] * system.contact.points).ravel()
+    rims = now.state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius
+    for p, rim in enumerate(rims):
+        here = np.flatnonzero(seen.contact_pulley[0] == p)
+        limit = system.law.friction.saturation(seen.normal_force[0, here], system.pulleys.friction[p], rim)
+        beyond, places = np.abs(seen.slip_velocity[0, here]) - limit, along[here]
+        last = np.flatnonzero((beyond[1:] > 0.0) != (beyond[:-1] > 0.0))
+        part = beyond[last] / (beyond[last] - beyond[last + 1])
+        found += (places[last] + part * (places[last + 1] - places[last])).tolist()
+    return sorted(found)
+
+
+def _solution(search: SteadySearch) -> Solution:
+    """Steady running where the search is."""
+    system, state = search.constant, search.state
+    speeds = np.abs(state.velocity[system.first_body :][: system.pulleys.size] * system.rims.radius)
+    return Solution(system, state, _seen(system, state), 1.0 - speeds / speeds[0])
+
+
+def _seen(system: System, state: State) -> Observations:
+    return observe(system, np.zeros(1), state.position[None], state.velocity[None])
+
+
+def errors_at_rest(rest: Standing) -> dict[str, float]:
+    """Errors of a mesh in tension and contact pressures at rest, relative, by a finer one.
+
+    Parameters
+    ----------
+    rest
+        The drive at rest on the mesh.
+
+    Returns
+    -------
+    dict of str to float
+        As `refine` gives them, without slip; empty where the finer mesh finds no rest.
+    """
+    try:
+        finer = stand(rest.drive, fineness=FINER * rest.fineness)
+    except ConvergenceError:
+        return {}
+    none = np.zeros(rest.system.pulleys.size)
+    before, after = (Solution(one.system, one.state, _seen(one.system, one.state), none) for one in (rest, finer))
+    found = _differences(before, after)
+    return {name: found[name] for name in ("tension", "mean pressure", "peak pressure")}
+
+
+def _differences(before: Solution, after: Solution) -> dict[str, float]:
+    """Differences of two solutions, relative."""
+    peaks, means = [0.0], [0.0]
+    for arc in found_arcs(after.system, after.state):
+        along = np.linspace(arc.start, arc.end, _POINTS)
+        one, other = (np.maximum(_depth(solution, along), 0.0) for solution in (before, after))
+        peaks.append(float(np.max(np.abs(other - one)) / np.max(other)))
+        means.append(float(abs(np.sum(other - one)) / np.sum(other)))
+    slip = float(np.max(np.abs(after.slips - before.slips)))
+    tensions, other = after.seen.span_tension[0], before.seen.span_tension[0]
+    return {
+        "tension": float(np.max(np.abs(tensions - other)) / np.max(np.abs(tensions))),
+        "mean pressure": max(means),
+        "peak pressure": max(peaks),
+        "slip": slip / max(_LEAST_SLIP, float(np.max(np.abs(after.slips)))),
+    }
+
+
+def _depth(solution: Solution, along: FloatArray) -> FloatArray:
+    """Depth of points of the belt in whatever pulley is deepest, m; negative outside."""
+    places = centreline_points(solution.system, solution.state.position, along)[0]
+    return np.asarray(depths(solution.system, solution.state, places).max(axis=0))

@@ -1,0 +1,322 @@
+"""From a belt at rest to steady running: Newton's method along speed, steepness of friction and load.
+
+A belt of which every point slides leaves the speeds of pulleys open, so that friction rises gently with slip at first,
+under a small part of the loads.  Each way is gone in as long steps as Newton's method takes.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.solve.rest.staying import TOLERANCE, Standing, anchor_at, transfer
+from beltdyn.solve.steady_running.continuation import go_on
+from beltdyn.solve.steady_running.newton import FOUND, find_steady, steady_work
+from beltdyn.solve.steady_running.slip_limit import slips_through
+from beltdyn.system.arrays import System
+from beltdyn.system.constant_drive import (
+    constant_drive,
+    drive_shafts,
+    dry_friction_of,
+    guess_hubs,
+    own_torque,
+    twists,
+    with_speeds_unknown,
+)
+from beltdyn.system.operating_point import operating_point
+from beltdyn.system.ring_matrix import clear, substitute
+from beltdyn.system.state import State
+
+_MOST = 25
+"""Iterations of a step."""
+_FIRST_LOAD = 0.05
+_SOFT = 0.05
+"""Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
+_FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
+_GENTLE = 0.3
+"""Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
+
+
+class Setting(NamedTuple):
+    """How far a drive is from the one that is asked for."""
+
+    speed: float = 1.0
+    """Factor on prescribed speeds."""
+    load: float = 1.0
+    """Factor on torques and loads."""
+    smoothing: float = 1.0
+    """Factor on the slip velocity at which friction is fully used."""
+    support: float = 0.0
+    """Part of the torque that keeps a motor at the speed at which it was held."""
+    stretch_length: float = 1.0
+    """Factor on the length over which hysteresis smoothes slow changes of the stretch; small, it is viscous damping."""
+
+
+class SteadySearch:
+    """A drive on its way to steady running.
+
+    Parameters
+    ----------
+    drive, system, state
+        The drive on a mesh that stays. The state is changed in place.
+    time
+        At which speeds, torques and schedules are taken, s.
+    """
+
+    def __init__(self, drive: Drive, system: System, state: State, time: float) -> None:
+        self.drive, self._time = drive, time
+        self.state, self.iterations, self.setting = state, 0, Setting()
+        self._held: int | None = None
+        self._supported: int | None = None
+        self._held_speed = self._support = 0.0
+        self._moments = np.zeros(system.pulleys.size)
+        self._work_on(system)
+
+    def _work_on(self, system: System) -> None:
+        """Take a mesh."""
+        self.constant, self._tensioners = constant_drive(system, self._time), system.tensioners
+        self._wanted = self.constant.profiles.segment.offset.copy()
+        self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
+        self._hold(self._held)
+
+    def _hold(self, pulley: int | None) -> None:
+        """Hold the shaft of a pulley at a speed, or none beyond those that are prescribed."""
+        self._held = pulley
+        self._system = with_speeds_unknown(self.constant, () if pulley is None else (pulley,))
+        self._work = steady_work(self._system)
+
+    def running(self) -> State:
+        """The state that was found last, with the twists of hub chains."""
+        place = self.state.position.copy()
+        rims = slice(self.constant.first_body, place.size - self.constant.tensioners.size)
+        place[rims] = twists(self.constant, self._moments)
+        return State(place, self.state.velocity, np.zeros_like(place))
+
+    @property
+    def belt_parameter(self) -> float:
+        """Length of unstretched belt that passes in a second, m/s."""
+        return float(self.constant.frame.speed[0])
+
+    def resume(self) -> bool:
+        """Find steady running under the loads that are asked for from that under others; False if that fails."""
+        return self._try(Setting())
+
+    def run(self, rest: Standing) -> None:
+        """Find steady running under the loads that are asked for.
+
+        Parameters
+        ----------
+        rest
+            The same drive at rest, on the same mesh.
+
+        Raises
+        ------
+        ModelError
+            If nothing drives.
+        ConvergenceError
+            If there is no steady running; it says how much the drive transmits.
+        """
+        speed, driver = operating_point(self.constant, self.drive.path.radii, self._prescribed)
+        if driver is not None:
+            self._held_speed = speed / float(self.drive.path.radii[driver])
+            self._hold(driver)
+        gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
+        if not any(self._start(rest.place, speed, gentle._replace(speed=first)) for first in _FIRST_SPEEDS):
+            raise ConvergenceError(
+                f"no steady running at t = {self._time:g} s, not even at {_FIRST_SPEEDS[-1]:.0%} of the speed "
+                f"and under {_FIRST_LOAD:.0%} of the loads. Check speeds, loads and tension with `beltdyn check`, "
+                "or look at a run over time with `beltdyn run`."
+            )
+        for target in (gentle, gentle._replace(smoothing=1.0), Setting()):
+            self._follow(target)
+        if driver is not None:
+            self._release(driver)
+
+    def move_to(self, system: System) -> None:
+        """Go on to another mesh of the same drive.
+
+        A small element has little between damping in proportion to the rate of its stretch and full hysteresis, and the
+        rate of a transferred curve is far off there. So damping comes first.
+
+        Raises
+        ------
+        ConvergenceError
+            If nothing is found there.
+        """
+        self.state = transfer(self.constant, self.state, system)
+        self._work_on(system)
+        target = self.setting
+        soft = target._replace(stretch_length=_SOFT)
+        if not (self._try(soft) and self._reach(target) if system.hysteresis.size else self._try(target)):
+            raise ConvergenceError(
+                f"steady running is found with fewer elements, but not with the {system.nodes} that force_tolerance "
+                "asks for. Raise force_tolerance, such as to 0.05."
+            )
+
+    def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:
+        """Where dry friction holds tensioners at most, m or rad.
+
+        Parameters
+        ----------
+        known
+            What this has given for a neighbour, among others. The ends are then those by the tangent, times the
+            factors that were found there.
+
+        Returns
+        -------
+        dict of str to ndarray, shape (K,)
+            "tensioner_position_after_tensioning" and "tensioner_position_after_yielding", the ends of the band in which
+            they may stand: where the path had become longer before, and shorter. Nothing without friction. Beside them
+            "tensioner_factor_after_tensioning" and so on: ways to the ends over those by the tangent.
+        """
+        found, count = dict[str, FloatArray](), self.constant.tensioners.size
+        here, ends = self.state.position[-count:].copy(), list[tuple[FloatArray, FloatArray]]()
+        for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
+            push, mark = sense * dry_friction_of(self._tensioners, f"{name}_friction"), f"tensioner_factor_after_{name}"
+            if not np.any(push):
+                continue
+            way = self._pushed_by_tangent(push)
+            factor = None if known is None or mark not in known else np.atleast_1d(known[mark])
+            if factor is None:
+                end = self._pushed(push, ends)
+                if end is None:
+                    continue
+                ends.append((push, end))
+                moved = end[self.state.position.size - count :][:count] - here
+                factor = np.divide(moved, way, out=np.ones(count), where=way != 0.0)
+            found |= {f"tensioner_position_after_{name}": here + factor * way, mark: factor}
+        return found
+
+    def _pushed(self, push: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]) -> FloatArray | None:
+        """Unknowns where tensioners are pushed, N or N m; None if the way there ends before.
+
+        Ends that are known, each with its push, serve the guesses.
+        """
+        begin, moments, own = self._unknowns(), self._moments, self.constant.tensioners.push
+        given = own.copy()
+
+        def solve(part: float, guess: FloatArray) -> FloatArray | None:
+            own[:] = given + part * push
+            return self._solve(self.setting, guess)
+
+        parts = [(float(other @ push) / float(push @ push), other, end) for other, end in ends]
+        end = go_on(
+            solve, *((part, end) for part, other, end in parts if np.allclose(other, part * push)), (0.0, begin)
+        )
+        own[:], self._moments = given, moments
+        self._place(begin)
+        return end
+
+    def _pushed_by_tangent(self, push: FloatArray) -> FloatArray:
+        """By how much tensioners move where they are pushed, N or N m, to first order, m or rad."""
+        system, matrix = self._at(self.setting), self._work.equations.matrix
+        anchor = anchor_at(system, self.state, False)
+        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, self._work)
+        clear(matrix, False)
+        unknown = system.bodies.unknown[-push.size :]
+        matrix.border_side[unknown] = push
+        substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
+        return np.asarray(self._work.ahead_border[unknown])
+
+    def _unknowns(self) -> FloatArray:
+        """All that steady running consists of, as one vector: position, velocity, speed of the belt."""
+        return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
+
+    def _place(self, unknowns: FloatArray) -> None:
+        """Put the search in its place."""
+        size = self.state.position.size
+        self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
+        self.constant.frame.speed[:] = unknowns[2 * size :]
+
+    def _solve(self, setting: Setting, guess: FloatArray) -> FloatArray | None:
+        """Steady running at a setting from a guess; None, and all as it was, if it is not found."""
+        before = self._unknowns()
+        self._place(guess)
+        if self._try(setting):
+            return self._unknowns()
+        self._place(before)
+        return None
+
+    def _gentle(self, speed: float, tension: float) -> float:
+        """Smoothing with which friction is not fully used anywhere."""
+        pulleys = self._system.pulleys
+        limits = self._system.law.friction.saturation(tension / self.drive.radii, pulleys.friction, speed)
+        least = float(np.min(limits[pulleys.friction > 0.0], initial=np.inf))
+        return max(1.0, _GENTLE * abs(speed) / least)
+
+    def _start(self, place: FloatArray, speed: float, setting: Setting) -> bool:
+        """Begin at a setting, from a place at rest, with a belt of a speed (m/s) that sticks to all pulleys."""
+        state, running, path = self.state, setting.speed * speed, self.drive.path
+        state.position[:] = place
+        self.constant.frame.speed[0] = running * self.drive.belt_length / path.length
+        state.velocity[self._system.first_body :][: path.count] = running / path.radii
+        guess_hubs(self._at(setting), state.velocity)
+        return self._try(setting)
+
+    def _follow(self, target: Setting) -> None:
+        """Go on to another setting, or say why that is not possible."""
+        if not self._reach(target):
+            seen = slips_through(self.drive, self.constant, self.state, self.setting.load)
+            raise ConvergenceError(f"no steady running at t = {self._time:g} s: {seen}")
+
+    def _reach(self, target: Setting) -> bool:
+        """Go on to another setting; False if the way ends before."""
+        begin = self.setting
+        return (
+            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess), (0.0, self._unknowns()))
+            is not None
+        )
+
+    def _release(self, driver: int) -> None:
+        """Let a driver turn as its torque says."""
+        speed = float(self.state.velocity[self._system.first_body + self._system.pulleys.shaft[driver]])
+        reaction = float(self._work.equations.forces.shaft[driver])
+        self._hold(None)
+        own = own_torque(self._at(Setting()), self.state, driver, speed)
+        self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
+        self._follow(Setting())
+
+    def _try(self, setting: Setting) -> bool:
+        """Look for steady running at a setting from the state that there is, which stays where that fails."""
+        state, system = self.state, self._at(setting)
+        before = self._unknowns()
+        drive_shafts(system, state.velocity)
+        tolerance = TOLERANCE * float(np.min(self.drive.radii))
+        anchor = anchor_at(system, state, False)
+        status, iterations = find_steady(system, state.at(0.0), anchor, tolerance, _MOST, self._work)
+        self.iterations += iterations
+        if status == FOUND:
+            self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
+            return True
+        self._place(before)
+        return False
+
+    def _at(self, setting: Setting) -> System:
+        """The system at a setting."""
+        system = self._system
+        offset, count, driven = system.profiles.segment.offset, system.pulleys.size, self._prescribed.copy()
+        offset[:] = self._wanted
+        if self._held is not None:
+            driven[self._held], offset[self._held] = True, self._held_speed
+        offset[:count] *= np.where(driven, setting.speed, setting.load)
+        offset[system.shaft_loads.table.schedule[:-1]] *= setting.load
+        if self._supported is not None:
+            offset[self._supported] += setting.support * self._support
+        friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
+        hysteresis["stretch_length"] *= setting.stretch_length
+        return system._replace(law=system.law._replace(friction=friction), hysteresis=hysteresis)
+
+
+def _between(begin: Setting, end: Setting, part: float) -> Setting:
+    """A setting on the way from one to another, on which what smoothes changes by equal factors."""
+    if part == 1.0:
+        return end
+    even = Setting(*(a + part * (b - a) for a, b in zip(begin, end, strict=True)))
+    smooth = {
+        name: getattr(begin, name) ** (1.0 - part) * getattr(end, name) ** part
+        for name in ("smoothing", "stretch_length")
+    }
+    return even._replace(**smooth)

@@ -1,0 +1,1 @@
+"""Studies: many designs of a drive, their results by name, and the search among them."""

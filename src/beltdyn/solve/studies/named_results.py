@@ -1,0 +1,103 @@
+"""Results of steady running by name, such as "efficiency" and "pulley_slip[driven]"."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.parts.messages import suggest
+from beltdyn.results import Run, Variable, summarize
+from beltdyn.solve.steady_running.operating_points import VARIABLES, labels_of, values_by_name
+
+OF_MODES = {
+    "frequency": Variable(("span",), "Hz", "Lowest frequency of the modes in which the span swings most"),
+    "damping_ratio": Variable(("span",), "1", "Damping ratio of that mode"),
+}
+"""Results of modes that have names; those of one kind are by numbers."""
+
+
+def listed(text: str) -> list[str]:
+    """Names with commas between."""
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def values_of(run: Run) -> dict[str, float]:
+    """All scalar results of steady running by their names.
+
+    Parameters
+    ----------
+    run
+        Steady running.
+    """
+    summary, found = summarize(run), dict[str, float]()
+    labels = labels_of(run.drive)
+    for name, values in values_by_name(run, summary).items():
+        dims, numbers = VARIABLES[name].dims, np.asarray(values)
+        if numbers.dtype.kind == "f" and len(dims) < 2:
+            inner = labels[dims[0]] if dims else []
+            parts = [f"{name}[{label}]" for label in inner] if dims else [name]
+            found |= {part: float(value) for part, value in zip(parts, np.atleast_1d(numbers), strict=True)}
+    return found
+
+
+def names_of(drive: Drive) -> list[str]:
+    """Names of the scalar results of a drive in steady running, and of its modes; of some there may be no value.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    """
+    labels, found = labels_of(drive), list[str]()
+    for name, variable in (VARIABLES | OF_MODES).items():
+        if variable.dtype != "str" and len(variable.dims) < 2:
+            found += [f"{name}[{label}]" for label in labels[variable.dims[0]]] if variable.dims else [name]
+    return found
+
+
+def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of") -> list[str]:
+    """The names of results that a text asks for.
+
+    Parameters
+    ----------
+    known
+        Names that there are.
+    of
+        Names with commas between; "hub_load" stands for those of all pulleys, "all" for all results.
+    key
+        What the text is, for messages.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result.
+    """
+    if of == "all":
+        return list(known)
+    found = list[str]()
+    for wanted in listed(of):
+        named = [name for name in known if wanted in (name, name.partition("[")[0])]
+        if not named:
+            names = known if "[" in wanted else dict.fromkeys(name.partition("[")[0] for name in known)
+            raise ModelError(f"{key} = {wanted!r} is no result of steady running. {suggest(wanted, list(names))}")
+        found += named
+    return list(dict.fromkeys(found))
+
+
+def unit_of(name: str, drive: Drive) -> str:
+    """SI unit of a result; empty for a pure number.
+
+    Parameters
+    ----------
+    name
+        Such as "pulley_slip[driven]".
+    drive
+        The drive, whose tensioners move along a line or turn.
+    """
+    variable, _, label = name.removesuffix("]").partition("[")
+    unit = (VARIABLES | OF_MODES)[variable].units
+    if unit == "m or rad":
+        turning = {one.pulley: one.turns for one in drive.moving_tensioners}
+        unit = "rad" if turning.get(label, all(turning.values())) else "m"
+    return "" if unit == "1" else unit

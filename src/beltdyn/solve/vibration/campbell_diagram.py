@@ -1,0 +1,248 @@
+"""The lines of a Campbell diagram: modes over speed, excitations, where they meet, and what grows by itself."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from beltdyn.arrays import FloatArray
+from beltdyn.model import Drive
+from beltdyn.parts.quantity import RPM
+from beltdyn.results import Run, Variable
+from beltdyn.solve.steady_running.operating_points import Axes
+from beltdyn.solve.vibration.critical_speeds import Crossing, crossings
+from beltdyn.solve.vibration.excitation import Excitation, one_line_each
+from beltdyn.solve.vibration.flutter import flutter_shift
+from beltdyn.solve.vibration.mode_shapes import Shares, part_names
+from beltdyn.solve.vibration.mode_tracking import ModeTable, Tracks, seen_modes
+from beltdyn.solve.vibration.small_motions import SmallMotions, about_steady, dry_tensioners
+from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.theory.sliding_flutter import SlidingBelt, fastest_flutter
+
+_RESONATES = 0.5**0.5
+"""Damping ratio below which a vibration becomes larger near the frequency of its mode."""
+_SPARE = 4
+"""Modes above those that are asked for, so that a mode that comes among these is known before."""
+_GROWS = 1e-6
+"""Growth rate of a mode that grows by itself, over its angular frequency."""
+_DOUBTFUL = 0.5
+"""Assurance below which it is doubtful which mode goes on as which."""
+_SPEED, _MODE, _EXCITATION, _CRITICAL = ("speed",), ("mode",), ("excitation",), ("critical",)
+_BOTH = (*_SPEED, *_MODE)
+
+VARIABLES = {
+    "growth": Variable(_SPEED, "1/s", "Growth rate, the largest of the modes"),
+    "flutter_rate": Variable(_SPEED, "1/s", "Flutter rate, the largest near the frequency of the belt on its contact"),
+    "flutter_frequency": Variable(_SPEED, "Hz", "Flutter frequency"),
+    "flutter_bound": Variable(("pulley",), "1/s", "Flutter rate, if a whole arc without ends slid"),
+    "order": Variable(_EXCITATION, "1", "Order, waves in a turn of the pulley"),
+    "excitation_frequency": Variable((*_SPEED, *_EXCITATION), "Hz", "Frequency of the excitation"),
+    "kind": Variable(_MODE, "1", "Kind, by the shares of kinetic energy", "str"),
+    "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
+    "lowest_frequency": Variable(_MODE, "Hz", "Lowest frequency"),
+    "highest_frequency": Variable(_MODE, "Hz", "Highest frequency"),
+    "least_damping_ratio": Variable(_MODE, "1", "Least damping ratio"),
+    "frequency": Variable(_BOTH, "Hz", "Frequency"),
+    "damping_ratio": Variable(_BOTH, "1", "Damping ratio"),
+    "growth_rate": Variable(_BOTH, "1/s", "Growth rate, below zero where the mode decays"),
+    "assurance": Variable(_BOTH, "1", "Modal assurance with the speed before"),
+    "span_share": Variable((*_BOTH, "span"), "1", "Share of the kinetic energy, of the span across itself"),
+    "pulley_share": Variable((*_BOTH, "pulley"), "1", "Share of the kinetic energy, of the pulley's rotation"),
+    "belt_share": Variable(_BOTH, "1", "Share of the kinetic energy, of the belt along itself"),
+    "tensioner_share": Variable((*_BOTH, "tensioner"), "1", "Share of the kinetic energy, of the tensioner"),
+    "critical_speed": Variable(_CRITICAL, "rad/s", "Speed, critical"),
+    "critical_excitation": Variable(_CRITICAL, "1", "Excitation", "str"),
+    "critical_mode": Variable(_CRITICAL, "1", "Mode", "int64"),
+    "critical_frequency": Variable(_CRITICAL, "Hz", "Frequency"),
+    "critical_damping_ratio": Variable(_CRITICAL, "1", "Damping ratio"),
+    "critical_parts": Variable(_CRITICAL, "1", "Parts of the mode there, with most of its energy", "str"),
+}
+"""What is known beside operating points."""
+
+
+class CampbellDiagram:
+    """Collects modes from speed to speed.
+
+    Parameters
+    ----------
+    drive
+        With constant speeds, torques and schedules.
+    speeds : ndarray, shape (n,)
+        rad/s, ascending.
+    excitations
+        What excites it.
+    count
+        How many modes to follow at each speed.
+    stuck
+        Whether dry friction holds tensioners.
+    """
+
+    def __init__(
+        self, drive: Drive, speeds: FloatArray, excitations: Sequence[Excitation], count: int, stuck: bool
+    ) -> None:
+        self._drive, self._speeds, self._excitations, self._count = drive, speeds, excitations, count
+        self._stuck = dry_tensioners(drive) if stuck else None
+        self._tracks = Tracks(count)
+        self._lines = list[list[float]]()
+        self._flutter = list[complex]()
+        self._bounds = list[float]()
+
+    def take(self, run: Run | None) -> None:
+        """Take steady running at the next speed, or none.
+
+        Raises
+        ------
+        ConvergenceError
+            If it has no modes; nothing is taken then.
+        """
+        if run is None:
+            self._tracks.take(None)
+            self._lines.append([np.nan] * len(self._excitations))
+            self._flutter.append(complex(np.nan, np.nan))
+            return
+        motions = about_steady(run)
+        seen = seen_modes(motions if self._stuck is None else motions.with_stuck(self._stuck), self._count + _SPARE)
+        self._tracks.take(seen)
+        self._flutter.append(_flutter(motions))
+        self._lines.append([one.frequency(run) for one in self._excitations])
+        self._bounds = self._bounds or _flutter_bounds(motions)
+
+    @property
+    def found(self) -> bool:
+        """Whether there are modes."""
+        return self._tracks.found
+
+    @property
+    def coordinates(self) -> Axes:
+        """Numbers of modes and critical speeds, and names of excitations."""
+        names, _ = self._excited()
+        modes, critical = self._modes().values.shape[1], len(self._critical())
+        return {
+            "excitation": (Variable(_EXCITATION, "1", "Excitation", "str"), names),
+            "mode": (Variable(_MODE, "1", "Mode", "int64"), np.arange(1, modes + 1)),
+            "critical": (Variable(_CRITICAL, "1", "Critical speed", "int64"), np.arange(1, critical + 1)),
+        }
+
+    def variables(self, _: Mapping[str, Any]) -> Axes:
+        """All that is known beside operating points, by the names of `VARIABLES`."""
+        arrays = self._of_modes() | self._of_excitations() | self._of_critical_speeds()
+        held = arrays if self._drive.moving_tensioners else arrays.keys() - {"tensioner_share"}
+        return {name: (one, arrays[name]) for name, one in VARIABLES.items() if name in held}
+
+    @property
+    def warnings(self) -> list[str]:
+        """What grows by itself, and where it is doubtful which mode goes on as which."""
+        return [*self._growing(), *self._doubtful()]
+
+    def _modes(self) -> ModeTable:
+        """Modes at all speeds, those to come unknown."""
+        return self._tracks.table(len(self._speeds))
+
+    def _excited(self) -> tuple[list[str], FloatArray]:
+        """Names and frequencies of excitations, shape (n, j)."""
+        lines = np.full((len(self._speeds), len(self._excitations)), np.nan)
+        lines[: len(self._lines)] = self._lines
+        return one_line_each(self._excitations, lines)
+
+    def _critical(self) -> list[Crossing]:
+        """Critical speeds: those of modes that are not damped so much that nothing resonates."""
+        modes = self._modes()
+        found = crossings(self._speeds, modes.frequency, modes.damping_ratio, self._excited()[1])
+        return [one for one in found if one.damping_ratio < _RESONATES]
+
+    def _of_modes(self) -> dict[str, ArrayLike]:
+        """Variables along the modes."""
+        modes, names = self._modes(), part_names(self._drive)
+        means = [modes.mean_shares(number) for number in range(modes.values.shape[1])]
+        return {
+            "growth": np.nanmax(modes.values.real, axis=1, initial=-np.inf),
+            "kind": [one.kind for one in means],
+            "moving_parts": [one.parts(names) for one in means],
+            "lowest_frequency": np.nanmin(modes.frequency, axis=0),
+            "highest_frequency": np.nanmax(modes.frequency, axis=0),
+            "least_damping_ratio": np.nanmin(modes.damping_ratio, axis=0),
+            "frequency": modes.frequency,
+            "damping_ratio": modes.damping_ratio,
+            "growth_rate": modes.values.real,
+            "assurance": modes.assurance,
+            "span_share": modes.shares.span,
+            "pulley_share": modes.shares.pulley,
+            "belt_share": modes.shares.belt,
+            "tensioner_share": modes.shares.tensioner,
+        }
+
+    def _of_excitations(self) -> dict[str, ArrayLike]:
+        """Variables along the excitations, and what flutters."""
+        lines = self._excited()[1]
+        flutter = np.full(len(self._speeds), complex(np.nan, np.nan))
+        flutter[: len(self._flutter)] = self._flutter
+        return {
+            "flutter_rate": flutter.real,
+            "flutter_frequency": np.abs(flutter.imag) / (2.0 * np.pi),
+            "flutter_bound": self._bounds,
+            "order": np.nanmean(2.0 * np.pi * lines / self._speeds[:, None], axis=0),
+            "excitation_frequency": lines,
+        }
+
+    def _of_critical_speeds(self) -> dict[str, ArrayLike]:
+        """Variables along the critical speeds, with kind and parts of the mode at the nearest speed."""
+        found, (names, _), modes = self._critical(), self._excited(), self._modes()
+        rows = [self._nearest(one.speed, modes, one.mode) for one in found]
+        shares = [Shares(*(part[row, one.mode] for part in modes.shares)) for row, one in zip(rows, found, strict=True)]
+        parts = part_names(self._drive)
+        return {
+            "critical_speed": [one.speed for one in found],
+            "critical_excitation": [names[one.line] for one in found],
+            "critical_mode": np.array([one.mode + 1 for one in found], dtype=int),
+            "critical_parts": [one.parts(parts) for one in shares],
+            "critical_frequency": [one.frequency for one in found],
+            "critical_damping_ratio": [one.damping_ratio for one in found],
+        }
+
+    def _nearest(self, speed: float, modes: ModeTable, mode: int) -> int:
+        """Row of the nearest speed at which a mode is known."""
+        return int(np.nanargmin(np.abs(self._speeds - speed) + 0.0 * modes.frequency[:, mode]))
+
+    def _growing(self) -> Iterator[str]:
+        """What grows by itself."""
+        modes = self._modes()
+        for number, values in enumerate(modes.values.T):
+            grows = np.flatnonzero(values.real > _GROWS * values.imag)
+            if grows.size:
+                first, last = (RPM * self._speeds[grows[k]] for k in (0, -1))
+                rate = float(values.real[grows].max())
+                yield (
+                    f"mode {number + 1} grows by itself at {grows.size} of {len(self._speeds)} speeds, from "
+                    f"{first:.4g} to {last:.4g} rpm, by up to {rate:.3g} 1/s: the drive does not stay in steady "
+                    "running there. Add damping, or look at a run over time with `beltdyn run`."
+                )
+
+    def _doubtful(self) -> Iterator[str]:
+        """Where modes change so much that it is doubtful which goes on as which."""
+        agreed = self._modes().assurance
+        unsure = np.flatnonzero(np.any(agreed < _DOUBTFUL, axis=1))
+        if unsure.size:
+            places = ", ".join(f"{RPM * self._speeds[row]:.4g}" for row in unsure)
+            yield (
+                f"mode shapes change much from the speed before to {places} rpm, so that it is doubtful which goes on "
+                "as which. Give more points there, and look at slip: a pulley may have begun to slip as a whole."
+            )
+
+
+def _flutter(motions: SmallMotions) -> complex:
+    """The vibration that grows fastest near the frequency of the belt on its penalty springs, 1/s; NaN if none is."""
+    system, state = motions.system, motions.state
+    return Vibrations(system).fastest_growing(0.0, state.position, state.velocity, flutter_shift(system))
+
+
+def _flutter_bounds(motions: SmallMotions) -> list[float]:
+    """Growth of flutter on each pulley if its whole arc slid, 1/s."""
+    system, belt = motions.system, motions.drive.belt
+    normal, mass = system.law.normal, system.element.section.mass
+    return [
+        fastest_flutter(
+            SlidingBelt(mass, belt.axial_stiffness, float(radius), normal.stiffness, normal.damping, float(friction))
+        ).rate
+        for radius, friction in zip(system.rims.radius, system.pulleys.friction, strict=True)
+    ]

@@ -1,0 +1,192 @@
+"""Whether a belt flutters where it slides: how far vibrations could grow in a run.
+
+While a belt slides, vibrations near the frequency of the belt on its penalty springs may take energy from what drives
+the pulley and grow (`theory.sliding_flutter`).  How fast, the equations of motion say, linearised at states of the run;
+the integral of that over the time of sliding is the logarithm of the factor by which a vibration grows.  What grows in
+a piece of belt stops growing when that has passed the arc on which it slides.
+"""
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from beltdyn.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from beltdyn.solve.vibration.vibrations import Vibrations
+from beltdyn.system.arrays import System
+from beltdyn.system.pulley_state import pulley_speeds
+
+_ELEMENTS = 1
+"""Length of belt that must slide in one piece, in elements; a mesh cannot represent shorter waves."""
+_PERIODS = 10.0
+"""How long a vibration goes on where sliding pauses."""
+_SAMPLES = 16
+"""States kept, at most."""
+_SHIFT = 0.02 + 1j
+"""Where to look for vibrations, over the angular frequency of the belt on its penalty springs."""
+
+
+class Flutter(NamedTuple):
+    """The largest growth of vibrations in a run."""
+
+    growth: float
+    """Natural logarithm of the factor by which their amplitude may grow."""
+    rate: float
+    """Growth of the fastest of them, 1/s."""
+    frequency: float
+    """Its frequency, Hz."""
+    start: float
+    """When growth begins, s."""
+    end: float
+    """When it ends, s."""
+
+    @property
+    def attributes(self) -> dict[str, float]:
+        """Attributes of the results."""
+        return {f"flutter_{name}": value for name, value in self._asdict().items()}
+
+
+def growth_rates(eigenvalues: ComplexArray) -> FloatArray:
+    """Rates at which vibrations grow, 1/s: zero for what grows without swinging, and for what was not found.
+
+    Parameters
+    ----------
+    eigenvalues : ndarray, shape (k,)
+        Growth rate and angular frequency, 1/s; nan where none was found.
+    """
+    swinging = np.abs(eigenvalues.imag) > np.abs(eigenvalues.real)
+    return np.asarray(np.where(swinging, eigenvalues.real, 0.0))
+
+
+def flutter_shift(system: System) -> complex:
+    """Where to look for flutter, 1/s: near the frequency of the belt on its penalty springs."""
+    return _SHIFT * sqrt(system.law.normal.stiffness / system.element.section.mass)
+
+
+class FlutterWatch:
+    """Notes when a belt slides, and a few states in which it does; at the end it finds how vibrations grow there.
+
+    Parameters
+    ----------
+    system
+        What is simulated.
+    """
+
+    def __init__(self, system: System) -> None:
+        self._system, self._shift = system, flutter_shift(system)
+        self._memory = _PERIODS * 2.0 * np.pi / self._shift.imag
+        self._time: list[FloatArray] = []
+        self._transit: list[FloatArray] = []
+        self._last = -np.inf
+        self._states: list[tuple[float, FloatArray, FloatArray]] = []
+        self._stride, self._passed = 1, 0
+
+    def take(
+        self, time: FloatArray, position: FloatArray, velocity: FloatArray, seen: Mapping[str, NDArray[Any]]
+    ) -> None:
+        """Take outputs.
+
+        Parameters
+        ----------
+        time : ndarray, shape (k,)
+            s.
+        position, velocity : ndarray, shape (k, n N + D)
+            The states.
+        seen
+            Fields of `Observations` in these states.
+        """
+        transit = self._transit_time(velocity, seen)
+        self._time.append(time)
+        self._transit.append(transit)
+        last = last_slid(time, transit, self._last)
+        self._last = last[-1]
+        for k in np.flatnonzero(time - last <= self._memory):
+            self._keep(float(time[k]), position[k], velocity[k])
+
+    def find(self) -> Flutter | None:
+        """The largest growth of vibrations while the belt slid; None where none grows."""
+        if len(self._states) < 2:
+            return None
+        vibrations = Vibrations(self._system)
+        found = np.array([vibrations.fastest_growing(*state, self._shift) for state in self._states])
+        instants, rates = np.array([state[0] for state in self._states]), growth_rates(found)
+        time, transit = np.concatenate(self._time), np.concatenate(self._transit)
+        active = time - last_slid(time, transit) <= self._memory
+        transit = transit[np.maximum.accumulate(np.where(transit > 0.0, np.arange(transit.size), 0))]
+        grown = [
+            growth_within(time[first:last], transit[first:last], instants, rates)
+            for first, last in np.flatnonzero(np.diff(active, prepend=False, append=False)).reshape(-1, 2)
+        ]
+        growth, start, end = max(grown)
+        fastest = int(np.argmax(rates))
+        frequency = abs(float(found[fastest].imag)) / (2.0 * np.pi)
+        return Flutter(growth, float(rates[fastest]), frequency, start, end) if growth > 0.0 else None
+
+    def _transit_time(self, velocity: FloatArray, seen: Mapping[str, NDArray[Any]]) -> FloatArray:
+        """Time in which the belt moves by the length of its longest piece that slides, s; zero where none does."""
+        system = self._system
+        normal, touched = seen["normal_force"], seen["contact_pulley"]
+        friction = system.pulleys.friction[touched]
+        rim = np.take_along_axis(pulley_speeds(system, velocity) * system.rims.radius, touched, axis=-1)
+        saturation = system.law.friction.saturation(normal, friction, rim)
+        points = (normal > 0.0) & (friction > 0.0) & (np.abs(seen["slip_velocity"]) >= saturation)
+        result = np.zeros(len(points))
+        needed = _ELEMENTS * system.control.shape[1] * system.contact.points.size
+        some = np.flatnonzero(np.count_nonzero(points, axis=1) > needed)
+        longest = longest_pieces(points[some])
+        some, longest = some[longest > needed], longest[longest > needed]
+        length = longest / points.shape[1] * float(np.sum(system.length))
+        nodes = velocity[some, : system.first_body].reshape(len(some), system.nodes, len(system.scale))
+        speed = np.mean(np.hypot(nodes[..., 0], nodes[..., 1]), axis=1)
+        result[some] = np.divide(length, speed, out=np.full(len(some), np.inf), where=speed > 0.0)
+        return result
+
+    def _keep(self, time: float, position: FloatArray, velocity: FloatArray) -> None:
+        """Keep a state if its turn has come; every second one makes room where there is none."""
+        if self._passed % self._stride == 0:
+            if len(self._states) == _SAMPLES:
+                del self._states[1::2]
+                self._stride *= 2
+            self._states.append((time, position.copy(), velocity.copy()))
+        self._passed += 1
+
+
+def last_slid(time: FloatArray, transit: FloatArray, before: float = -np.inf) -> FloatArray:
+    """When the belt slid last, s: at each output, or before them, or at a time before all."""
+    return np.maximum(np.maximum.accumulate(np.where(transit > 0.0, time, -np.inf)), before)
+
+
+def longest_pieces(points: BoolArray) -> IntArray:
+    """Number of true points in the longest row of them on a closed belt, shape (k,), of points of shape (k, n)."""
+    count = points.shape[1]
+    around = np.concatenate([points, points], axis=1)
+    number = np.arange(1, 2 * count + 1)
+    rows = number - np.maximum.accumulate(np.where(around, 0, number), axis=1)
+    longest: IntArray = np.minimum(np.max(rows, axis=1, initial=0), count)
+    return longest
+
+
+def growth_within(
+    time: FloatArray, transit: FloatArray, instants: FloatArray, rates: FloatArray
+) -> tuple[float, float, float]:
+    """Largest growth in one stretch of sliding, as a logarithm, and when it begins and ends, s.
+
+    Parameters
+    ----------
+    time : ndarray, shape (k,)
+        Outputs of the stretch, s.
+    transit : ndarray, shape (k,)
+        For how long a vibration has been growing at most, s, before the belt carries it away.
+    instants, rates : ndarray, shape (samples,)
+        When the rate of growth is known, s, and what it is, 1/s.
+    """
+    rate, count = np.interp(time, instants, rates), len(time)
+    total = np.append(0.0, np.cumsum(0.5 * (rate[1:] + rate[:-1]) * np.diff(time)))
+    first = np.searchsorted(time, time - transit)
+    windows = np.stack([first, np.arange(1, count + 1)], axis=1).ravel()
+    gain = total - np.minimum.reduceat(np.append(total, np.inf), windows)[::2]
+    end = int(np.argmax(gain))
+    start = int(first[end] + np.argmin(total[first[end] : end + 1]))
+    return float(gain[end]), float(time[start]), float(time[end])
