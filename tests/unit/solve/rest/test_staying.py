@@ -9,7 +9,7 @@ import pytest
 import beltdyn as bd
 from beltdyn.model import Drive
 from beltdyn.model.graded_mesh import Laid
-from beltdyn.solve import staying
+from beltdyn.solve.rest import staying
 from beltdyn.solve.rest.staying import bring_to_stand, carried, found_arcs, stand, stand_like, transfer
 from beltdyn.solve.steady_running.newton import find_steady
 from beltdyn.system.build import staying_system

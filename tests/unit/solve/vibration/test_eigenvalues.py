@@ -5,7 +5,7 @@ import pytest
 from scipy.sparse import csc_array
 
 from beltdyn.arrays import FloatArray
-from beltdyn.solve import eigenvalues
+from beltdyn.solve.vibration import eigenvalues
 from beltdyn.solve.vibration.eigenvalues import all_eigenvalues, nearest, pencil, swinging, swings
 
 Matrices = tuple[csc_array, csc_array, csc_array]
