@@ -7,13 +7,14 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field, ValidationInfo, model_validator
+from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, ValidationInfo, model_validator
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, describe_forms, in_new_form, to_material
+from beltdyn.model.belt_as_sold import as_sold, changes_as_sold, section_with, without_section
+from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, OWN, describe_forms, in_new_form, to_material
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
@@ -135,15 +136,39 @@ class Belt(Part):
         4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
     )
 
+    _section: dict[str, Any] | None = PrivateAttr(None)
+
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
         """Arguments in place of the material, see `beltdyn.model.belt_form`."""
         return FORMS
 
+    def value_of(self, key: str) -> Any:
+        """As of any part; stiffnesses and mass follow from any form, the profile is known where one was given."""
+        if key in OWN:
+            return getattr(self, key)
+        if key == "nominal_length":
+            return None if self.length is None else self.length - 2.0 * pi * self.pitch_offset
+        return (self._section or {}).get(key, super().value_of(key))
+
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """As of any part; a stiffness takes the place of the material, and a profile that of the section."""
-        own = {key: getattr(self, key) for key in ("axial_stiffness", "bending_stiffness", "mass_per_length")}
+        """As of any part; a stiffness takes the place of the material, and a profile that of the section.
+
+        A belt made of a profile stays one, but where its material is changed.
+        """
+        section = self._section
+        if section is not None and changes_as_sold(section, changes):
+            return without_section(super().merged(changes)) | section_with(section, changes) | dict(changes)
+        own = {key: getattr(self, key) for key in OWN}
         return in_new_form(super().merged(changes), changes, own)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _remember_its_profile(cls, data: Any, make: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+        belt = make(data)
+        if belt is not data:
+            belt._section = as_sold(data, belt, (info.context or {}).get("base"))
+        return belt
 
     @model_validator(mode="before")
     @classmethod

@@ -19,7 +19,7 @@ from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Length, MassPerLength
 
 _POISSONS_RATIO = 0.3
-_MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
+MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
 _BESIDE = dict.fromkeys(("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness"), 1)
 _POWERS: dict[str, dict[str, int]] = {
     "ribs": _BESIDE,
@@ -38,8 +38,8 @@ LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 """In the order of `DAMPING_TIMES`: of each strain a belt has the one or the other."""
 LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
-_STRETCH = ("stretch_law", "stretch_curve")
-_TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *LOSSES)
+STRETCH = ("stretch_law", "stretch_curve")
+TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *LOSSES)
 
 
 class Stiffnesses(Part):
@@ -73,10 +73,10 @@ class Nominal(Part):
     )
 
 
-_OWN = [key for key in Stiffnesses.model_fields if key not in ("width", "thickness")]
+OWN = [key for key in Stiffnesses.model_fields if key not in ("width", "thickness")]
 
 FORMS = MappingProxyType(
-    {**Sold.model_fields, **{key: Stiffnesses.model_fields[key] for key in _OWN}, **Nominal.model_fields}
+    {**Sold.model_fields, **{key: Stiffnesses.model_fields[key] for key in OWN}, **Nominal.model_fields}
 )
 """Keys of the other forms."""
 
@@ -127,11 +127,11 @@ class _Offset(Part):
 
 def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any]:
     """Turn a profile or stiffnesses into material."""
-    given = [key for key in (*Sold.model_fields, *_OWN) if key in data]
+    given = [key for key in (*Sold.model_fields, *OWN) if key in data]
     law = {"stretch_law": "measured"} if "stretch_curve" in data else {"stretch_law": "linear"} if given else {}
     if not given:
         return {**law, **data}
-    both = [key for key in _MATERIAL if key in data]
+    both = [key for key in MATERIAL if key in data]
     if both:
         raise ValueError(
             f"{given[0]} and {both[0]} exclude each other: a belt is given by a profile, or by its stiffnesses and its "
@@ -144,7 +144,7 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
         for pair in zip(DAMPING_TIMES, LOSS_FACTORS, strict=True):
             if any(key in values for key in pair):
                 section = {key: value for key, value in section.items() if key not in pair}
-        if any(key in data for key in (*_STRETCH, "axial_stiffness")):
+        if any(key in data for key in (*STRETCH, "axial_stiffness")):
             section.pop("stretch_curve", None)
         elif "stretch_curve" in section:
             values["stretch_law"] = "measured"
@@ -175,10 +175,10 @@ def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: M
     """
     gone: set[str] = set()
     if any(key in changes for key in Sold.model_fields):
-        gone = {*_MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *_TAKEN_OVER, *_STRETCH}
+        gone = {*MATERIAL, "width", "thickness", "poissons_ratio", "contact_stiffness", *TAKEN_OVER, *STRETCH}
         own = {}
-    elif any(key in changes for key in _OWN):
-        gone = {*_MATERIAL}
+    elif any(key in changes for key in OWN):
+        gone = {*MATERIAL}
     else:
         own = {}
     if "stretch_curve" in changes:
@@ -186,7 +186,7 @@ def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: M
     elif "stretch_law" in changes:
         gone |= {"stretch_curve"}
     elif "stretch_curve" in arguments and "axial_stiffness" in changes:
-        gone |= {*_STRETCH}
+        gone |= {*STRETCH}
     kept = {key: value for key, value in arguments.items() if key in changes or key not in gone}
     without = {"axial_stiffness"} if "stretch_curve" in kept else set()
     return {key: value for key, value in own.items() if key not in without} | kept
@@ -212,7 +212,7 @@ def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
     except LookupError as error:
         raise ValueError(f'{error.args[0]}; a catalogue of your own extends it: catalogue = "file.toml"') from None
     size, powers = _size(sold, entry, width), _POWERS[entry.sold_by]
-    values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *_TAKEN_OVER)}
+    values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *TAKEN_OVER)}
     found = {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
     if entry.stretch_curve is None:
         return found
@@ -249,6 +249,6 @@ def describe_forms(schema: dict[str, Any]) -> None:
     for form in forms:
         schema["properties"] = form["properties"] | schema["properties"]
     required = schema.pop("required")
-    material = [key for key in required if key in (*_MATERIAL, "width", "thickness", "poissons_ratio")]
+    material = [key for key in required if key in (*MATERIAL, "width", "thickness", "poissons_ratio")]
     schema["required"] = [key for key in required if key not in material]
     schema["anyOf"] = [{"required": keys} for keys in (material, forms[1]["required"], ["profile"])]

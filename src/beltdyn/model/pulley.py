@@ -77,6 +77,10 @@ class Pulley(Part):
         (), description="the links of the hub chain, from the rim to the shaft, groups [[pulley.hub]]"
     )
 
+    def value_of(self, key: str) -> Any:
+        """As of any part; the diameter is twice the radius."""
+        return 2.0 * self.radius if key == "diameter" else super().value_of(key)
+
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
         """The diameter in place of the radius."""

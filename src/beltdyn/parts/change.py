@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 from beltdyn.errors import ModelError
-from beltdyn.parts.error_location import entry_name
+from beltdyn.parts.error_location import entry_name, shorten
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import unit_of
@@ -36,6 +36,8 @@ def changed_arguments(part: Part, changes: Mapping[str, Any]) -> dict[str, Any]:
     ModelError
         If a path leads nowhere, or one leads into what another one replaces.
     """
+    if not isinstance(changes, Mapping):
+        raise ModelError(f'changes = {shorten(repr(changes))} is no mapping. Write for example {{"belt.length": 1.2}}.')
     arguments = _changed(part, {steps_of(path): value for path, value in changes.items()}, "")
     assert isinstance(arguments, dict)
     return arguments
@@ -126,7 +128,7 @@ def _followed(part: Part, path: str) -> list[tuple[str, Any]]:
             known = value.keys()
             if step not in known:
                 raise ModelError(f"{_joined(place, step)} is not a known key. {_sentence(suggest(step, known))}")
-            found.append((_joined(place, step), value.arguments.get(step)))
+            found.append((_joined(place, step), value.value_of(step)))
         elif isinstance(value, Sequence) and not isinstance(value, str):
             number = _place_of(value, step, place)
             found.append((f"{place}[{entry_name(value[number]) or number + 1}]", value[number]))
@@ -148,8 +150,8 @@ def steps_of(path: str) -> Steps:
     ModelError
         If it is no path.
     """
-    found = list(_STEP.finditer(path))
-    if "".join(match[0] for match in found) != path or path.startswith((".", "[")) or not path:
+    found = list(_STEP.finditer(str(path)))
+    if not found or "".join(match[0] for match in found) != path or path.startswith((".", "[")):
         raise ModelError(f'"{path}" is no path. Write for example "belt.length" or "pulley[driven].load[1].torque".')
     return tuple(match[1] or match[2] for match in found)
 

@@ -168,8 +168,9 @@ def _remedy(schema: dict[str, Any]) -> str:
 
 
 def reason(error: Exception) -> str:
-    """Say why a file cannot be used, in the words of the operating system."""
-    return (getattr(error, "strerror", None) or str(error)).lower()
+    """Say why a file cannot be used, in the words of the operating system; the first one begins no sentence here."""
+    text = getattr(error, "strerror", None) or str(error)
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
 
 
 def show(value: object) -> str:

@@ -1,7 +1,6 @@
 """The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
 
 from collections.abc import Mapping
-from itertools import permutations
 from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
@@ -70,6 +69,16 @@ class Part(BaseModel):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Part) and type(self) is type(other) and self.arguments == other.arguments
 
+    def value_of(self, key: str) -> Any:
+        """What stands at an argument of the constructor, whether or not it was given so; None where it is open.
+
+        Parameters
+        ----------
+        key : str
+            One of `keys`.
+        """
+        return self.arguments.get(key)
+
     @property
     def arguments(self) -> dict[str, Any]:
         """The constructor's arguments that make this part, without those that are left open."""
@@ -109,7 +118,10 @@ class Part(BaseModel):
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """The constructor's arguments with some values changed, as for `replace`."""
         arguments = self.arguments
-        for new, old in (*permutations(self.either or (), 2), *self.in_place_of.items()):
-            if changes.get(new) is not None and new not in arguments:
-                arguments.pop(old, None)
+        either = self.either or ()
+        for new in (key for key, value in changes.items() if value is not None):
+            stands_for = self.in_place_of.get(new, new)
+            if stands_for not in arguments and stands_for in either:
+                stands_for = next(other for other in either if other != stands_for)
+            arguments.pop(stands_for, None)
         return arguments | dict(changes)

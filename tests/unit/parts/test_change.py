@@ -83,12 +83,18 @@ def test_changes_are_made_all_at_once(drive: Drive) -> None:
         ("belt.length.unit", 1.0, "belt.length = 1.2727 holds nothing to change by .unit."),
         ("belt.", 1.0, '"belt." is no path. Write for example "belt.length"'),
         ("", 1.0, '"" is no path.'),
+        (5, 1.0, '"5" is no path.'),
     ],
 )
-def test_a_path_that_leads_nowhere_is_said(loaded: Drive, path: str, value: Any, said: str) -> None:
+def test_a_path_that_leads_nowhere_is_said(loaded: Drive, path: Any, value: Any, said: str) -> None:
     with pytest.raises(ModelError) as caught:
         loaded.with_({path: value})
     assert str(caught.value).startswith(said)
+
+
+def test_changes_are_a_mapping(drive: Drive) -> None:
+    with pytest.raises(ModelError, match=r"changes = \[1\] is no mapping\. Write for example"):
+        drive.with_([1])  # type: ignore[arg-type]
 
 
 def test_a_part_is_not_changed_twice(drive: Drive) -> None:

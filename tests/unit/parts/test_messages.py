@@ -94,7 +94,8 @@ def test_long_values_are_cut() -> None:
 
 def test_the_system_says_why_a_file_cannot_be_used() -> None:
     assert reason(FileNotFoundError(2, "No such file or directory")) == "no such file or directory"
-    assert reason(ValueError("Is a Directory")) == "is a directory"
+    assert reason(ValueError("Its unit is MPa, not N")) == "its unit is MPa, not N"
+    assert reason(ValueError("MPa is no unit of force")) == "MPa is no unit of force"
 
 
 def test_each_error_is_told_with_its_place_in_the_data(drive: Drive) -> None:
