@@ -33,6 +33,8 @@ Six = tuple[float, float, float, float, float, float]
 _DEGREE = 5
 _ORDERS = np.array([0.0, 1.0, 2.0, 0.0, 1.0, 2.0])
 """Of the derivatives that the six vectors are."""
+_COORDINATE_ORDERS = np.repeat(_ORDERS, 2)
+"""Those of the twelve coordinates."""
 _UNIT_CONTROL = np.array(
     [
         [1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
@@ -150,8 +152,8 @@ def quintic_control(length: float) -> FloatArray:
 
 def quintic_mass(section: Section, length: float) -> FloatArray:
     """Mass matrix, the integral of rho A S^T S, shape (12, 12)."""
-    scale = length ** np.repeat(_ORDERS, 2)
-    return np.asarray(section.mass * length * np.outer(scale, scale) * _unit_mass())
+    scale = length**_COORDINATE_ORDERS
+    return np.asarray(section.mass * length * scale[:, None] * scale * _unit_mass())
 
 
 @cache

@@ -227,6 +227,11 @@ class Drive(Part):
         """Estimate of the belt at rest, and where springs hold the tensioners; see `balance_tensioners`."""
         return balance_tensioners(self.path, self.loaded_belt, self.completed.contact, self.carriers)
 
+    @property
+    def tension_at_rest(self) -> float:
+        """Estimate of the tension of the belt at rest, without weight and bending, N; see `balance`."""
+        return self.balance[0].tension
+
     def carried(self, tensioner: Tensioner) -> int:
         """Tell the number of the pulley that a tensioner carries."""
         return [pulley.name for pulley in self.pulleys].index(tensioner.pulley)
@@ -297,7 +302,7 @@ class Drive(Part):
             tensioners = take_up(completed, distance)
         return self.replace(belt=belt, contact=completed.contact, tensioner=tensioners)
 
-    @property
+    @cached_property
     def text(self) -> str:
         """The TOML text that the drive came from, or one that gives the same drive."""
         return self._source or tomli_w.dumps(self.data, multiline_strings=False)

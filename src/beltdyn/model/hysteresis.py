@@ -7,7 +7,6 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import pulling
-from beltdyn.model.installation import install
 from beltdyn.model.resolution import layer_lengths
 from beltdyn.theory.hysteresis import BENDING_SHARE, STRETCH_SHARE, bending_loss, compression_loss
 
@@ -62,7 +61,7 @@ def bending_at_points(drive: Drive) -> BendingAtPoints:
     """
     belt = drive.belt
     modulus = BENDING_SHARE * belt.bending_loss_factor * belt.bending_stiffness
-    return BendingAtPoints(modulus, _SMOOTHED_AT_POINTS * layer_lengths(drive, install(drive).tension)[0])
+    return BendingAtPoints(modulus, _SMOOTHED_AT_POINTS * layer_lengths(drive, drive.tension_at_rest)[0])
 
 
 def passing_strains(drive: Drive) -> Passing:
@@ -76,7 +75,7 @@ def passing_strains(drive: Drive) -> Passing:
     ----------
     drive : Drive
     """
-    tension = install(drive).tension
+    tension = drive.tension_at_rest
     belt, friction = drive.belt, np.maximum(drive.frictions, _LEAST_FRICTION)
     holds = bool(drive.moving_tensioners) or pulling(drive.path_ends) is not None
     return Passing(
@@ -115,7 +114,7 @@ def rolling_resistances(drive: Drive) -> FloatArray:
     """
     if drive.belt.compression_loss_factor == 0.0:
         return np.zeros(len(drive.pulleys))
-    return np.asarray(compression_losses(drive) / (install(drive).tension * np.abs(drive.path.wrap_angles)))
+    return np.asarray(compression_losses(drive) / (drive.tension_at_rest * np.abs(drive.path.wrap_angles)))
 
 
 def compression_losses(drive: Drive) -> FloatArray:
@@ -133,6 +132,6 @@ def compression_losses(drive: Drive) -> FloatArray:
     belt = drive.belt
     if belt.contact_stiffness is None or belt.compression_loss_factor == 0.0:
         return np.zeros(len(drive.pulleys))
-    stiffness, tension = belt.contact_stiffness, install(drive).tension
+    stiffness, tension = belt.contact_stiffness, drive.tension_at_rest
     losses = compression_loss(tension, belt.bending_stiffness, stiffness, belt.compression_loss_factor, drive.radii)
     return np.asarray(losses * np.array([pulley.side == "inside" for pulley in drive.pulleys]))

@@ -45,12 +45,14 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
 
     coordinates = layout.coordinates | {name: arrays[name] for name in TIMES}
     variables = {name: variable for name, variable in layout.recorded.items() if name in VARIABLES}
-    dataset = xr.Dataset(
-        {name: (variable.dims, arrays[name], variable.attributes) for name, variable in variables.items()},
+    own = {name: (variable.dims, arrays[name], variable.attributes) for name, variable in variables.items()}
+    position = VARIABLES["node_position"]
+    places = arrays["nodal_coordinates"][..., : len(AXIS_NAMES)]
+    return xr.Dataset(
+        own | {"node_position": (position.dims, places, position.attributes)},
         {name: (COORDINATES[name].dims, coordinates[name], COORDINATES[name].attributes) for name in coordinates},
         dict(attributes),
     )
-    return _with_parts(dataset)
 
 
 def open_dataset(path: Path) -> "xr.Dataset":

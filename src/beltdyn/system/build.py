@@ -10,15 +10,11 @@ from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw
 from beltdyn.contact.normal import NoPull
 from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
-from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
 from beltdyn.model.hysteresis import (
-    KEPT_OVER_TIME,
-    OVER_TIME,
     Passing,
-    bending_at_points,
     passing_strains,
     rolling_resistances,
 )
@@ -27,15 +23,12 @@ from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES
 from beltdyn.quadrature import Quadrature, gauss_points, lobatto_points
 from beltdyn.records import records
-from beltdyn.system.arrays import BODY, Supports, System
+from beltdyn.system.arrays import Supports, System
 from beltdyn.system.build_machines import body_arrays, machine_arrays, pulley_arrays
 from beltdyn.system.discretization import discretize
-from beltdyn.system.frame import Travelling, flowing, staying
+from beltdyn.system.frame import Travelling
 from beltdyn.system.hysteresis import hysteresis_rows
 from beltdyn.system.weight import weight_forces
-
-_STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
-"""Gauss points of an element that stays, for elastic forces and for contact."""
 
 Closure = Literal["shared_node", "multipliers", "open"]
 """How the ends of a belt meet: at one node (Eq. 27), by Lagrange multipliers (Eq. 25), or not at all."""
@@ -55,87 +48,11 @@ def drive_system(drive: Drive) -> System:
         Its belt, with its ends or closed as ``drive.simulation.joint`` says, and its pulleys.
     """
     belt, contact = drive.completed.belt, drive.completed.contact
-    return _system_of(drive, belt, contact, "open" if drive.ends else drive.simulation.joint, **_at_ends(drive))
+    return system_of(drive, belt, contact, "open" if drive.ends else drive.simulation.joint, **_at_ends(drive))
 
 
-def staying_system(drive: Drive, lengths: FloatArray) -> System:
-    """Arrays of a drive with a closed belt on a mesh that stays, of quintic elements with hysteresis of their own.
-
-    Parameters
-    ----------
-    drive
-        A checked drive.
-    lengths : ndarray, shape (elements,)
-        Reference lengths of the elements, m.
-
-    Returns
-    -------
-    System
-        With a belt that does not flow.
-    """
-    given = drive.completed.belt
-    belt = given.replace(
-        discretization=QUINTIC.name,
-        elements=lengths.size,
-        integration="full",
-        quadrature_points=_STAYING_ELASTIC,
-        bending_loss_factor=0.0,
-    )
-    contact = drive.completed.contact.replace(
-        sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT
-    )
-    system = _system_of(drive, belt, contact, "shared_node", lengths=lengths)
-    element = system.element
-    if given.bending_loss_factor > 0.0:
-        modulus, length = bending_at_points(drive)
-        section = element.section._replace(bending_hysteresis=modulus, passing_length=length)
-        element = Quintic(section, element.elastic)
-    return system._replace(element=element, frame=staying(system.control, system.length, belt.mass_per_length))
-
-
-def smoothed_over_time(system: System) -> System:
-    """The same belt on a mesh that stays, with the hysteresis of bending that runs over time can afford.
-
-    Parameters
-    ----------
-    system
-        From `staying_system`.
-    """
-    element = system.element
-    if not isinstance(element, Quintic):
-        return system
-    section = element.section._replace(
-        bending_hysteresis=element.section.bending_hysteresis / KEPT_OVER_TIME,
-        passing_length=element.section.passing_length * OVER_TIME,
-    )
-    return system._replace(element=Quintic(section, element.elastic))
-
-
-def flowing_system(system: System, direction: FloatArray) -> System:
-    """The same drive for equations over time: how much belt has passed is a coordinate before those of tensioners.
-
-    Parameters
-    ----------
-    system
-        From `staying_system`.
-    direction : ndarray, shape (2,)
-        Unit vector along the belt at node 0.
-
-    Returns
-    -------
-    System
-        The unknown of its flow is the last of the border.
-    """
-    at = system.bodies.size - system.tensioners.size
-    last = int(np.max(system.bodies.unknown, initial=-1)) + 1
-    own = records(BODY, inertia=[0.0], kinetic=[0.0], unknown=[last], reach=[1.0])
-    frame = flowing(system.frame, system.mass, system.vectors, system.first_body + at, direction)
-    bodies = np.concatenate([system.bodies[:at], own, system.bodies[at:]]).view(np.recarray)
-    return system._replace(bodies=bodies, frame=frame)
-
-
-def _system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:
-    """Arrays of a drive with a belt and a contact in place of its own."""
+def system_of(drive: Drive, belt: Belt, contact: Contact, closure: Closure, **more: Any) -> System:
+    """Arrays of a drive with a belt and a contact in place of its own; further arguments as for `belt_system`."""
     completed = drive.completed
     return belt_system(
         belt,
@@ -235,7 +152,7 @@ def belt_system(
     resistances = np.zeros(len(pulleys)) if rolling is None else rolling
     shafts = pulley_arrays(pulleys, radii, frictions, resistances, machines.tensioners)
     bodies = body_arrays(pulleys, radii, tensioners)
-    supports = _supports(nodes, len(mesh.scale), fixed, forces, moments)
+    supports = nodal_supports(nodes, len(mesh.scale), fixed, forces, moments)
     return System(
         nodes=nodes,
         closed=closure == "shared_node",
@@ -319,7 +236,7 @@ def _attach(mass: FloatArray, attached: Sequence[tuple[int, float]]) -> None:
             mass[end, row, row] += value
 
 
-def _supports(
+def nodal_supports(
     nodes: int,
     dof: int,
     fixed: Sequence[tuple[int, int]],

@@ -1,10 +1,11 @@
 """Points of the centreline of a belt at any place along it."""
 
+from functools import cache
 from math import comb
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.system.arrays import System
 from beltdyn.system.discretization import curve_lengths
 
@@ -31,21 +32,40 @@ def centreline_points(
     lengths = curve_lengths(system)
     ends = np.cumsum(lengths)
     curve = np.minimum(np.searchsorted(ends, along, side="right"), lengths.size - 1)
-    length = lengths[curve]
-    xi = (along - (ends - lengths)[curve]) / length
-    curves = system.control.shape[1]
-    element = curve // curves
-    nodes = position[: system.first_body].reshape(system.nodes, -1)
-    both = np.concatenate([nodes[element], nodes[(element + 1) % system.nodes]], axis=1)
-    vectors = both[:, np.add.outer(np.array(system.vectors), np.arange(2))]
-    points = system.control[element, curve % curves] @ vectors
+    xi = (along - (ends - lengths)[curve]) / lengths[curve]
+    points = _control_points(system, position)
     degree = points.shape[1] - 1
-    first = degree * np.diff(points, axis=1) / length[:, None, None]
-    second = (degree - 1) * np.diff(first, axis=1) / length[:, None, None]
-    place, slope, bend = (np.einsum("ka,kax->kx", _bernstein(xi, p.shape[1] - 1), p) for p in (points, first, second))
+    first = degree * np.diff(points, axis=1) / lengths[:, None, None]
+    second = (degree - 1) * np.diff(first, axis=1) / lengths[:, None, None]
+    powers = np.vander(xi, degree + 1, increasing=True)
+    place, slope, bend = (_on_curves(powers, p, curve) for p in (points, first, second))
     return place, slope, bend
 
 
-def _bernstein(xi: FloatArray, degree: int) -> FloatArray:
-    """Bernstein polynomials, shape (k, degree + 1)."""
-    return np.stack([comb(degree, k) * xi**k * (1.0 - xi) ** (degree - k) for k in range(degree + 1)], axis=1)
+def _control_points(system: System, position: FloatArray) -> FloatArray:
+    """Control points of the Bezier curves of a belt, shape (curves, degree + 1, 2), m."""
+    nodes = position[: system.first_body].reshape(system.nodes, -1)
+    after = np.arange(1, system.length.size + 1) % system.nodes
+    both = np.concatenate([nodes[: system.length.size], nodes[after]], axis=1)
+    vectors = both[:, np.add.outer(np.array(system.vectors), np.arange(2))]
+    points = system.control @ vectors[:, None]
+    return np.asarray(points.reshape(-1, *points.shape[2:]))
+
+
+def _on_curves(powers: FloatArray, points: FloatArray, curve: IntArray) -> FloatArray:
+    """Points (k, 2) of Bezier curves, from powers of xi (k, at least degree + 1) and the curves that they are on."""
+    count = points.shape[1]
+    coefficients = _polynomials(count - 1) @ points
+    return np.asarray(np.einsum("ka,kax->kx", powers[:, :count], coefficients[curve]))
+
+
+@cache
+def _polynomials(degree: int) -> FloatArray:
+    """Coefficients by powers of xi of the Bernstein polynomials, shape (degree + 1, degree + 1), a column of each."""
+    return np.array(
+        [
+            [(-1.0) ** (power - k) * comb(degree, k) * comb(degree - k, power - k) if k <= power else 0.0]
+            for power in range(degree + 1)
+            for k in range(degree + 1)
+        ]
+    ).reshape(degree + 1, degree + 1)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import bisect
+from scipy.optimize import brentq
 
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.kernel import interpreted
@@ -153,7 +153,7 @@ def guess_hubs(system: System, velocity: FloatArray) -> None:
             return float(driven + torque(system.profiles, system.shaft_loads, p, 0.0, 0.0, part * rim, states).torque)
 
         if balance(1.0) != 0.0 and balance(0.0) * balance(1.0) <= 0.0:
-            velocity[first + link.back] = rim * bisect(balance, 0.0, 1.0)
+            velocity[first + link.back] = rim * brentq(balance, 0.0, 1.0)
 
 
 def own_torque(system: System, state: State, pulley: int, speed: float) -> float:

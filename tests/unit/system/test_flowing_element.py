@@ -16,7 +16,8 @@ from beltdyn.model.graded_mesh import Laid
 from beltdyn.solve.rest.staying import laid_state
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
-from beltdyn.system.build import belt_system, flowing_system, staying_system
+from beltdyn.system.build import belt_system
+from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import Travelling, staying
 from beltdyn.system.motion import new_equations, no_multipliers

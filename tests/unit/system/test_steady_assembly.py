@@ -12,7 +12,8 @@ from beltdyn.model.graded_mesh import Laid
 from beltdyn.solve.rest.staying import anchor_at, laid_state
 from beltdyn.solve.steady_running.newton import SteadyWork, steady_work
 from beltdyn.system.arrays import System
-from beltdyn.system.build import belt_system, staying_system
+from beltdyn.system.build import belt_system
+from beltdyn.system.build_staying import staying_system
 from beltdyn.system.constant_drive import constant_drive, drive_shafts, with_speeds_unknown
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.frame import staying

@@ -14,7 +14,7 @@ from beltdyn.solve.rest.installation import STARTS, drawn_in, follow, looked_at,
 from beltdyn.solve.rest.static import only_tensioners
 from beltdyn.solve.steady_running.newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System
-from beltdyn.system.build import staying_system
+from beltdyn.system.build_staying import staying_system
 from beltdyn.system.centreline import centreline_points
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates

@@ -16,7 +16,7 @@ from beltdyn.solve.steady import require_steady
 from beltdyn.solve.steady_running.refinement import errors_at_rest
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.build import flowing_system, smoothed_over_time
+from beltdyn.system.build_staying import flowing_system, smoothed_over_time
 from beltdyn.system.state import State
 
 

@@ -13,7 +13,6 @@ from beltdyn.model.graded_mesh import graded_mesh
 from beltdyn.solve.rest.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.build import staying_system
 from beltdyn.system.centreline import centreline_points
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
@@ -129,16 +128,16 @@ def is_fine(errors: Mapping[str, float], tolerance: float) -> bool:
     return errors["peak pressure"] <= tolerance and errors["tension"] <= _OF_TENSION * tolerance
 
 
-def _mesh(drive: Drive, now: Solution, rule: MeshRule) -> System:
-    """A mesh by a rule, with nodes where the belt touches and slides as it does now."""
+def _mesh(drive: Drive, now: Solution, rule: MeshRule) -> FloatArray:
+    """Lengths of elements by a rule, m, with nodes where the belt touches and slides as it does now."""
     length = drive.belt_length
     if rule.elements:
         count = round(rule.elements * rule.fineness)
-        return staying_system(drive, np.full(count, length / count))
+        return np.full(count, length / count)
     kinks = _kinks(now)
     arcs = found_arcs(now.system, now.state)
     within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
-    return staying_system(drive, graded_mesh(length, within, rule.layer, rule.fineness))
+    return graded_mesh(length, within, rule.layer, rule.fineness)
 
 
 def _kinks(now: Solution) -> list[float]:
@@ -193,18 +192,17 @@ def errors_at_rest(rest: Standing) -> dict[str, float]:
 
 def _differences(before: Solution, after: Solution) -> dict[str, float]:
     """Differences of two solutions, relative."""
-    peaks, means = [0.0], [0.0]
-    for arc in found_arcs(after.system, after.state):
-        along = np.linspace(arc.start, arc.end, _POINTS)
-        one, other = (np.maximum(_depth(solution, along), 0.0) for solution in (before, after))
-        peaks.append(float(np.max(np.abs(other - one)) / np.max(other)))
-        means.append(float(abs(np.sum(other - one)) / np.sum(other)))
+    arcs = found_arcs(after.system, after.state)
+    along = np.concatenate([np.linspace(arc.start, arc.end, _POINTS) for arc in arcs] or [np.zeros(0)])
+    one, other = (np.maximum(_depth(solution, along), 0.0).reshape(-1, _POINTS) for solution in (before, after))
+    peaks = np.max(np.abs(other - one), axis=1) / np.max(other, axis=1)
+    means = np.abs(np.sum(other - one, axis=1)) / np.sum(other, axis=1)
     slip = float(np.max(np.abs(after.slips - before.slips)))
     tensions, other = after.seen.span_tension[0], before.seen.span_tension[0]
     return {
         "tension": float(np.max(np.abs(tensions - other)) / np.max(np.abs(tensions))),
-        "mean pressure": max(means),
-        "peak pressure": max(peaks),
+        "mean pressure": float(np.max(means, initial=0.0)),
+        "peak pressure": float(np.max(peaks, initial=0.0)),
         "slip": slip / max(_LEAST_SLIP, float(np.max(np.abs(after.slips)))),
     }
 

@@ -4,7 +4,7 @@ A belt of which every point slides leaves the speeds of pulleys open, so that fr
 under a small part of the loads.  Each way is gone in as long steps as Newton's method takes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from beltdyn.solve.steady_running.continuation import go_on
 from beltdyn.solve.steady_running.newton import FOUND, find_steady, steady_work
 from beltdyn.solve.steady_running.slip_limit import slips_through
 from beltdyn.system.arrays import System
+from beltdyn.system.build_staying import on_other_mesh
 from beltdyn.system.constant_drive import (
     constant_drive,
     drive_shafts,
@@ -73,14 +74,10 @@ class SteadySearch:
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
         self._moments = np.zeros(system.pulleys.size)
-        self._work_on(system)
-
-    def _work_on(self, system: System) -> None:
-        """Take a mesh."""
-        self.constant, self._tensioners = constant_drive(system, self._time), system.tensioners
+        self.constant, self._tensioners = constant_drive(system, time), system.tensioners
         self._wanted = self.constant.profiles.segment.offset.copy()
         self._prescribed = self.constant.bodies.unknown[self.constant.pulleys.shaft] < 0
-        self._hold(self._held)
+        self._hold(None)
 
     def _hold(self, pulley: int | None) -> None:
         """Hold the shaft of a pulley at a speed, or none beyond those that are prescribed."""
@@ -135,24 +132,30 @@ class SteadySearch:
         if driver is not None:
             self._release(driver)
 
-    def move_to(self, system: System) -> None:
+    def move_to(self, lengths: FloatArray) -> None:
         """Go on to another mesh of the same drive.
 
         A small element has little between damping in proportion to the rate of its stretch and full hysteresis, and the
         rate of a transferred curve is far off there. So damping comes first.
+
+        Parameters
+        ----------
+        lengths : ndarray, shape (elements,)
+            Reference lengths of its elements, m.
 
         Raises
         ------
         ConvergenceError
             If nothing is found there.
         """
-        self.state = transfer(self.constant, self.state, system)
-        self._work_on(system)
+        other = on_other_mesh(self.drive, self.constant, lengths)
+        self.state, self.constant = transfer(self.constant, self.state, other), other
+        self._hold(self._held)
         target = self.setting
         soft = target._replace(stretch_length=_SOFT)
-        if not (self._try(soft) and self._reach(target) if system.hysteresis.size else self._try(target)):
+        if not (self._try(soft) and self._reach(target) if other.hysteresis.size else self._try(target)):
             raise ConvergenceError(
-                f"steady running is found with fewer elements, but not with the {system.nodes} that force_tolerance "
+                f"steady running is found with fewer elements, but not with the {other.nodes} that force_tolerance "
                 "asks for. Raise force_tolerance, such as to 0.05."
             )
 
@@ -174,11 +177,14 @@ class SteadySearch:
         """
         found, count = dict[str, FloatArray](), self.constant.tensioners.size
         here, ends = self.state.position[-count:].copy(), list[tuple[FloatArray, FloatArray]]()
-        for name, sense in (("tensioning", -1.0), ("yielding", 1.0)):
-            push, mark = sense * dry_friction_of(self._tensioners, f"{name}_friction"), f"tensioner_factor_after_{name}"
-            if not np.any(push):
-                continue
-            way = self._pushed_by_tangent(push)
+        given = {
+            name: sense * dry_friction_of(self._tensioners, f"{name}_friction")
+            for name, sense in (("tensioning", -1.0), ("yielding", 1.0))
+        }
+        pushes = {name: push for name, push in given.items() if np.any(push)}
+        ways = self._pushed_by_tangent(pushes.values()) if pushes else []
+        for (name, push), way in zip(pushes.items(), ways, strict=True):
+            mark = f"tensioner_factor_after_{name}"
             factor = None if known is None or mark not in known else np.atleast_1d(known[mark])
             if factor is None:
                 end = self._pushed(push, ends)
@@ -210,16 +216,18 @@ class SteadySearch:
         self._place(begin)
         return end
 
-    def _pushed_by_tangent(self, push: FloatArray) -> FloatArray:
+    def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
         """By how much tensioners move where they are pushed, N or N m, to first order, m or rad."""
-        system, matrix = self._at(self.setting), self._work.equations.matrix
+        system, matrix, found = self._at(self.setting), self._work.equations.matrix, list[FloatArray]()
         anchor = anchor_at(system, self.state, False)
         find_steady(system, self.state.at(0.0), anchor, 0.0, 0, self._work)
-        clear(matrix, False)
-        unknown = system.bodies.unknown[-push.size :]
-        matrix.border_side[unknown] = push
-        substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
-        return np.asarray(self._work.ahead_border[unknown])
+        unknown = system.bodies.unknown[-system.tensioners.size :]
+        for push in pushes:
+            clear(matrix, False)
+            matrix.border_side[unknown] = push
+            substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
+            found.append(self._work.ahead_border[unknown])
+        return found
 
     def _unknowns(self) -> FloatArray:
         """All that steady running consists of, as one vector: position, velocity, speed of the belt."""

@@ -19,7 +19,8 @@ from beltdyn.solve.steady_running.flowing_start import with_passage
 from beltdyn.solve.steady_running.neighbour import search_from
 from beltdyn.solve.vibration.vibrations import Vibrations
 from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system, flowing_system
+from beltdyn.system.build import drive_system
+from beltdyn.system.build_staying import flowing_system
 from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at

@@ -12,7 +12,7 @@ from beltdyn.model.graded_mesh import Laid
 from beltdyn.solve.rest import staying
 from beltdyn.solve.rest.staying import bring_to_stand, carried, found_arcs, stand, stand_like, transfer
 from beltdyn.solve.steady_running.newton import find_steady
-from beltdyn.system.build import staying_system
+from beltdyn.system.build_staying import staying_system
 from beltdyn.system.centreline import centreline_points
 
 

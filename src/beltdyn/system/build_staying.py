@@ -1,0 +1,129 @@
+"""Arrays of a drive on a mesh that stays: quintic elements, contact at many points, and the frame of the mesh."""
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.elements.quintic import QUINTIC, Quintic
+from beltdyn.model import Belt, Drive
+from beltdyn.model.hysteresis import KEPT_OVER_TIME, OVER_TIME, bending_at_points, passing_strains
+from beltdyn.records import records
+from beltdyn.system.arrays import BODY, System
+from beltdyn.system.build import nodal_supports, system_of
+from beltdyn.system.discretization import discretize
+from beltdyn.system.frame import flowing, staying
+from beltdyn.system.hysteresis import hysteresis_rows
+from beltdyn.system.weight import weight_forces
+
+_STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
+"""Gauss points of an element that stays, for elastic forces and for contact."""
+
+
+def staying_system(drive: Drive, lengths: FloatArray) -> System:
+    """Arrays of a drive with a closed belt on a mesh that stays, of quintic elements with hysteresis of their own.
+
+    Parameters
+    ----------
+    drive
+        A checked drive.
+    lengths : ndarray, shape (elements,)
+        Reference lengths of the elements, m.
+
+    Returns
+    -------
+    System
+        With a belt that does not flow.
+    """
+    given, belt = drive.completed.belt, _staying_belt(drive, lengths.size)
+    contact = drive.completed.contact.replace(
+        sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT
+    )
+    system = system_of(drive, belt, contact, "shared_node", lengths=lengths)
+    element = system.element
+    if given.bending_loss_factor > 0.0:
+        modulus, length = bending_at_points(drive)
+        section = element.section._replace(bending_hysteresis=modulus, passing_length=length)
+        element = Quintic(section, element.elastic)
+    return system._replace(element=element, frame=staying(system.control, system.length, belt.mass_per_length))
+
+
+def on_other_mesh(drive: Drive, system: System, lengths: FloatArray) -> System:
+    """The same arrays of a drive with a belt on another mesh that stays.
+
+    Parameters
+    ----------
+    drive
+        The drive.
+    system
+        From `staying_system`.
+    lengths : ndarray, shape (elements,)
+        Reference lengths of the elements, m.
+
+    Returns
+    -------
+    System
+        With the machines of the other one, and a belt that does not flow.
+    """
+    belt = _staying_belt(drive, lengths.size)
+    mesh = discretize(belt, lengths)
+    passing = passing_strains(drive) if belt.has_hysteresis else None
+    supports = nodal_supports(lengths.size, len(mesh.scale), (), (), ())
+    return system._replace(
+        **mesh._asdict() | {"element": system.element},
+        nodes=lengths.size,
+        first_body=lengths.size * len(mesh.scale),
+        hysteresis=hysteresis_rows(belt, mesh.length, mesh.control, passing),
+        supports=supports._replace(force=weight_forces(mesh, lengths.size, drive.gravity)),
+        frame=staying(mesh.control, mesh.length, belt.mass_per_length),
+    )
+
+
+def _staying_belt(drive: Drive, elements: int) -> Belt:
+    """The belt of a drive on a mesh that stays; it has hysteresis of bending point by point, apart."""
+    return drive.completed.belt.replace(
+        discretization=QUINTIC.name,
+        elements=elements,
+        integration="full",
+        quadrature_points=_STAYING_ELASTIC,
+        bending_loss_factor=0.0,
+    )
+
+
+def smoothed_over_time(system: System) -> System:
+    """The same belt on a mesh that stays, with the hysteresis of bending that runs over time can afford.
+
+    Parameters
+    ----------
+    system
+        From `staying_system`.
+    """
+    element = system.element
+    if not isinstance(element, Quintic):
+        return system
+    section = element.section._replace(
+        bending_hysteresis=element.section.bending_hysteresis / KEPT_OVER_TIME,
+        passing_length=element.section.passing_length * OVER_TIME,
+    )
+    return system._replace(element=Quintic(section, element.elastic))
+
+
+def flowing_system(system: System, direction: FloatArray) -> System:
+    """The same drive for equations over time: how much belt has passed is a coordinate before those of tensioners.
+
+    Parameters
+    ----------
+    system
+        From `staying_system`.
+    direction : ndarray, shape (2,)
+        Unit vector along the belt at node 0.
+
+    Returns
+    -------
+    System
+        The unknown of its flow is the last of the border.
+    """
+    at = system.bodies.size - system.tensioners.size
+    last = int(np.max(system.bodies.unknown, initial=-1)) + 1
+    own = records(BODY, inertia=[0.0], kinetic=[0.0], unknown=[last], reach=[1.0])
+    frame = flowing(system.frame, system.mass, system.vectors, system.first_body + at, direction)
+    bodies = np.concatenate([system.bodies[:at], own, system.bodies[at:]]).view(np.recarray)
+    return system._replace(bodies=bodies, frame=frame)
