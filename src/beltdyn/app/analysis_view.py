@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import mkdtemp
+from typing import TYPE_CHECKING
 
 from nicegui import app, ui
 
@@ -12,6 +13,9 @@ from beltdyn.app.jobs import Job, Option, Outcome, offered, options_of
 from beltdyn.app.session import Session
 from beltdyn.app.sheet_view import show_parts
 from beltdyn.errors import ModelError
+
+if TYPE_CHECKING:
+    from beltdyn.app.watching import Glimpse
 
 _OFTEN = 0.25
 """Time between two looks at an analysis, s."""
@@ -24,13 +28,15 @@ class AnalysisView:
     Parameters
     ----------
     session : Session
-        The drive.
+        The drive, with the analyses of the tab.
+    watch : callable
+        Is given what a run looks like while it is computed, and None when there is nothing more to watch.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
-        self._job: Job | None = None
-        self._cards: list[tuple[ui.expansion, Outcome]] = []
+    def __init__(self, session: Session, watch: Callable[["Glimpse | None"], None]) -> None:
+        self._session, self._watch = session, watch
+        self._cards: list[ui.expansion] = []
+        self._seen: Glimpse | None = None
         names = offered()
         with ui.row().classes("w-full items-center gap-2 q-mt-md"):
             self._name = ui.select(
@@ -46,14 +52,17 @@ class AnalysisView:
         self._inputs: dict[Option, ui.input] = {}
         self._bar = ui.linear_progress(value=0.0, show_value=False).props('instant-feedback aria-label="progress"')
         self._state = ui.label().classes("text-caption").props('role="status"').mark("progress")
+        self._box = ui.column().classes("w-full gap-1 bd-tables").mark("watched")
         self._results = ui.column().classes("w-full gap-1")
-        self._timer = ui.timer(_OFTEN, self._look, active=False)
+        self._timer = ui.timer(_OFTEN, self._look, active=session.job is not None)
+        for name, outcome in reversed(session.outcomes):
+            self._show(name, outcome)
         self._ask_options()
         self.update()
 
     def update(self) -> None:
         """Bring what can be started in line with the drive."""
-        running = self._job is not None
+        running = self._session.job is not None
         self._start.set_enabled(self._session.draft.drive is not None and not running)
         self._cancel.set_visibility(running)
         self._bar.set_visibility(running)
@@ -73,7 +82,7 @@ class AnalysisView:
     def start(self) -> None:
         """Start the chosen analysis."""
         name, session = str(self._name.value), self._session
-        if self._job is not None or session.draft.drive is None:
+        if session.job is not None or session.draft.drive is None:
             return
         try:
             options = {
@@ -88,19 +97,19 @@ class AnalysisView:
             return
         folder = Path(mkdtemp(dir=session.workspace.results))
         result = ANALYSES[name].result_file(folder / Path(session.name or "drive.toml").name)
-        self._job = Job(name, session.document.text, session.workspace.folder.root, result, options)
-        session.workspace.jobs.add(self._job)
+        session.job = Job(name, session.document.text, session.workspace.folder.root, result, options)
+        session.workspace.jobs.add(session.job)
         self._timer.active = True
         self.update()
 
     def cancel(self) -> None:
         """End the analysis, and keep what was computed."""
-        if self._job is not None:
-            self._job.cancel()
+        if self._session.job is not None:
+            self._session.job.cancel()
             self._state.text = "ending …"
 
     def _look(self) -> None:
-        job = self._job
+        job = self._session.job
         if job is None:
             return
         job.poll()
@@ -109,28 +118,51 @@ class AnalysisView:
             self._bar.value = part
             left = "" if math.isnan(remaining) else f", about {remaining:.0f} s left"
             self._state.text = f"{job.name}: {phase}, {part:.0%}{left}"
+            self._show_glimpse(job.step.glimpse)
             return
-        self._job, self._timer.active, self._state.text = None, False, ""
+        self._session.job, self._timer.active, self._state.text = None, False, ""
         self._session.workspace.jobs.discard(job)
+        self._show_glimpse(None)
+        self._session.outcomes.insert(0, (job.name, job.outcome))
         self._show(job.name, job.outcome)
+        self._forget()
         self.update()
 
+    def _show_glimpse(self, glimpse: "Glimpse | None") -> None:
+        """Show a run as it stands: the belt on the canvas, numbers here."""
+        if glimpse is self._seen:
+            return
+        self._seen = glimpse
+        self._watch(glimpse)
+        self._box.clear()
+        if glimpse is not None:
+            with self._box:
+                low, high = glimpse.tension
+                ui.label(f"at {glimpse.time:.4g} s; belt tension {low:.1f} N (dark) to {high:.1f} N (bright)").classes(
+                    "text-caption"
+                )
+                show_parts((glimpse.pulleys,))
+
     def _show(self, name: str, outcome: Outcome) -> None:
-        for card, _ in self._cards:
-            card.value = False
+        for other in self._cards:
+            other.value = False
         with self._results:
             title = f"{name}: {outcome.status}"
             card = ui.expansion(title, value=True).classes("w-full").props("dense header-class=text-weight-medium")
             card.move(target_index=0)
             with card:
                 self._fill(outcome)
-        self._cards.insert(0, (card, outcome))
-        for old, gone in self._cards[_MOST_RESULTS:]:
+        self._cards.insert(0, card)
+
+    def _forget(self) -> None:
+        """Take the oldest results away, with their files."""
+        for old in self._cards[_MOST_RESULTS:]:
             old.delete()
+        for _, gone in self._session.outcomes[_MOST_RESULTS:]:
             for file in (gone.result, gone.report):
                 if file is not None:
                     file.unlink(missing_ok=True)
-        del self._cards[_MOST_RESULTS:]
+        del self._cards[_MOST_RESULTS:], self._session.outcomes[_MOST_RESULTS:]
 
     def _fill(self, outcome: Outcome) -> None:
         if outcome.error:

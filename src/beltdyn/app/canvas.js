@@ -15,7 +15,7 @@ export default {
       The server has ended, and this page with it. Start it anew: beltdyn app.
       <a :href="kept" :download="name">Keep the drive file</a>
     </div>
-    <svg ref="svg" class="bd-canvas" role="application" :viewBox="viewBox" preserveAspectRatio="xMidYMid meet"
+    <svg ref="svg" :class="['bd-canvas', { 'bd-watching': live }]" role="application" :viewBox="viewBox" preserveAspectRatio="xMidYMid meet"
          :aria-label="'Layout of the drive with ' + pulleys.length + ' pulleys. Tab reaches each pulley.'"
          @pointerdown="down($event, null)" @pointermove="moved" @pointerup="up" @pointercancel="up"
          @wheel.prevent="wheel" @dblclick="add">
@@ -25,6 +25,14 @@ export default {
       <circle v-for="(one, i) in scene.ghosts || []" :key="'g' + i" class="bd-ghost" :cx="one.x" :cy="one.y" :r="one.r" />
       <path v-if="scene.belt" :class="scene.valid ? 'bd-belt' : 'bd-belt bd-sketch'" :d="scene.belt"
             :stroke-width="Math.max(scene.thickness || 0, 3 * px)" />
+      <g v-if="live" class="bd-live">
+        <g v-for="(one, i) in live.pulleys" :key="'lp' + i">
+          <circle class="bd-rim" :cx="one.x" :cy="one.y" :r="one.r" />
+          <path class="bd-spoke" :d="spokes(one)" />
+        </g>
+        <path v-for="(one, i) in live.belt" :key="'lb' + i" :d="one.d" :stroke="one.color" fill="none" stroke-linecap="round"
+              :stroke-width="Math.max(scene.thickness || 0, 4 * px)" />
+      </g>
       <g v-for="one in scene.tensioners || []" :key="'t' + one.number" class="bd-tensioner">
         <template v-if="one.pivot">
           <path class="bd-arm" :d="'M' + at('pivot', one).join(' ') + 'L' + one.x + ' ' + one.y" />
@@ -52,7 +60,8 @@ export default {
         <text class="bd-small" :x="one.x" :y="one.y + Math.min(0.35 * one.r, 12 * px) + 9 * px" :font-size="11 * px"
               text-anchor="middle">{{ one.wrap }}</text>
       </g>
-      <text v-for="(one, i) in scene.spans || []" :key="'s' + i" class="bd-small bd-span" :x="one.x" :y="one.y"
+      <text v-for="(one, i) in scene.spans || []" :key="'s' + i" class="bd-small bd-span"
+            :x="one.x + one.right * away(one)" :y="one.y + one.down * away(one) + 4 * px"
             :font-size="11 * px" text-anchor="middle">{{ one.label }}</text>
       <rect v-for="(end, i) in scene.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
             :width="10 * px" :height="10 * px" />
@@ -64,7 +73,7 @@ export default {
             text-anchor="middle">Double-click to place a pulley</text>
     </svg>
    </div>`,
-  props: { scene: Object, selected: Number, text: String, name: String },
+  props: { scene: Object, live: Object, selected: Number, text: String, name: String },
   data: () => ({
     view: { x: -250, y: -150, w: 500, h: 300 },
     size: { w: 800, h: 450 },
@@ -171,6 +180,16 @@ export default {
     arrow(one) {
       const [x, y] = this.tip(one);
       return `M${one.x} ${one.y}L${x} ${y}`;
+    },
+    away(one) { // of a length from its span: more beside an upright one, as text is wide
+      return (14 + 20 * Math.abs(one.right)) * this.px;
+    },
+    spokes(one) {
+      return [0, 120, 240].map((more) => {
+        const angle = ((one.angle + more) * Math.PI) / 180;
+        const [x, y] = [one.r * Math.cos(angle), one.r * Math.sin(angle)];
+        return `M${one.x + 0.3 * x} ${one.y + 0.3 * y}L${one.x + 0.85 * x} ${one.y + 0.85 * y}`;
+      }).join("");
     },
     cross(one) {
       const a = Math.min(0.15 * one.r, 6 * this.px);

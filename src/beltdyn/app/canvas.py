@@ -23,6 +23,7 @@ class Canvas(Element, component="canvas.js"):
         super().__init__()
         self._props["scene"] = {}
         self._props["selected"] = -1
+        self._props["live"] = None
         self.on("act", lambda event: on_act(_told(event)))
         self.on("choose", lambda event: on_choose(_told(event).get("number")))
 
@@ -34,6 +35,11 @@ class Canvas(Element, component="canvas.js"):
         """Show a scene, with a pulley marked."""
         self._props["scene"] = dict(scene)
         self._props["selected"] = -1 if selected is None else selected
+        self.update()
+
+    def watch(self, drawn: Mapping[str, Any] | None) -> None:
+        """Show a run at one instant in place of the belt at rest, as `Glimpse.drawn` says; None ends that."""
+        self._props["live"] = drawn
         self.update()
 
     def fit(self) -> None:

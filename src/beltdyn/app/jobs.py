@@ -1,8 +1,11 @@
 """Analyses that take their time: each in a process of its own, with progress, which can be cancelled."""
 
+import math
 import multiprocessing
 import os
 import signal
+import threading
+import time
 from collections.abc import Mapping
 from functools import cache
 from inspect import Parameter, signature
@@ -10,7 +13,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
 from types import UnionType
-from typing import Any, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 from beltdyn.analyses import ANALYSES
 from beltdyn.app.computing import prepare
@@ -19,17 +22,35 @@ from beltdyn.model import loads
 from beltdyn.parts.error_location import shorten
 from beltdyn.results.sheet_parts import Facts, Table
 
+if TYPE_CHECKING:
+    from beltdyn.app.watching import Glimpse
+
 _GRACE = 5.0
 """Time that a cancelled analysis has to close its file, s."""
+_OFTEN = 0.1
+"""Time between two steps that are told, s."""
 _SHARED = ("output", "progress", "overwrite", "start")
 
 
 class Step(NamedTuple):
-    """How far an analysis has come: the part that is done (0 to 1), what it is at, and the seconds left (or NaN)."""
+    """How far an analysis has come.
+
+    Attributes
+    ----------
+    part : float
+        The part that is done, 0 to 1.
+    phase : str
+        What it is at.
+    remaining : float
+        Seconds left, or NaN.
+    glimpse : Glimpse or None
+        A run as it stood when it was looked at last.
+    """
 
     part: float
     phase: str
     remaining: float
+    glimpse: "Glimpse | None" = None
 
 
 class Outcome(NamedTuple):
@@ -155,24 +176,26 @@ class Job:
         self.name = name
         self.step = Step(0.0, "starting", float("nan"))
         self.outcome: Outcome | None = None
+        self._ending: Outcome | None = None
         self._process.start()
         told.close()
+        self._listener = threading.Thread(target=self._listen, daemon=True)
+        self._listener.start()
 
     def poll(self) -> None:
         """Take in what the process has told."""
-        if self.outcome is not None:
-            return
-        try:
-            while self.outcome is None and self._heard.poll():
-                said = self._heard.recv()
-                if isinstance(said, Step):
-                    self.step = said
-                else:
-                    self.outcome = said
-        except (EOFError, OSError):
-            self.outcome = Outcome("failed", "the process that computes has ended unexpectedly, as for want of memory.")
-        if self.outcome is not None:
+        if self.outcome is None and self._ending is not None:
+            self.outcome = self._ending
             self.close()
+
+    def _listen(self) -> None:
+        """Hear what the process tells, at once, so that it never waits for the page."""
+        try:
+            while isinstance(said := self._heard.recv(), Step):
+                self.step = said
+            self._ending = said
+        except (EOFError, OSError):
+            self._ending = Outcome("failed", "the process that computes has ended unexpectedly, as for want of memory.")
 
     def cancel(self) -> None:
         """End it, and keep what was computed."""
@@ -185,6 +208,7 @@ class Job:
         if self._process.is_alive():
             self._process.kill()
             self._process.join()
+        self._listener.join(_GRACE)
         self._heard.close()
         if self.outcome is None:
             self.outcome = Outcome("interrupted")
@@ -198,8 +222,10 @@ def _analyse(
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+    teller = _Teller(told, result)
+
     def heed(progress: Any) -> None:
-        told.send(Step(progress.time / progress.duration, progress.phase, progress.remaining))
+        teller.tell(progress)
         if stop.is_set():
             raise KeyboardInterrupt
 
@@ -211,6 +237,33 @@ def _analyse(
     except BeltdynError as error:
         told.send(Outcome("failed", str(error)))
     told.close()
+
+
+class _Teller:
+    """Tells how far an analysis is, now and then, with a glimpse of what grows over time."""
+
+    def __init__(self, told: Connection, result: Path) -> None:
+        self._told, self._result = told, result
+        self._watcher: Any = None
+        self._glimpse: Glimpse | None = None
+        self._last = -math.inf
+
+    def tell(self, progress: Any) -> None:
+        """Tell of progress, and look at a run."""
+        now = time.perf_counter()
+        if now - self._last < _OFTEN:
+            return
+        self._last = now
+        if progress.phase == "integrating":
+            self._look()
+        part = progress.time / progress.duration
+        self._told.send(Step(part, progress.phase, progress.remaining, self._glimpse))
+
+    def _look(self) -> None:
+        from beltdyn.app.watching import Watcher  # loads the library of figures
+
+        self._watcher = self._watcher or Watcher(self._result)
+        self._glimpse = self._watcher.look() or self._glimpse
 
 
 def _outcome(found: Any, result: Path) -> Outcome:

@@ -150,12 +150,16 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
 
 
 def _spans(path: Path) -> list[dict[str, Any]]:
-    """Middles and lengths of spans."""
-    middles = path.span_points.mean(axis=1).tolist()
-    spans = zip(middles, path.span_lengths.tolist(), strict=True)
+    """Middles of spans, the directions in which there is room for their lengths, and the lengths."""
+    middles, middle = path.span_points.mean(axis=1), path.centers.mean(axis=0)
+    along = np.diff(path.span_points, axis=1)[:, 0]
+    normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
+    outward = np.where(np.sum(normals * (middles - middle), axis=1, keepdims=True) < 0.0, -normals, normals)
     return [
-        dict(zip(("x", "y", "label"), (*_place(*middle), f"{_written(length)}"), strict=True))
-        for middle, length in spans
+        {"x": x, "y": y, "right": right, "down": -up, "label": _written(length)}
+        for (x, y), (right, up), length in zip(
+            (_place(*one) for one in middles.tolist()), outward.tolist(), path.span_lengths.tolist(), strict=True
+        )
     ]
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from beltdyn.app import placing
 from beltdyn.app.document import Document
 from beltdyn.app.draft import Draft, draft
+from beltdyn.app.jobs import Job, Outcome
 from beltdyn.app.scene import groups
 from beltdyn.app.workspace import EMPTY, Workspace
 from beltdyn.errors import ModelError
@@ -38,6 +39,13 @@ class Session:
     ----------
     workspace : Workspace
         The folder, and the drive file to begin with.
+
+    Attributes
+    ----------
+    job : Job or None
+        The analysis that is computed.
+    outcomes : list of (str, Outcome)
+        Analyses that have ended, by their names, the latest first.
     """
 
     def __init__(self, workspace: Workspace) -> None:
@@ -45,6 +53,8 @@ class Session:
         self.name: str | None = None
         self.document = Document(EMPTY)
         self.selected: int | None = None
+        self.job: Job | None = None
+        self.outcomes: list[tuple[str, Outcome]] = []
         self._known: tuple[str, Draft] | None = None
 
     @property

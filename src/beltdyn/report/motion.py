@@ -43,7 +43,7 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
     times = run.dataset["field_time"].values
     count = min(len(times), max(_FRAMES // runs, _FEWEST))
     chosen = times[np.unique(np.linspace(0, len(times) - 1, count).round().astype(int))]
-    pictures = [_along_belt(run, run.fields_at(time)) for time in chosen]
+    pictures = [along_belt(run, run.fields_at(time)) for time in chosen]
     place, tension, pressure = (np.stack(one) for one in zip(*pictures, strict=True))
     fields = run.dataset[["pulley_angle", "pulley_speed", "pulley_center"]].sel(time=chosen)
     extent = extent_of(run.drive, run.drive.path)
@@ -68,8 +68,25 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
     }
 
 
-def _along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Places (points, 2), tensions and contact pressures at points evenly along the belt, from one fixed place on."""
+def along_belt(run: Run, instant: xr.Dataset) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points evenly along the belt at one instant, from one fixed place on.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    instant : xarray.Dataset
+        What `Run.fields_at` gives.
+
+    Returns
+    -------
+    places : ndarray, shape (points, 2)
+        m; of a belt with ends the last one is its end, of a closed belt the first one is not repeated.
+    tension : ndarray, shape (points,)
+        N.
+    pressure : ndarray, shape (points,)
+        Normal force, N/m.
+    """
     drive = run.drive
     lengths = element_lengths(run.dataset, drive.belt_length)
     curves = centerline(recorded_kind(run.dataset, drive), instant["nodal_coordinates"].values, lengths, _SMOOTH + 1)
