@@ -114,11 +114,11 @@ class AnalysisView:
             return
         job.poll()
         if job.outcome is None:
-            part, phase, remaining = job.step
+            part, phase, remaining, glimpse = job.step
             self._bar.value = part
             left = "" if math.isnan(remaining) else f", about {remaining:.0f} s left"
             self._state.text = f"{job.name}: {phase}, {part:.0%}{left}"
-            self._show_glimpse(job.step.glimpse)
+            self._show_glimpse(glimpse)
             return
         self._session.job, self._timer.active, self._state.text = None, False, ""
         self._session.workspace.jobs.discard(job)

@@ -1,10 +1,13 @@
 """The canvas in the browser: shows a scene, and tells what is done on it."""
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
+
+if TYPE_CHECKING:
+    from beltdyn.app.watching import Glimpse
 
 
 class Canvas(Element, component="canvas.js"):
@@ -37,9 +40,9 @@ class Canvas(Element, component="canvas.js"):
         self._props["selected"] = -1 if selected is None else selected
         self.update()
 
-    def watch(self, drawn: Mapping[str, Any] | None) -> None:
-        """Show a run at one instant in place of the belt at rest, as `Glimpse.drawn` says; None ends that."""
-        self._props["live"] = drawn
+    def watch(self, seen: "Glimpse | None") -> None:
+        """Show a run at one instant in place of the belt at rest, or the drive again with None."""
+        self._props["live"] = None if seen is None else seen.drawn
         self.update()
 
     def fit(self) -> None:

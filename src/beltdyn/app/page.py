@@ -77,9 +77,7 @@ class Page:
                 self._build_toolbar()
                 self._canvas = Canvas(self.act, self.choose)
                 self._messages = ui.column().classes("w-full gap-0").props('role="status" aria-live="polite"')
-                self._analyses = AnalysisView(
-                    self.session, lambda seen: self._canvas.watch(None if seen is None else seen.drawn)
-                )
+                self._analyses = AnalysisView(self.session, self._canvas.watch)
                 self._numbers = NumbersView(self.session, self.session.workspace.calculator)
             with ui.element("div").classes("bd-right"):
                 self._build_forms()

@@ -1,6 +1,7 @@
 """A run as it stands while it is computed: the belt in colour, the pulleys where they are, and numbers."""
 
 import time
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -60,7 +61,7 @@ class Watcher:
         self._seen = -1.0
 
     def look(self) -> Glimpse | None:
-        """Give the latest instant at which fields along the belt are known; nothing if it is too early, or none is new."""
+        """Give the latest instant with fields along the belt; nothing if it is too early, or none is new."""
         begun = time.perf_counter()
         if begun < self._next or not self._result.exists():
             return None
@@ -97,7 +98,7 @@ def _pieces(places: Any, shares: Any) -> list[dict[str, str]]:
             "d": "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in drawn[first : last + 1]),
             "color": to_hex(colors(float(shares[first:last].mean()))),
         }
-        for first, last in zip(bounds, bounds[1:], strict=False)
+        for first, last in pairwise(bounds)
         if last > first
     ]
 

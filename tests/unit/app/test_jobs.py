@@ -57,7 +57,11 @@ def test_a_run_that_is_cancelled_keeps_what_was_computed(drive_text: str, tmp_pa
     while job.outcome is None and job.step.phase != "integrating":
         time.sleep(0.05)
         job.poll()
-    time.sleep(0.2)
+    while job.outcome is None and job.step.glimpse is None:
+        time.sleep(0.05)
+        job.poll()
+    assert job.step.glimpse is not None  # it is watched while it runs
+    assert job.step.glimpse.time > 0.0
     job.cancel()
     outcome = ended(job)
     assert (outcome.status, outcome.error) == ("interrupted", "")
