@@ -19,11 +19,12 @@ if TYPE_CHECKING:
 _MOTION = ("pulley_speed", "pulley_angle", "friction_force", "slip_velocity")
 """What is zero at rest, and figures of a drive at one instant look at."""
 
-_OWN = {
+OWN = {
     "belt_length": Variable((), "m", "Unstretched length of the belt"),
     "tension": Variable((), "N", "Mean tension of the spans"),
     "hub_load": Variable(("pulley",), "N", "Hub load"),
 }
+"""What a drive at rest has beside the variables of a run."""
 
 
 class StaticResult(Result):
@@ -74,7 +75,7 @@ def static_result(run: "Run") -> StaticResult:
         if variable.at_rest and name in instant
     }
     own = (run.drive.belt_length, float(instant["span_tension"].mean()), np.linalg.norm(instant["hub_force"], axis=1))
-    variables = {name: (_OWN[name], values) for name, values in zip(_OWN, own, strict=True)} | seen
+    variables = {name: (OWN[name], values) for name, values in zip(OWN, own, strict=True)} | seen
     used = {dim for variable, _ in variables.values() for dim in variable.dims}
     coordinates = {
         name: (variable, instant[name].values)

@@ -1,8 +1,9 @@
-"""An analysis: how steady running changes with the numbers of the drive file.
+"""An analysis: how steady running, or the drive at rest, and its modes change with the numbers of the drive file.
 
-Each number is changed a little up and down, and Newton's method follows from the steady state at hand, on the same
-mesh: its first step is the linear change of the implicit function theorem, du = -(dF/du)^-1 (dF/dp) dp, and those
-after it take the rest.  Where a tension at rest is asked for, the length of the belt, or the take-up, follows.
+Each number is changed a little up and down, and Newton's method follows from the state at hand, on the same mesh: its
+first step is the linear change of the implicit function theorem, du = -(dF/du)^-1 (dF/dp) dp, and those after it take
+the rest.  Where a tension at rest is asked for, the length of the belt, or the take-up, follows.  Modes are followed by
+their shapes, with right and left eigenvectors (`state_modes`).
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,14 +18,19 @@ from beltdyn.model import Drive
 from beltdyn.parts.error_location import entry_name
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
-from beltdyn.results import Result, Run, Variable, build_result
+from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.schema import AXIS_NAMES
+from beltdyn.solve.modes import REST, STEADY
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import bring_to_stand
-from beltdyn.solve.steady import steady_on_mesh, steady_state
-from beltdyn.solve.studies.named_results import listed, names_in, unit_of, values_of
+from beltdyn.solve.steady import steady_state
+from beltdyn.solve.studies.found_state import FoundState, Resting, Running
+from beltdyn.solve.studies.named_results import listed, names_in, names_of, unit_of
 from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.sweep import without_schedules
+
+_USUAL = {STEADY: "efficiency, least_slip_safety, largest_tension", REST: "tension, hub_load"}
+"""Results that are looked at where none are named."""
 
 _PART = 0.01
 """Of a number, for which effects are told."""
@@ -32,7 +38,7 @@ _MOVE = 1e-3
 """Of a coordinate, whose zero is a matter of convention, for which effects are told, m."""
 _COORDINATES = ("center", "pivot", "point")
 _KEPT = ("simulation", "steady", "limits", "contact.stiffness", "contact.damping")
-"""Where numbers stand that have no effect on steady running, or are those of the method."""
+"""Where numbers stand that have no effect on a state that stays, or are those of the method."""
 _SWITCHES = ("schedule",)
 """Keys of what lies between 0 and 1."""
 
@@ -50,13 +56,14 @@ class Number(NamedTuple):
 def sensitivity(
     drive: Drive,
     *,
-    of: str = "efficiency, least_slip_safety, largest_tension",
+    of: str | None = None,
     numbers: str | None = None,
+    about: str = STEADY,
     at: float | None = None,
     force_tolerance: float | None = None,
     progress: Report | None = None,
 ) -> Result:
-    """Find how results of steady running change with the numbers of the drive file.
+    """Find how results of steady running, or at rest, change with the numbers of the drive file.
 
     Effects are those of 1 % more of a number, and of 1 mm more of a coordinate of a center or pivot. An installed
     tension that the file asks for is kept: the length of the belt follows, or the take-up where that is given.
@@ -67,10 +74,15 @@ def sensitivity(
         The drive.
     of
         Results, with commas between, such as "efficiency, pulley_slip[driven], hub_load": variables of a map, and in
-        brackets the pulley, span, tensioner or cause of one. "all" takes all of them.
+        brackets the pulley, span, tensioner or cause of one. Results of modes are "frequency[SPAN]" and
+        "damping_ratio[SPAN]", of the lowest mode in which the span swings most, and "mode_frequency[NUMBER]" and
+        "mode_damping_ratio[NUMBER]". "all" takes all of them. By default efficiency, slip safety and tension; at rest
+        tension and hub loads.
     numbers
         Paths of numbers, with commas between, such as "belt.width, pulley[driven].radius". By default all numbers that
         the drive has at that instant, but for zeros.
+    about
+        "steady" or "rest".
     at
         At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
     force_tolerance
@@ -89,9 +101,9 @@ def sensitivity(
     Raises
     ------
     ModelError
-        If a name is not known, or the drive cannot run steadily.
+        If a name is not known, a result has no value, or the drive cannot run steadily.
     ConvergenceError
-        If there is no steady running.
+        If there is no such state.
 
     Examples
     --------
@@ -99,22 +111,43 @@ def sensitivity(
     >>> found.dataset.effect.dims
     ('result', 'number')
     """
+    if about not in _USUAL:
+        raise ModelError(f'about = {about!r} is no state. Give "{STEADY}" or "{REST}".')
     given = without_schedules(drive, drive.simulation.duration if at is None else at)[0]
-    chosen = _chosen(given, numbers)
+    chosen, wanted = _chosen(given, numbers), names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about])
     rest = bring_to_stand(given)
-    run = steady_state(rest.drive, force_tolerance=force_tolerance)
-    values = values_of(run)
-    wanted = {name: values[name] for name in names_in(values, of)}
+    state = Resting(rest) if about == REST else Running(steady_state(rest.drive, force_tolerance=force_tolerance))
+    values = _values(state, wanted)
     changes = SmallChanges(given, rest)
-    derivatives, warnings = np.full((len(wanted), len(chosen)), np.nan), list(run.warnings)
+    derivatives, warnings = np.full((len(values), len(chosen)), np.nan), _warnings(state, list(values))
     for place, number in enumerate(chosen):
         if progress is not None:
             progress(Progress(place, float(len(chosen)), 0.0, place, "operating points"))
         try:
-            derivatives[:, place] = _derivatives(changes, run, number, list(wanted))
+            derivatives[:, place] = _derivatives(changes, state, number, list(values))
         except (ConvergenceError, ModelError) as error:
             warnings.append(f"no derivative with respect to {number.path}: {error}")
-    return _result(drive, wanted, chosen, derivatives, warnings)
+    return _result(drive, values, chosen, derivatives, warnings)
+
+
+def _values(state: FoundState, names: Sequence[str]) -> dict[str, float]:
+    """Results that have a value."""
+    values = {name: state.value(name) for name in names}
+    found = {name: value for name, value in values.items() if np.isfinite(value)}
+    if not found:
+        raise ModelError(f"{', '.join(names)} has no value in this state of the drive. Ask for another result.")
+    return found
+
+
+def _warnings(state: FoundState, names: Sequence[str]) -> list[str]:
+    """What is to be known of a state and of derivatives."""
+    found, shared = list(state.run.warnings) if isinstance(state, Running) else [], state.shared_modes(names)
+    if shared:
+        found.append(
+            f"{', '.join(shared)}: other modes have the same frequency, and mix with it freely. Derivatives are those "
+            "of their mean."
+        )
+    return found
 
 
 def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
@@ -162,15 +195,15 @@ def _chosen(drive: Drive, numbers: str | None) -> list[Number]:
     return [known[path] for path in wanted]
 
 
-def _derivatives(changes: SmallChanges, run: Run, number: Number, names: Sequence[str]) -> FloatArray:
-    """Derivatives of results with respect to a number, by central differences of the steady states."""
+def _derivatives(changes: SmallChanges, state: FoundState, number: Number, names: Sequence[str]) -> FloatArray:
+    """Derivatives of results with respect to a number, by central differences of the states."""
     change = CHANGE * number.step / _PART
 
-    def at(value: float) -> dict[str, float]:
-        return values_of(steady_on_mesh(changes.drive(number.path, value), run))
+    def at(value: float) -> FloatArray:
+        beside = state.neighbour(changes.drive(number.path, value))
+        return np.array([beside.value(name) for name in names])
 
-    up, down = at(number.value + change), at(number.value - change)
-    return np.array([(up[name] - down[name]) / (2.0 * change) for name in names])
+    return np.asarray((at(number.value + change) - at(number.value - change)) / (2.0 * change))
 
 
 def _result(

@@ -89,6 +89,39 @@ def test_the_largest_effect_comes_first(found: Result) -> None:
     np.testing.assert_allclose(found.dataset["relative_pulley_slip[driven]"], 100.0 * slip.effect / slip.value)
 
 
+@pytest.fixture(scope="module")
+def at_rest(loaded: Drive) -> Result:
+    of = "tension, belt_length, hub_load, frequency, mode_frequency, mode_damping_ratio[1]"
+    return sensitivity(loaded, of=of, numbers="belt.installed_tension, belt.youngs_modulus", about="rest")
+
+
+def test_at_rest_the_tension_is_the_one_that_is_asked_for(at_rest: Result) -> None:
+    assert derivative(at_rest, "tension", "belt.installed_tension") == pytest.approx(1.0, rel=1e-6)
+    bending = 1e-5  # of a thick belt, at the ends of its arcs
+    assert derivative(at_rest, "hub_load[driven]", "belt.installed_tension") == pytest.approx(2.0, rel=bending)
+    assert derivative(at_rest, "tension", "belt.youngs_modulus") == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_stiffer_belt_of_the_same_tension_is_longer(at_rest: Result, loaded: Drive) -> None:
+    """L = path / (1 + T / EA), within the depth of contact, which changes the path's length with the tension alone."""
+    stiffness, modulus = loaded.belt.axial_stiffness, float(loaded.belt.youngs_modulus or 0.0)
+    strain = TENSION / stiffness
+    expected = loaded.path.length * strain / modulus / (1.0 + strain) ** 2
+    assert derivative(at_rest, "belt_length", "belt.youngs_modulus") == pytest.approx(expected, rel=1e-3)
+
+
+def test_spans_swing_with_the_root_of_the_tension(at_rest: Result) -> None:
+    """Half of the tension's change, within bending stiffness, and what the shorter belt has less mass in the span."""
+    for name in (*(f"frequency[{span}]" for span in SPANS), "mode_frequency[6]"):
+        effect, value = (at_rest.dataset[what].sel(result=name) for what in ("effect", "value"))
+        assert float(effect.sel(number="belt.installed_tension") / value) == pytest.approx(0.005, rel=0.1)
+
+
+def test_results_without_a_value_are_told(loaded: Drive) -> None:
+    with pytest.raises(ModelError, match="mesh_error has no value"):
+        sensitivity(loaded, of="mesh_error", numbers="belt.width")
+
+
 def test_numbers_of_a_drive(loaded: Drive) -> None:
     paths = {one.path: one for one in numbers_of(loaded)}
     assert {"belt.installed_tension", "contact.friction", "pulley[driven].center[2]"} <= paths.keys()
@@ -101,6 +134,8 @@ def test_numbers_of_a_drive(loaded: Drive) -> None:
     ("options", "said"),
     [
         ({"of": "efficency"}, "efficiency"),
+        ({"of": "efficiency", "about": "rest"}, "efficiency"),
+        ({"about": "standing"}, 'Give "steady" or "rest"'),
         ({"numbers": "belt.widht"}, "belt.width"),
     ],
 )

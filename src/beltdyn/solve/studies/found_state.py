@@ -1,35 +1,39 @@
 """A drive in steady running, or at rest, and its results by name, modes among them."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results import Run
-from beltdyn.solve.modes import modes_about
 from beltdyn.solve.rest.installation import looked_at
 from beltdyn.solve.rest.staying import Standing, stand_like
 from beltdyn.solve.steady import steady_on_mesh
 from beltdyn.solve.steady_running.operating_points import labels_of
-from beltdyn.solve.studies.named_results import OF_MODES, values_of
+from beltdyn.solve.studies.named_results import MODES, OF_MODES, values_of
+from beltdyn.solve.studies.state_modes import FollowedModes, FoundModes, Mode, StateModes
 from beltdyn.solve.vibration.small_motions import SmallMotions, about_standing, about_steady
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-_MODES = 12
-"""How many modes are looked for at first."""
 _MOST_MODES = 200
 _SPAN = 0.4
 """Share of a span in the kinetic energy of a mode with which it swings most; of two spans alike each has half."""
 
 
 class FoundState(ABC):
-    """A drive in a state that stays."""
+    """A drive in a state that stays.
+
+    Parameters
+    ----------
+    near
+        The state from whose neighbourhood it is, where it was found as a `neighbour`: its modes are followed from
+        there.
+    """
+
+    def __init__(self, near: "FoundState | None") -> None:
+        self._near = near
 
     @property
     @abstractmethod
@@ -67,44 +71,67 @@ class FoundState(ABC):
         Parameters
         ----------
         name
-            Such as "hub_load[driven]", or "frequency[a-b]" of a span.
+            Such as "hub_load[driven]", "frequency[a-b]" of a span, or "mode_frequency[2]".
         """
         variable, _, label = name.removesuffix("]").partition("[")
-        if variable in OF_MODES:
-            return self._of_span(label)[list(OF_MODES).index(variable)]
-        return float(self.values.get(name, np.nan))
+        if variable not in OF_MODES:
+            return float(self.values.get(name, np.nan))
+        mode = self._mode_of(variable, label)
+        if mode is None:
+            return np.nan
+        return mode.frequency if variable.endswith("frequency") else mode.damping_ratio
+
+    def shared_modes(self, names: Sequence[str]) -> list[str]:
+        """Names of results of modes that share their eigenvalue with others, so that their derivatives are means.
+
+        Parameters
+        ----------
+        names
+            Of results.
+        """
+        found = list[str]()
+        for name in names:
+            variable, _, label = name.removesuffix("]").partition("[")
+            mode = self._mode_of(variable, label) if variable in OF_MODES else None
+            if mode is not None and mode.alike > 1:
+                found.append(name)
+        return found
 
     def modes_up_to(self, frequency: float) -> tuple[FloatArray, list[str]]:
         """Frequencies (Hz) and kinds of its modes, at least up to a frequency if there are so many."""
-        count = _MODES
+        count = MODES
         while True:
-            found = self._modes(count)
-            frequencies, kinds = found["frequency"].values, [str(kind) for kind in found["kind"].values]
-            if frequencies.max() > frequency or frequencies.size < count or count >= _MOST_MODES:
-                return frequencies, kinds
+            found = self._first(count)
+            if max(mode.frequency for mode in found) > frequency or len(found) < count or count >= _MOST_MODES:
+                return np.array([mode.frequency for mode in found]), [mode.kind for mode in found]
             count *= 2
 
-    def _of_span(self, span: str) -> tuple[float, float]:
-        """Frequency and damping ratio of the lowest mode in which a span swings most."""
-        count = _MODES
+    def _mode_of(self, variable: str, label: str) -> Mode | None:
+        """The mode of which a variable of `OF_MODES` is."""
+        if OF_MODES[variable].dims == ("span",):
+            return self._mode_of_span(label)
+        found, number = self._first(MODES), int(label)
+        return found[number - 1] if number <= len(found) else None
+
+    def _mode_of_span(self, span: str) -> Mode | None:
+        """The lowest mode in which a span swings most."""
+        place, count = labels_of(self.drive)["span"].index(span), MODES
         while True:
-            found = self._modes(count)
-            swings = np.flatnonzero(found["span_share"].sel(span=span).values >= _SPAN)
-            if swings.size:
-                mode = found.isel(mode=swings[int(np.argmin(found["frequency"].values[swings]))])
-                return float(mode["frequency"]), float(mode["damping_ratio"])
-            if found.sizes["mode"] < count or count >= _MOST_MODES:
-                return np.nan, np.nan
+            found = self._first(count)
+            swings = [mode for mode in found if mode.span_share[place] >= _SPAN]
+            if swings:
+                return min(swings, key=lambda mode: mode.frequency)
+            if len(found) < count or count >= _MOST_MODES:
+                return None
             count *= 2
 
-    def _modes(self, count: int) -> "xr.Dataset":
-        if count not in self._known:
-            self._known[count] = modes_about(self.motions, count).dataset
-        return self._known[count]
+    def _first(self, count: int) -> list[Mode]:
+        return self._modes.first(count)
 
     @cached_property
-    def _known(self) -> "dict[int, xr.Dataset]":
-        return {}
+    def _modes(self) -> StateModes:
+        base = None if self._near is None else self._near._modes
+        return FollowedModes(base, self.motions) if isinstance(base, FoundModes) else FoundModes(self.motions)
 
 
 class Running(FoundState):
@@ -114,9 +141,12 @@ class Running(FoundState):
     ----------
     run
         From `steady_state`.
+    near
+        As for `FoundState`.
     """
 
-    def __init__(self, run: Run) -> None:
+    def __init__(self, run: Run, near: FoundState | None = None) -> None:
+        super().__init__(near)
         self.run = run
 
     @property
@@ -136,7 +166,7 @@ class Running(FoundState):
 
     def neighbour(self, drive: Drive) -> FoundState:
         """The steady running of a drive that differs a little, on the same mesh."""
-        return Running(steady_on_mesh(drive, self.run))
+        return Running(steady_on_mesh(drive, self.run), self)
 
 
 class Resting(FoundState):
@@ -146,9 +176,12 @@ class Resting(FoundState):
     ----------
     rest
         From `bring_to_stand`.
+    near
+        As for `FoundState`.
     """
 
-    def __init__(self, rest: Standing) -> None:
+    def __init__(self, rest: Standing, near: FoundState | None = None) -> None:
+        super().__init__(near)
         self.rest = rest
 
     @property
@@ -158,7 +191,7 @@ class Resting(FoundState):
 
     @cached_property
     def values(self) -> Mapping[str, float]:
-        """Its tensions, hub loads and tensioners by name."""
+        """Its belt's length, tensions, hub loads, wrap angles and tensioners by name."""
         rest, labels = self.rest, labels_of(self.rest.drive)
         there = looked_at(rest.drive, rest.system, rest.state).installation
         found = {
@@ -172,7 +205,12 @@ class Resting(FoundState):
             for name, (of, values) in found.items()
             for label, value in zip(labels[of], values, strict=True)
         }
-        return named | {"largest_tension": float(there.span_tensions.max())}
+        whole = {
+            "belt_length": self.drive.belt_length,
+            "tension": rest.tension,
+            "largest_tension": float(there.span_tensions.max()),
+        }
+        return named | whole
 
     @cached_property
     def motions(self) -> SmallMotions:
@@ -181,4 +219,4 @@ class Resting(FoundState):
 
     def neighbour(self, drive: Drive) -> FoundState:
         """The rest of a drive that differs a little, on the same mesh."""
-        return Resting(stand_like(drive, self.rest))
+        return Resting(stand_like(drive, self.rest), self)

@@ -1,4 +1,4 @@
-"""Results of steady running by name, such as "efficiency" and "pulley_slip[driven]"."""
+"""Results of steady running and at rest by name, such as "pulley_slip[driven]" and "mode_frequency[2]"."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,13 +8,24 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Run, Variable, summarize
+from beltdyn.results.static import OWN
 from beltdyn.solve.steady_running.operating_points import VARIABLES, labels_of, values_by_name
+from beltdyn.solve.vibration.small_motions import dry_tensioners
+
+MODES = 12
+"""Modes that have names by their numbers; as many more with stuck tensioners, if dry friction may hold some."""
 
 OF_MODES = {
     "frequency": Variable(("span",), "Hz", "Lowest frequency of the modes in which the span swings most"),
     "damping_ratio": Variable(("span",), "1", "Damping ratio of that mode"),
+    "mode_frequency": Variable(("mode",), "Hz", "Frequency of the mode of that number"),
+    "mode_damping_ratio": Variable(("mode",), "1", "Damping ratio of the mode of that number"),
 }
-"""Results of modes that have names; those of one kind are by numbers."""
+"""Results of modes, in steady running and at rest."""
+
+AT_REST = {name: VARIABLES[name] for name in ("largest_tension", "wrap_angle", "span_tension", "tensioner_position")}
+AT_REST |= OWN
+"""Results of a drive at rest."""
 
 
 def listed(text: str) -> list[str]:
@@ -41,19 +52,26 @@ def values_of(run: Run) -> dict[str, float]:
     return found
 
 
-def names_of(drive: Drive) -> list[str]:
-    """Names of the scalar results of a drive in steady running, and of its modes; of some there may be no value.
+def names_of(drive: Drive, *, at_rest: bool = False) -> list[str]:
+    """Names of the scalar results of a drive, and of its modes; of some there may be no value.
 
     Parameters
     ----------
     drive
         The drive.
+    at_rest
+        Whether results are those at rest, in place of steady running.
     """
-    labels, found = labels_of(drive), list[str]()
-    for name, variable in (VARIABLES | OF_MODES).items():
+    labels, found = labels_of(drive) | {"mode": _numbers_of_modes(drive)}, list[str]()
+    for name, variable in ((AT_REST if at_rest else VARIABLES) | OF_MODES).items():
         if variable.dtype != "str" and len(variable.dims) < 2:
             found += [f"{name}[{label}]" for label in labels[variable.dims[0]]] if variable.dims else [name]
     return found
+
+
+def _numbers_of_modes(drive: Drive) -> list[str]:
+    """Numbers of modes, as `beltdyn modes` gives them."""
+    return [str(one + 1) for one in range(MODES * (2 if dry_tensioners(drive).size else 1))]
 
 
 def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of") -> list[str]:
@@ -80,7 +98,7 @@ def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of
         named = [name for name in known if wanted in (name, name.partition("[")[0])]
         if not named:
             names = known if "[" in wanted else dict.fromkeys(name.partition("[")[0] for name in known)
-            raise ModelError(f"{key} = {wanted!r} is no result of steady running. {suggest(wanted, list(names))}")
+            raise ModelError(f"{key} = {wanted!r} is no result that has a number. {suggest(wanted, list(names))}")
         found += named
     return list(dict.fromkeys(found))
 
@@ -96,7 +114,7 @@ def unit_of(name: str, drive: Drive) -> str:
         The drive, whose tensioners move along a line or turn.
     """
     variable, _, label = name.removesuffix("]").partition("[")
-    unit = (VARIABLES | OF_MODES)[variable].units
+    unit = (VARIABLES | AT_REST | OF_MODES)[variable].units
     if unit == "m or rad":
         turning = {one.pulley: one.turns for one in drive.moving_tensioners}
         unit = "rad" if turning.get(label, all(turning.values())) else "m"

@@ -41,7 +41,6 @@ _VARIABLES = {
     "worst": Variable(_REQUIREMENT, VARIOUS, "Best"),
     "requirement_unit": Variable(_REQUIREMENT, "1", "Unit", "str"),
     "worst_at": Variable(_REQUIREMENT, "1", "At", "str"),
-    "derivatives_by": Variable(_REQUIREMENT, "1", "Derivatives by", "str"),
     "design_number": Variable((*_DESIGN, "number"), "1", "Number of the design, in its unit"),
     "design_goal": Variable(_DESIGN, VARIOUS, "Goal of the design"),
     "design_violation": Variable(_DESIGN, "1", "By how much the design violates limits, over the limit"),
@@ -204,7 +203,6 @@ class History:
             "worst": [value for value, _ in after],
             "requirement_unit": [one.unit for one in firsts],
             "worst_at": [where for _, where in after],
-            "derivatives_by": [one.derivative for one in firsts],
         }
 
     def _worst(self, values: FloatArray, group: Sequence[Limit]) -> tuple[float, str]:

@@ -28,8 +28,6 @@ class Watched:
     read: Callable[[FoundState], float]
     at: FloatArray
     """1 at the operating points at which it counts, 0 at others."""
-    derivative: str = "implicit function theorem"
-    """How its derivatives are found."""
 
 
 def named(name: str, drive: Drive, count: int) -> Watched:
@@ -81,9 +79,7 @@ def distance_from_order(order: Order, drive: Drive, points: Sequence[OperatingPo
         counted = frequencies[[kind in order.kinds for kind in kinds]]
         return float(np.min(np.maximum(counted / high - 1.0, 1.0 - counted / low), initial=np.inf))
 
-    return Watched(
-        f"modes from order {order.order:g} of {name}", "", read, inside.astype(float), "differences of modes"
-    )
+    return Watched(f"modes from order {order.order:g} of {name}", "", read, inside.astype(float))
 
 
 def clearance(one: Obstacle, count: int) -> Watched:
