@@ -129,7 +129,7 @@ def test_another_drive_file_is_not_replaced(loaded: Drive, tmp_path: Path) -> No
         ({"number": [FREE | {"largest": "9 m"}]}, "must be in units of N"),
         ({"number": [FREE | {"largest": 100.0}]}, "least = 200 is not below largest = 100"),
         ({"number": [FREE | {"largest": 300.0}]}, "the drive file has 600, which is not between"),
-        ({"goal": {"result": "hub_laod"}}, "goal.result = 'hub_laod' is no result of steady running. Did you mean"),
+        ({"goal": {"result": "hub_laod"}}, "goal.result = 'hub_laod' is no result that has a number. Did you mean"),
         ({"requirement": [SAFE | {"result": "safety"}]}, r"requirement\[1\].result = 'safety'"),
         (
             {"requirement": [{"result": "hub_load", "at_most": "3 m"}]},
