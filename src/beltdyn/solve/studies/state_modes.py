@@ -161,7 +161,7 @@ class _Lowest:
         """Eigenvalues of a state nearby, 1/s; those that are alike change by their mean."""
         found = self._values.copy()
         for group in self._groups:
-            ahead = group.left.conj().T @ (_dynamic_stiffness(motions, group.value) @ group.right)
+            ahead = _projected(group.left, _dynamic_stiffness(motions, group.value), group.right)
             change = np.trace(np.linalg.solve(group.slope, ahead - group.here)) / len(group.members)
             found[group.members] -= change
         return [complex(value) for value in found]
@@ -173,9 +173,9 @@ class _Lowest:
     def _group(self, members: Sequence[int]) -> _Group:
         value, right = complex(np.mean(self._values[members])), self._vectors[:, members]
         left = _left_eigenvectors(_dynamic_stiffness(self._motions, value * (1.0 + _BESIDE)), len(members))
-        here = left.conj().T @ (_dynamic_stiffness(self._motions, value) @ right)
-        slope = self._motions.damping @ right + 2.0 * value * (self._motions.mass @ right)
-        return _Group(members, value, right, left, here, left.conj().T @ slope)
+        here = _projected(left, _dynamic_stiffness(self._motions, value), right)
+        slope = _projected(left, self._motions.damping + 2.0 * value * self._motions.mass, right)
+        return _Group(members, value, right, left, here, slope)
 
 
 def _alike(values: ComplexArray) -> list[list[int]]:
@@ -192,7 +192,13 @@ def _alike(values: ComplexArray) -> list[list[int]]:
 
 def _dynamic_stiffness(motions: SmallMotions, value: complex) -> "csc_array":
     """K + s C + s^2 M."""
-    return motions.stiffness + value * motions.damping + value**2 * motions.mass
+    found: csc_array = motions.stiffness + value * motions.damping + value**2 * motions.mass
+    return found
+
+
+def _projected(left: ComplexArray, matrix: "csc_array", right: ComplexArray) -> ComplexArray:
+    """Y* A X."""
+    return np.asarray(left.conj().T @ np.asarray(matrix @ right), complex)
 
 
 def _left_eigenvectors(matrix: "csc_array", count: int) -> ComplexArray:
