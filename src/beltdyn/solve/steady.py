@@ -40,9 +40,9 @@ def steady_state(
 ) -> Run:
     """Find the steady running of a drive, without a simulation over time.
 
-    Speeds, torques and schedules are taken at one instant and held; harmonics, and whatever else changes with the
-    angles of shafts, are left out. The mesh is one of its own, graded towards the ends of arcs, and refined until
-    contact forces no longer depend on it.
+    Speeds, torques and schedules are taken at one instant and held; harmonics of speeds are left out, and loads that
+    change with the angles of shafts are taken by their means. The mesh is one of its own, graded towards the ends of
+    arcs, and refined until contact forces no longer depend on it.
 
     Parameters
     ----------
@@ -216,12 +216,12 @@ def require_steady(drive: Drive) -> None:
             f"{', '.join(shaped)} is no smooth circle, so that nothing is steady around it. Simulate the drive with "
             "`beltdyn run`, or remove `surface`."
         )
-    other = [(pulley.name, load.kind) for pulley in drive.pulleys for load in pulley.load if not load.of_speed_alone]
+    other = [(pulley.name, load.kind) for pulley in drive.pulleys for load in pulley.load if not load.has_mean]
     if other:
         raise ModelError(
-            f'{other[0][0]} has a load of kind "{other[0][1]}", whose torque does not depend on the speed alone, as '
-            "steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor as "
-            "`speed`, or simulate the drive with `beltdyn run`."
+            f'{other[0][0]} has a load of kind "{other[0][1]}", of which no mean over the angle is known, '
+            "as steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor "
+            "as `speed`, or simulate the drive with `beltdyn run`."
         )
 
 

@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.kernel import interpreted
 from beltdyn.machines.links.registry import link_torque
-from beltdyn.machines.loads.shaft import shaft_torque
+from beltdyn.machines.loads.shaft import mean_loads, shaft_torque
 from beltdyn.machines.profiles.functions import PROFILE, profile_value
 from beltdyn.machines.profiles.profile import SEGMENT
 from beltdyn.records import Records, records
@@ -22,7 +22,8 @@ _OF_MOTION = ("damping", "tensioning_friction", "yielding_friction", "stop_dampi
 def constant_drive(system: System, time: float) -> System:
     """Hold everything that changes over time or with the angle of a shaft.
 
-    Harmonics are left out, and so is what acts on a tensioner only while it moves. Each load has a schedule of its own.
+    Loads are taken by their means over the angle, and what acts on a tensioner only while it moves is left out. Each
+    load has a schedule of its own.
 
     Parameters
     ----------
@@ -31,12 +32,11 @@ def constant_drive(system: System, time: float) -> System:
     time
         At which speeds, torques and schedules are taken, s.
     """
-    loads, profiles = system.shaft_loads, system.profiles
+    loads, profiles = mean_loads(system.shaft_loads), system.profiles
     values = [interpreted(profile_value)(profiles, number, time)[0] for number in range(len(profiles.table) - 1)]
     factors = [values[number] if number >= 0 else 1.0 for number in loads.table.schedule[:-1]]
     table = loads.table.copy()
     table["schedule"][:-1] = len(values) + np.arange(len(factors))
-    table["harmonic"] = 0
     held = np.array([*values, *factors])
     return system._replace(
         profiles=profiles._replace(

@@ -147,6 +147,19 @@ class _OverAngle(Load):
         nodes = np.stack([torques, by_angle, by_speed, by_both], axis=-1)
         return np.concatenate([angles, speeds, nodes.ravel()])
 
+    @staticmethod
+    def mean_numbers(constants: np.record, numbers: FloatArray) -> FloatArray:
+        """Its torque and slope over the speed by their means over a cycle, and none over the angle."""
+        angles, before = int(constants.angles), int(constants.angles + constants.speeds)
+        nodes, found = numbers[before:].reshape(angles, -1, 2, 2), numbers.copy()
+        step = np.diff(numbers[:angles])[:, None, None]
+        values, slopes = nodes[..., 0], nodes[..., 1]  # of the torque and of its slope over the speed
+        areas = 0.5 * step * (values[1:] + values[:-1]) - step**2 / 12.0 * np.diff(slopes, axis=0)
+        means = np.zeros_like(nodes)
+        means[..., 0] = areas.sum(axis=0) / constants.cycle
+        found[before:] = means.ravel()
+        return found
+
     @property
     def orders(self) -> Sequence[float]:
         """Those of its harmonics, of the cycle, and of the shortest distance between points as half a wave."""

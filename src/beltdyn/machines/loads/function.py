@@ -125,7 +125,7 @@ class FunctionLoad(Load):
         return [*super().orders, *([self.highest_order] if self.highest_order else [])]
 
     @property
-    def of_speed_alone(self) -> bool:
+    def has_mean(self) -> bool:
         """False: nobody knows what a function depends on."""
         return False
 

@@ -146,9 +146,26 @@ class Load(Part):
         return [wave.order for wave in self.harmonics]
 
     @property
-    def of_speed_alone(self) -> bool:
-        """Whether its torque depends, without factor and harmonics, on its command and the speed of the shaft alone."""
-        return self.state_lag is None and len(self.orders) == len(self.harmonics)
+    def has_mean(self) -> bool:
+        """Whether its mean over the angle depends, without factor, on its command and the speed of the shaft alone."""
+        return self.state_lag is None
+
+    @staticmethod
+    def mean_numbers(constants: np.record, numbers: FloatArray) -> FloatArray:
+        """Numbers with which its torque, without harmonics, is the mean over the angle; by default the same.
+
+        Parameters
+        ----------
+        constants
+            Those of a load of this kind.
+        numbers : ndarray, shape (n,)
+            Its numbers.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        return numbers
 
     @property
     def driven_speed(self) -> float:

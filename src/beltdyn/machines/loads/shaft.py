@@ -1,6 +1,7 @@
 """What loads and motors apply to a shaft, over time, speed and angle."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -51,6 +52,23 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
             row.state, first_state = first_state, first_state + 1
         fill(row[load.kind], load.values())
     return ShaftLoads(offsets(map(len, loads)), table, np.concatenate([np.zeros(0), *own]), harmonic)
+
+
+def mean_loads(loads: ShaftLoads) -> ShaftLoads:
+    """Loads by their means over the angles of shafts.
+
+    Parameters
+    ----------
+    loads
+        Of all pulleys.
+    """
+    table, numbers, kinds = loads.table.copy(), loads.numbers.copy(), list(KINDS.items())
+    for row, following in pairwise(loads.table):
+        name, kind = kinds[row.kind]
+        own = slice(row.number, following.number)
+        numbers[own] = kind.mean_numbers(row[name], numbers[own])
+    table["harmonic"] = 0
+    return loads._replace(table=table, numbers=numbers)
 
 
 @kernel
