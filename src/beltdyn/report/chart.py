@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 _BINS = 700
 """Parts of a line, of each of which least and largest values are kept."""
 _HEIGHT = 340
+_FEW_NAMES, _LINE = 4, 18
+"""Names of lines for which there is room, and height for each one more, as on a narrow screen each has a row."""
 _DASHES = {"-": "solid", "--": "dashed", ":": "dotted", "-.": "dashdot"}
 _FONT = "12px"
 
@@ -94,6 +96,7 @@ def _chart(ax: Axes) -> Any:
         legend = Legend(items=items, orientation="horizontal", ncols="auto", click_policy="hide")
         legend.update(background_fill_color=None, border_line_color=None, label_text_font_size=_FONT, padding=2)
         chart.add_layout(legend, "above")
+        chart.height = _HEIGHT + _LINE * max(len(named) - _FEW_NAMES, 0)
     return chart
 
 

@@ -46,3 +46,14 @@ def test_peaks_survive_thinning(bins: int) -> None:
 def test_few_points_stay() -> None:
     x, values = np.arange(5.0), np.arange(5.0)[:, None]
     assert thinned(x, values) == (x, values)
+
+
+def test_a_chart_with_many_names_is_higher_so_that_lines_have_room_below_them() -> None:
+    heights = []
+    for count in (3, 10):
+        figure = Figure()
+        ax = figure.subplots()
+        for number in range(count):
+            ax.plot([0.0, 1.0], [0.0, number], label=f"line {number}")
+        heights += [chart.height for chart in charts(figure)]
+    assert heights == [340, 340 + 6 * 18]
