@@ -38,7 +38,7 @@ def numbers_in(name: str, text: str, unit: str, count: int) -> FloatArray:
     ModelError
         If the text is neither, its unit is not known, or there are no different numbers.
     """
-    ranged, listed = _RANGE.fullmatch(text), _LIST.fullmatch(text)
+    ranged, listed = _RANGE.fullmatch(str(text)), _LIST.fullmatch(str(text))
     example = "700..6000 rpm" if unit == "rad/s" else f"0.2..1.2 {unit}".rstrip()
     if ranged is not None:
         if not 2 <= count <= _MOST:

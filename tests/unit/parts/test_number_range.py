@@ -33,6 +33,14 @@ def test_what_is_no_range(text: str, unit: str, words: str) -> None:
         numbers_in("speed", text, unit, 5)
 
 
+def test_numbers_that_are_no_text() -> None:
+    """The unit is not known."""
+    with pytest.raises(ModelError, match=r"speed = \[10\.0, 20\.0\] must be a range such as '700\.\.6000 rpm'"):
+        numbers_in("speed", [10.0, 20.0], "rad/s", 5)  # type: ignore[arg-type]
+    with pytest.raises(ModelError, match="has no unit"):
+        numbers_in("speed", 20.0, "rad/s", 5)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("count", [1, 10_001])
 def test_so_many_points(count: int) -> None:
     with pytest.raises(ModelError, match=f"{count} points of load"):
