@@ -30,6 +30,8 @@ _ENOUGH = 0.2
 _KINK = 0.1
 """Length of the elements at a kink, over the radius."""
 _SAMPLES = 400
+_MOST = 10_000
+"""Elements of a piece of belt, at most: a centre given in wrong units would ask for more than fit in memory."""
 
 
 class Arc(NamedTuple):
@@ -140,5 +142,7 @@ def _divide(
     passed = np.concatenate([[0.0], np.cumsum(0.5 * (1.0 / size[1:] + 1.0 / size[:-1]) * np.diff(place))])
     inner = [kink for kink in kinks if first < kink < length - first]
     marks = [0.0, *np.interp(inner, place, passed), passed[-1]]
-    nodes = [np.linspace(start, end, max(ceil(end - start), 1), endpoint=False) for start, end in pairwise(marks)]
+    nodes = [
+        np.linspace(start, end, max(ceil(min(end - start, _MOST)), 1), endpoint=False) for start, end in pairwise(marks)
+    ]
     return np.diff(np.interp(np.append(np.concatenate(nodes), passed[-1]), passed, place))

@@ -24,6 +24,12 @@ def test_nodes_stand_at_the_ends_of_arcs_where_elements_are_smallest() -> None:
         assert max(lengths[node - 1], lengths[node]) < 2.2 * LAYER
 
 
+def test_an_endless_belt_asks_for_a_bounded_number_of_elements() -> None:
+    """Such as that of a drive whose center was given in nanometres."""
+    arcs = [Arc(1e12, 1e12 + 0.3, 0.08), Arc(2e12, 2e12 + 0.3, 0.08)]
+    assert graded_mesh(3e12, arcs, LAYER).size < 100_000
+
+
 def test_nodes_stand_at_kinks_amid_small_elements() -> None:
     """Those within the first elements of an arc get none."""
     kinked = [ARCS[0]._replace(kinks=(0.181, 0.3)), ARCS[1]]

@@ -172,6 +172,17 @@ def test_vibrations_that_grow_are_said_to_take_the_power_of_contact_damping(
     assert finding.remedy == "Set contact.damping = 1e+03 N s/m^2, half of critical, in place of 10."
 
 
+def test_power_of_a_damping_beyond_half_of_critical_is_not_laid_to_vibrations(
+    turning: Callable[..., Run], run: Run
+) -> None:
+    """Any growth, such as that of a start, would hide it; and more damping would not steady anything."""
+    damped = turning(damping_loss=0.4 * run.dataset["pulley_angle"].values[:, 0])
+    drive = damped.drive.replace(contact=damped.drive.contact.arguments | {"damping": 1e5})
+    started = Run(damped.dataset.assign_attrs(flutter_growth=2.9e-4, flutter_frequency=1216.0), drive)
+    (finding,) = started.findings
+    assert finding.fault.startswith("the damping between belt and pulleys takes")
+
+
 def test_contact_damping_that_takes_power(turning: Callable[..., Run], run: Run) -> None:
     """Of 29.25 W put in 12 * 0.4 = 4.8 W, 16.4 %: a hundred and sixty times what the remedy leaves."""
     angle = run.dataset["pulley_angle"].values[:, 0]

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.checks.power import DAMPING_LIMIT, damping_share
+from beltdyn.results.checks.power import DAMPING_LIMIT, STEADYING, damping_share, may_flutter
 from beltdyn.results.recorded import attribute
 
 GROWTH_LIMIT = math.log(100.0)
@@ -30,13 +30,13 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
     if growth > GROWTH_LIMIT:
         factor = math.exp(min(growth, _LARGEST))
         fault = f"the belt may flutter where it slides: {between} could grow {factor:.1g} times."
-    elif growth > 0.0 and share > DAMPING_LIMIT:
+    elif share > DAMPING_LIMIT and may_flutter(evidence):
         fault = f"the belt flutters where it slides: {between} grow, and take {share:.1%} of the power."
     if fault:
         yield Finding(
             fault,
             f"Contact forces are uncertain then, and speeds and slip by as much as a run with simulation.rtol = "
             f"{drive.simulation.rtol / 10.0:g} changes them; real belts rarely flutter so.",
-            f"Set contact.damping = {0.5 * drive.critical_damping:.2g} N s/m^2, half of critical, in place of "
+            f"Set contact.damping = {STEADYING * drive.critical_damping:.2g} N s/m^2, half of critical, in place of "
             f"{drive.contact_damping:.2g}.",
         )

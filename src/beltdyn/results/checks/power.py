@@ -14,6 +14,9 @@ DAMPING_LIMIT = 0.01
 _DAMPING_GOAL = 1e-3
 """The same with the damping that the remedy names."""
 
+STEADYING = 0.5
+"""Contact damping over the critical one that steadies a belt where it slides."""
+
 GAIN_LIMIT = 1e-3
 """Largest power that a loss may give, over the power put in, without a warning."""
 
@@ -44,6 +47,16 @@ def damping_share(evidence: Evidence) -> float:
     return balance.losses["contact damping"] / balance.power_in if loaded else 0.0
 
 
+def may_flutter(evidence: Evidence) -> bool:
+    """Whether vibrations could grow where the belt slid, and more contact damping would steady them.
+
+    At half of the critical damping and beyond there is nothing to gain by more: what contact damping takes there is
+    its own loss, and no sign of vibrations.
+    """
+    growth = attribute(evidence.recorded, "flutter_growth", 0.0)
+    return growth > 0.0 and evidence.drive.contact_damping < STEADYING * evidence.drive.critical_damping
+
+
 def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     """Power that contact damping takes, which belongs to the numerical contact and not to a belt.
 
@@ -51,7 +64,7 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
     """
     balance, share = power_balance(evidence.recorded, evidence.window), damping_share(evidence)
     power, drive = balance.losses["contact damping"], evidence.drive
-    if share > DAMPING_LIMIT and not attribute(evidence.recorded, "flutter_growth", 0.0) > 0.0:
+    if share > DAMPING_LIMIT and not may_flutter(evidence):
         # beyond critical damping the loss no longer grows with the damping
         growing = min(drive.contact_damping, drive.critical_damping)
         yield Finding(
