@@ -106,6 +106,20 @@ def smoothed_over_time(system: System) -> System:
     return system._replace(element=Quintic(section, element.elastic))
 
 
+def without_hysteresis(system: System) -> System:
+    """The same drive with a belt that follows its strains without hysteresis.
+
+    Parameters
+    ----------
+    system
+        Any.
+    """
+    element = system.element
+    if isinstance(element, Quintic):
+        element = Quintic(element.section._replace(bending_hysteresis=0.0), element.elastic)
+    return system._replace(element=element, hysteresis=system.hysteresis[:0].view(np.recarray))
+
+
 def flowing_system(system: System, direction: FloatArray) -> System:
     """The same drive for equations over time: how much belt has passed is a coordinate before those of tensioners.
 

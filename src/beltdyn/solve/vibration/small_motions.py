@@ -20,7 +20,7 @@ from beltdyn.solve.steady_running.neighbour import search_from
 from beltdyn.solve.vibration.vibrations import Vibrations
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system
+from beltdyn.system.build_staying import flowing_system, without_hysteresis
 from beltdyn.system.constant_drive import constant_drive, dry_friction_of, rim_of_bodies, twists
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
@@ -110,8 +110,7 @@ def about_rest(drive: Drive) -> SmallMotions:
     """A drive at rest, of which nothing drives or loads a shaft, with a belt that sticks to its pulleys.
 
     Where it touches them, springs hold it along the rim, a hundred times as stiff as those of the normal force or more.
-    The hysteresis of the belt is left out: its stress has no tangent
-    there.
+    The hysteresis of the belt is left out: its stress has no tangent there.
 
     Parameters
     ----------
@@ -138,9 +137,8 @@ def about_standing(rest: Standing) -> SmallMotions:
     rest
         It at rest.
     """
-    held = constant_drive(standing(rest.system), 0.0)
+    held = without_hysteresis(constant_drive(standing(rest.system), 0.0))
     held.profiles.segment.offset[:] = 0.0
-    held = held._replace(hysteresis=held.hysteresis[:0].view(np.recarray))
     smooth = held.pulleys.copy()
     smooth["friction"] = 0.0
     sliding = _linearised(rest.drive, held._replace(pulleys=smooth), rest.state, 0.0)

@@ -63,6 +63,15 @@ def test_a_stuck_tensioner_is_no_unknown(rest: SmallMotions) -> None:
     assert held.free.shape[1] == 1
 
 
+def test_hysteresis_is_left_out_at_rest() -> None:
+    """Its stress has no tangent at rest: the slope of the smoothed law stopped spans, with 0.97 of critical damping."""
+    drive = loose()
+    lossy = drive.replace(belt=drive.belt.replace(bending_loss_factor=0.15, stretch_loss_factor=0.1))
+    plain, left_out = about_rest(drive), about_rest(lossy)
+    scale = abs(plain.damping).max()
+    np.testing.assert_allclose(left_out.damping.toarray(), plain.damping.toarray(), atol=1e-9 * scale)
+
+
 def test_dry_tensioners() -> None:
     assert dry_tensioners(loose()).size == 0
     np.testing.assert_array_equal(dry_tensioners(loose(yielding_friction=1.0)), [0])
