@@ -60,6 +60,9 @@ def _number(name: str, number: str, given: str, unit: str) -> float:
     """A number of a range in SI units."""
     if not unit and given in ("", "%"):
         return float(number) * (0.01 if given else 1.0)
+    if not given:
+        example = "800 rpm" if unit == "rad/s" else f"{float(number):g} {unit}"
+        raise ModelError(f'{name} = {number!r} has no unit. Write it behind the last number, such as "{example}".')
     try:
         return to_si(f"{number} {given}", unit)
     except ValueError as error:

@@ -33,6 +33,13 @@ def test_what_is_no_range(text: str, unit: str, words: str) -> None:
         numbers_in("speed", text, unit, 5)
 
 
+def test_a_number_without_its_unit_is_asked_for_it() -> None:
+    with pytest.raises(
+        ModelError, match="speed = .80. has no unit. Write it behind the last number, such as .800 rpm"):
+    ):
+        numbers_in("speed", "80", "rad/s", 2)
+
+
 def test_numbers_that_are_no_text() -> None:
     """The unit is not known."""
     with pytest.raises(ModelError, match=r"speed = \[10\.0, 20\.0\] must be a range such as '700\.\.6000 rpm'"):
