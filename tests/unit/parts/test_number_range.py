@@ -34,9 +34,7 @@ def test_what_is_no_range(text: str, unit: str, words: str) -> None:
 
 
 def test_a_number_without_its_unit_is_asked_for_it() -> None:
-    with pytest.raises(
-        ModelError, match="speed = .80. has no unit. Write it behind the last number, such as .800 rpm"):
-    ):
+    with pytest.raises(ModelError, match=r"has no unit\. Write it behind the last number, such as .800 rpm"):
         numbers_in("speed", "80", "rad/s", 2)
 
 
