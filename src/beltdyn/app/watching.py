@@ -122,7 +122,7 @@ def _table(run: Run, instant: xr.Dataset) -> Table:
     speeds, torques = instant["pulley_speed"].values, instant["pulley_torque"].values
     loads = np.linalg.norm(instant["hub_force"].values, axis=-1)
     rows = [
-        (one.name, f"{RPM * speed:.1f}", f"{torque:.3g}", f"{load:.1f}")
+        (one.name, f"{RPM * speed:z.1f}", f"{torque:z.3g}", f"{load:.1f}")
         for one, speed, torque, load in zip(run.drive.pulleys, speeds, torques, loads, strict=True)
     ]
     return Table("", ("", "speed\nrpm", "torque of belt\nN m", "hub load\nN"), tuple(rows))

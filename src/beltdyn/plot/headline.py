@@ -87,4 +87,4 @@ def _power(power: float) -> str:
 
 def _whole(number: float) -> str:
     """Four digits, or all those before the point where they are more."""
-    return f"{number:.4g}" if abs(number) < 9999.5 else f"{number:.0f}"
+    return f"{number:z.4g}" if abs(number) < 9999.5 else f"{number:.0f}"

@@ -96,7 +96,7 @@ def _frame(ax: Axes, causes: Sequence[str]) -> None:
 
 def _write(ax: Axes, balance: Balance, power: float, place: tuple[float, float], size: float | None = None) -> None:
     """Write a power, W, and its share of what is put in, behind a bar."""
-    share = f" ({power / balance.power_in:.2%})" if balance.power_in > 0.0 else ""
+    share = f" ({power / balance.power_in:z.2%})" if balance.power_in > 0.0 else ""
     ax.annotate(f"{power:.4g} W{share}", place, xytext=(4, 0), textcoords="offset points", va="center", fontsize=size)
 
 

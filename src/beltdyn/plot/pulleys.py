@@ -47,7 +47,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
         If the run holds no output.
     """
     parts, summary = derived.slips(run), summarize(run)
-    names = [f"{one.name} {one.slip:.3%}" if np.isfinite(one.slip) else one.name for one in summary.pulleys]
+    names = [f"{one.name} {one.slip:z.3%}" if np.isfinite(one.slip) else one.name for one in summary.pulleys]
     ax = lines(parts["slip"], axes_or_new(ax), names)
     notes = [f"numbers: means at the end, from {summary.start:.4g} to {summary.end:.4g} s"]
     slides = bool((np.abs(parts["sliding"]) > 0.0).any())

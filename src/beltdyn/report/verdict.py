@@ -32,7 +32,7 @@ class SideBySide(NamedTuple):
             return ""
         if first.value == 0.0:
             return "" if other.value == 0.0 else f"{in_unit(other.value - first.value, first.unit, '+')} to the first"
-        return f"{other.value / first.value - 1.0:+.1%} to the first"
+        return f"{other.value / first.value - 1.0:+z.1%} to the first"
 
 
 def compared(results: Sequence[Result]) -> list[SideBySide]:

@@ -64,7 +64,7 @@ def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tu
     return [
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
-        ("belt length", f"{length:.5g} m unstretched, {installation.strain:.3%} longer on its path of {path:.5g} m"),
+        ("belt length", f"{length:.5g} m unstretched, {installation.strain:z.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
         ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
         *_lost_in_the_belt(drive),

@@ -37,7 +37,7 @@ def run_sheet(run: Run) -> Sheet:
     if run.outputs == 0:
         return Sheet("Nothing was computed before the run ended.", ())
     summary = summarize(run)
-    over = _window(summary)
+    over = _window(run, summary)
     spans = Table(
         f"Spans{over}",
         ("", "tension N", "least N", "largest N", "belt speed m/s"),
@@ -78,8 +78,11 @@ def _pulleys(title: str, summary: Summary) -> Table:
     return Table(title, (*headings, "hub load\nN"), tuple(zip(*columns, strict=True)))
 
 
-def _window(summary: Summary) -> str:
-    """From when to when means are taken, and of how many turns of the belt."""
+def _window(run: Run, summary: Summary) -> str:
+    """From when to when means are taken, and of how many turns of the belt; steady running does not change in time."""
+    with run.recorded() as recorded:
+        if "steady_at" in recorded.attrs:
+            return " (steady running)"
     if not summary.end > summary.start:
         return ""
     turns = f", {summary.turns} turn{'s'[: summary.turns != 1]} of the belt" if summary.turns else ""
@@ -88,7 +91,7 @@ def _window(summary: Summary) -> str:
 
 def _share(part: float) -> str:
     """A part of the first rim's speed; none where that stands still."""
-    return "–" if math.isnan(part) else f"{part:.3%}"
+    return "–" if math.isnan(part) else f"{part:z.3%}"
 
 
 def _margin(margin: float) -> str:
@@ -145,7 +148,7 @@ def _tensioners(summary: Summary) -> list[tuple[str, str]]:
     facts = []
     for one in summary.tensioners:
         size, unit = (math.degrees, "°") if one.rotary else (lambda value: 1e3 * value, " mm")
-        place, lowest, highest = (f"{size(value):.4g}{unit}" for value in (one.position, one.lowest, one.highest))
+        place, lowest, highest = (f"{size(value):z.4g}{unit}" for value in (one.position, one.lowest, one.highest))
         travel = f", from {lowest} to {highest}" if one.highest > one.lowest else ""
         facts.append((f"tensioner of {one.name}", f"at {place}{travel}"))
     return facts

@@ -65,5 +65,5 @@ def _column(variable: "xr.DataArray") -> list[str]:
     if variable.dtype.kind != "f":
         return [str(one) for one in variable.values.ravel()]
     if variable.attrs.get("units") == VARIOUS:
-        return [f"{one:.{_DIGITS}g}" for one in variable.values.ravel()]
+        return [f"{one:z.{_DIGITS}g}" for one in variable.values.ravel()]
     return aligned((shown_unit(variable)[1] * variable.values.ravel()).tolist(), _DIGITS)

@@ -40,4 +40,4 @@ def in_words(variable: "xr.DataArray") -> str:
     if variable.dtype.kind != "f":
         return str(variable.item())
     unit, factor = shown_unit(variable)
-    return f"{factor * float(variable):.4g} {unit}".rstrip()
+    return f"{factor * float(variable):z.4g} {unit}".rstrip()

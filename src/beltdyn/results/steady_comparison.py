@@ -89,8 +89,8 @@ def _row(one: Compared) -> tuple[str, ...]:
     """A row of the table: slips and places differ by so much, others by a part too."""
     unit, factor = _SHOWN.get(one.unit, (one.unit, 1.0))
     pair = aligned([factor * one.run, factor * one.steady], 5)
-    share = f"{one.run / one.steady - 1.0:+.2%}" if one.unit in _OF_PARTS and one.steady else ""
-    return (f"{one.quantity} of {one.name}", *pair, unit, f"{factor * (one.run - one.steady):+.3g}", share)
+    share = f"{one.run / one.steady - 1.0:+z.2%}" if one.unit in _OF_PARTS and one.steady else ""
+    return (f"{one.quantity} of {one.name}", *pair, unit, f"{factor * (one.run - one.steady):+z.3g}", share)
 
 
 def steady_values(run: Run) -> list[float]:

@@ -62,6 +62,28 @@ def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: p
     assert "efficiency" not in output
 
 
+def test_steady_running_is_over_no_time(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    run.dataset.attrs["steady_at"] = 1.0
+    show_result(run)
+    output = capsys.readouterr().out
+    assert "Pulleys (steady running)" in output
+    assert "Spans (steady running)" in output
+    assert "means" not in output
+
+
+@pytest.mark.parametrize(("slip", "written"), [(-1e-9, "0.000%"), (-0.0, "0.000%"), (-1e-5, "-0.001%")])
+def test_a_slip_that_rounds_to_zero_has_no_sign(
+    run: Run, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], slip: float, written: str
+) -> None:
+    summary = summarize(run)
+    driver, driven = summary.pulleys
+    still = replace(summary, pulleys=(driver, replace(driven, slip=slip)))
+    monkeypatch.setattr("beltdyn.results.run_sheet.summarize", lambda _: still)
+    show_result(run)
+    row = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("driven "))
+    assert row.split()[5] == written
+
+
 def test_no_load_no_efficiency(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
     show_result(make_run(shaft_torque=np.tile([1.0, 0.0], (101, 1))))
     assert "none, nothing is taken out" in capsys.readouterr().out
