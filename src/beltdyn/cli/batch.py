@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from beltdyn.analyses import Analysis
-from beltdyn.cli.console import show, show_error, show_table, show_warnings
+from beltdyn.cli.console import lines_of_file, show, show_error, show_table, show_warnings
 from beltdyn.cli.output import Extras, doubt, require_output, show_leftovers, write_extras
 from beltdyn.cli.progress import runs_bar
 from beltdyn.errors import ModelError, SimulationError
@@ -97,7 +97,7 @@ def _load_all(files: Sequence[Path]) -> dict[Path, "Drive"]:
         try:
             drives[file] = load(file)
         except ModelError as error:
-            wrong += [line if line.startswith(f"{file} ") else f"{file}: {line}" for line in str(error).splitlines()]
+            wrong += lines_of_file(file, error)
     if wrong:
         raise ModelError("\n".join(wrong))
     return drives

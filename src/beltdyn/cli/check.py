@@ -5,30 +5,55 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from beltdyn.cli.console import show, show_warnings
+from beltdyn.cli.console import lines_of_file, show, show_error, show_warnings
 from beltdyn.cli.progress import progress_bar
 from beltdyn.cli.result import show_parts
+from beltdyn.errors import BeltdynError, ConvergenceError, ModelError
 
 
 def check(
     file: Path,
     /,
-    *,
+    *more: Path,
     figure: Annotated[Path | None, Parameter(alias="-f")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
-) -> None:
-    """Validate a drive file, and say what to expect of the drive at rest.
+) -> int:
+    """Validate drive files, and say what to expect of each drive at rest.
+
+    Of several files each is checked, whatever is wrong with others; the exit code is 2 if one cannot be used.
 
     Parameters
     ----------
     file
         The drive file, TOML.
+    more
+        More drive files.
     figure
-        Draw the layout into this file too, such as layout.png; it replaces figures of beltdyn, and no other files.
+        Draw the layout of a single drive into this file too, such as layout.png; it replaces figures of beltdyn, and
+        no other files.
     force
         Replace other files too.
     """
-    from beltdyn.errors import ConvergenceError
+    if not more:
+        _check(file, figure, force)
+        return 0
+    if figure is not None:
+        raise ModelError(
+            f"--figure {figure} draws one drive, and {1 + len(more)} files are given. Check them one by one."
+        )
+    codes = []
+    for number, one in enumerate((file, *more)):
+        show("\n" * (number > 0) + str(one))
+        try:
+            _check(one, None, force)
+        except BeltdynError as error:
+            show_error("\n".join(lines_of_file(one, error)))
+            codes.append(error.exit_code)
+    return min(codes, default=0)
+
+
+def _check(file: Path, figure: Path | None, force: bool) -> None:
+    """Check one drive file."""
     from beltdyn.model import advise, install, load, unstable_balance
     from beltdyn.results.rest_sheet import rest_sheet
     from beltdyn.solve import bring_to_rest

@@ -1,6 +1,7 @@
 """Where the command line writes, and in which style."""
 
 from collections.abc import Iterable
+from pathlib import Path
 
 from rich.console import Console
 from rich.measure import Measurement
@@ -55,3 +56,8 @@ def show_error(message: str) -> None:
     """Write the lines of an error on standard error."""
     for line in message.splitlines():
         Console(stderr=True).print(Text.assemble(("error: ", "bold red"), line), soft_wrap=True)
+
+
+def lines_of_file(file: Path, error: Exception) -> list[str]:
+    """The lines of an error of one of several files, each with the name of the file."""
+    return [line if line.startswith(f"{file} ") else f"{file}: {line}" for line in str(error).splitlines()]

@@ -74,6 +74,17 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     assert f"beltdyn check {drive_file} --figure layout.png" in output
 
 
+def test_check_of_several_goes_on_after_one_that_is_refused(run_main: RunMain, drive_file: Path) -> None:
+    wrong = drive_file.with_name("wrong.toml")
+    wrong.write_text("[belt]\nlength = -1\n", encoding="utf-8")
+    code, output, message = run_main(["check", str(wrong), str(drive_file)])
+    assert code == 2
+    assert output.index(str(wrong)) < output.index(str(drive_file)) < output.index("1.2763 m")
+    assert all(line.startswith(f"error: {wrong}") for line in message.splitlines() if "error" in line)
+    assert f"error: {wrong}" in message
+    assert run_main(["check", str(wrong), str(drive_file), "--figure", "a.png"])[0] == 2
+
+
 def test_check_of_a_belt_of_given_tension(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
     """The tension that was asked for is there; what penetration costs is length."""
     drive_file.write_text(drive_text.replace("length = 1.2727 ", 'installed_tension = "250 N" '), encoding="utf-8")
