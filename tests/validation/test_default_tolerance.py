@@ -14,6 +14,9 @@ ALLOWED = 0.01
 """Error of a headline number, of its limit in the tolerance."""
 CLOSURE = 5e-3
 """Of the energy put in."""
+FREE = 0.01
+"""Slip over the largest of the drive below which a pulley turns freely: such as 1e-5 beside 3e-3, known to 1e-6. The speeds
+of these pulleys are compared, as all are."""
 
 
 def packaged(folder: str, name: str) -> Drive:
@@ -44,9 +47,11 @@ def headlines(run: Run, start: float, end: float) -> dict[str, float]:
     losses = ("friction_loss", "damping_loss", "material_loss", "compression_loss", "tensioner_loss", "coupling_loss")
     hubs = np.hypot(*part.hub_force.mean("time").values.T)
     places = part.tensioner_position.mean("time").values if "tensioner_position" in part else ()
+    slips = 1.0 - rims / rims[0]
+    slipping = np.flatnonzero(np.abs(slips) > FREE * np.abs(slips).max())
     return {
         **{f"speed_{number}": float(angle) for number, angle in enumerate(turned)},
-        **{f"slip_{number}": float(1.0 - rim / rims[0]) for number, rim in enumerate(rims) if number},
+        **{f"slip_{number}": float(slips[number]) for number in slipping},
         **{f"tension_{number}": float(value) for number, value in enumerate(part.span_tension.mean("time").values)},
         **{f"hub_{number}": float(value) for number, value in enumerate(hubs)},
         **{f"arm_{number}": float(value) for number, value in enumerate(places)},
@@ -64,6 +69,7 @@ def test_headline_numbers(name: str, measured: Callable[..., None]) -> None:
         headlines(simulate(drive.replace(simulation=drive.simulation.replace(rtol=rtol))), *window)
         for rtol in (1e-4, 1e-5)
     )
+    assert coarse.keys() == fine.keys()
     errors = {key: coarse[key] / fine[key] - 1.0 for key in fine}
     measured(**errors)
     assert {key: error for key, error in errors.items() if not abs(error) <= ALLOWED} == {}
