@@ -11,6 +11,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -96,8 +97,11 @@ def peak_memory() -> int:
 @pytest.mark.parametrize(("use", "count"), [(look, COUNT), (balance, COUNT // 5)], ids=["check", "static"])
 def test_wrong_drive_files_are_refused_in_words(tmp_path: Path, use: Callable[[Drive], None], count: int) -> None:
     originals, wrong, slowest = bases(), dict[int, str](), (0.0, -1)
-    for original in originals:  # the kernels of all of them are compiled before the clock of a file starts
-        balance(loads(original))
+    for (
+        original
+    ) in originals:  # kernels are compiled before the clock of a file starts; 40 elements are too few for some
+        with suppress(BeltdynError):
+            balance(loads(original))
     memory = peak_memory()
     for seed in range(FIRST, FIRST + count):
         drive, table = mutated(seed, originals)

@@ -15,8 +15,8 @@ ALLOWED = 0.01
 CLOSURE = 5e-3
 """Of the energy put in."""
 FREE = 0.01
-"""Slip over the largest of the drive below which a pulley turns freely: such as 1e-5 beside 3e-3, known to 1e-6. The speeds
-of these pulleys are compared, as all are."""
+"""Slip over the largest of the drive below which a pulley turns freely: such as 1e-5 beside 3e-3, known to 1e-6. Their
+speeds are compared, as all are."""
 
 
 def packaged(folder: str, name: str) -> Drive:
