@@ -6,7 +6,6 @@ from functools import partial, wraps
 from inspect import signature
 from typing import Any, NamedTuple, ParamSpec
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -17,10 +16,9 @@ from beltdyn.plot.panels import one_panel
 from beltdyn.plot.several import overlay
 from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run
+from beltdyn.results.recorded import runs_steadily
 
 P = ParamSpec("P")
-_LEVEL = 1e-9
-"""Largest change, over the largest value, of what does not change but for rounding."""
 Together = Callable[[Sequence[Any], Axes | None], Axes]
 """What draws several results into one pair of axes."""
 
@@ -80,9 +78,8 @@ def always(result: Result) -> bool:
 
 
 def over_time(run: Run) -> bool:
-    """Draw a figure of every run in which speeds or tensions change: in steady running there are but level lines."""
-    changing = (run.dataset[name].values for name in ("pulley_speed", "span_tension"))
-    return any(float(np.ptp(values, axis=0).max()) > _LEVEL * float(np.abs(values).max()) for values in changing)
+    """Draw a figure of every run with more than one output: in steady running there are but level lines."""
+    return run.dataset.sizes["time"] > 1 and not runs_steadily(run.dataset)
 
 
 def figure(

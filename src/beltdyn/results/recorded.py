@@ -63,6 +63,17 @@ def names(recorded: Recorded, dimension: str) -> list[str]:
     return [name.decode() if isinstance(name, bytes) else str(name) for name in np.asarray(recorded[dimension])]
 
 
+def runs_steadily(recorded: Recorded) -> bool:
+    """Whether it is steady running, in which nothing changes over time, in place of a run.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded.
+    """
+    return "belt_parameter" in recorded.attrs
+
+
 def attribute(recorded: Recorded, name: str, unknown: float) -> float:
     """Give an attribute that is a number.
 

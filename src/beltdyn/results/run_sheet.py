@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from beltdyn.parts.columns import aligned
 from beltdyn.parts.quantity import RPM
-from beltdyn.results.recorded import attribute
+from beltdyn.results.recorded import attribute, runs_steadily
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
@@ -81,7 +81,7 @@ def _pulleys(title: str, summary: Summary) -> Table:
 def _window(run: Run, summary: Summary) -> str:
     """From when to when means are taken, and of how many turns of the belt; steady running does not change in time."""
     with run.recorded() as recorded:
-        if "steady_at" in recorded.attrs:
+        if runs_steadily(recorded):
             return " (steady running)"
     if not summary.end > summary.start:
         return ""

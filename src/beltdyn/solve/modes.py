@@ -11,6 +11,7 @@ from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, Variable, build_result
+from beltdyn.results.recorded import runs_steadily
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
@@ -159,7 +160,7 @@ def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: 
     if count < 1:
         raise ModelError(f"count = {count} modes are none. Give 1 or more.")
     if isinstance(about, Run):
-        if "belt_parameter" not in about.dataset.attrs:
+        if not runs_steadily(about.dataset):
             raise ModelError(
                 "about holds no steady running, but a run over time. Give what `steady_state` has returned."
             )

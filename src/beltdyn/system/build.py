@@ -13,11 +13,7 @@ from beltdyn.contact.surface import KINDS, SHAPE, RoundRims, ShapedRims
 from beltdyn.errors import ModelError
 from beltdyn.machines import Tensioner
 from beltdyn.model import Belt, Contact, Drive, Path, Pulley
-from beltdyn.model.hysteresis import (
-    Passing,
-    passing_strains,
-    rolling_resistances,
-)
+from beltdyn.model.hysteresis import Passing, passing_strains, rolling_resistances
 from beltdyn.model.pulley import friction_on
 from beltdyn.model.routing import radii as effective_radii
 from beltdyn.model.surface import SURFACES

@@ -1,5 +1,7 @@
 """Arrays of a drive on a mesh that stays: quintic elements, contact at many points, and the frame of the mesh."""
 
+from typing import Any
+
 import numpy as np
 
 from beltdyn.arrays import FloatArray
@@ -38,12 +40,10 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
         sampling="distributed", integration="zone", quadrature_points=_STAYING_CONTACT
     )
     system = system_of(drive, belt, contact, "shared_node", lengths=lengths)
-    element = system.element
     if given.bending_loss_factor > 0.0:
         modulus, length = bending_at_points(drive)
-        section = element.section._replace(bending_hysteresis=modulus, passing_length=length)
-        element = Quintic(section, element.elastic)
-    return system._replace(element=element, frame=staying(system.control, system.length, belt.mass_per_length))
+        system = _with_section(system, bending_hysteresis=modulus, passing_length=length)
+    return system._replace(frame=staying(system.control, system.length, belt.mass_per_length))
 
 
 def on_other_mesh(drive: Drive, system: System, lengths: FloatArray) -> System:
@@ -99,11 +99,11 @@ def smoothed_over_time(system: System) -> System:
     element = system.element
     if not isinstance(element, Quintic):
         return system
-    section = element.section._replace(
+    return _with_section(
+        system,
         bending_hysteresis=element.section.bending_hysteresis / KEPT_OVER_TIME,
         passing_length=element.section.passing_length * OVER_TIME,
     )
-    return system._replace(element=Quintic(section, element.elastic))
 
 
 def without_hysteresis(system: System) -> System:
@@ -114,10 +114,16 @@ def without_hysteresis(system: System) -> System:
     system
         Any.
     """
+    if isinstance(system.element, Quintic):
+        system = _with_section(system, bending_hysteresis=0.0)
+    return system._replace(hysteresis=system.hysteresis[:0].view(np.recarray))
+
+
+def _with_section(system: System, **numbers: Any) -> System:
+    """The same arrays with other numbers of the section of their elements."""
     element = system.element
-    if isinstance(element, Quintic):
-        element = Quintic(element.section._replace(bending_hysteresis=0.0), element.elastic)
-    return system._replace(element=element, hysteresis=system.hysteresis[:0].view(np.recarray))
+    assert isinstance(element, Quintic)
+    return system._replace(element=Quintic(element.section._replace(**numbers), element.elastic))
 
 
 def flowing_system(system: System, direction: FloatArray) -> System:

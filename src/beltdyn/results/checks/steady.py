@@ -4,11 +4,12 @@ from collections.abc import Iterator
 
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.recorded import runs_steadily
 
 
 def mean_torques(evidence: Evidence) -> Iterator[Finding]:
     """Loads over the angle of their shafts, of which steady running takes the means."""
-    if "belt_parameter" not in evidence.recorded.attrs:
+    if not runs_steadily(evidence.recorded):
         return
     for pulley in evidence.drive.pulleys:
         for load in pulley.load:

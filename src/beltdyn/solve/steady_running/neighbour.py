@@ -6,6 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run
+from beltdyn.results.recorded import runs_steadily
 from beltdyn.solve.rest.staying import carried
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
@@ -33,7 +34,7 @@ def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
         raise ModelError(
             f"elements = {elements} does not go with start, which has its own mesh. Leave one of them out."
         )
-    if "belt_parameter" not in start.dataset.attrs:
+    if not runs_steadily(start.dataset):
         raise ModelError("start holds no steady running, but a run over time. Give what `steady_state` has returned.")
     mine, other = ([pulley.name for pulley in one.pulleys] for one in (drive, start.drive))
     if mine != other or len(drive.moving_tensioners) != len(start.drive.moving_tensioners):

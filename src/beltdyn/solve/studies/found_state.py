@@ -13,7 +13,7 @@ from beltdyn.solve.rest.installation import looked_at
 from beltdyn.solve.rest.staying import Standing, stand_like
 from beltdyn.solve.steady import steady_on_mesh
 from beltdyn.solve.steady_running.operating_points import labels_of
-from beltdyn.solve.studies.named_results import MODES, OF_MODES, values_of
+from beltdyn.solve.studies.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
 from beltdyn.solve.studies.state_modes import FollowedModes, FoundModes, Mode, StateModes
 from beltdyn.solve.vibration.small_motions import SmallMotions, about_standing, about_steady
 
@@ -73,7 +73,7 @@ class FoundState(ABC):
         name
             Such as "hub_load[driven]", "frequency[a-b]" of a span, or "mode_frequency[2]".
         """
-        variable, _, label = name.removesuffix("]").partition("[")
+        variable, label = variable_and_label(name)
         if variable not in OF_MODES:
             return float(self.values.get(name, np.nan))
         mode = self._mode_of(variable, label)
@@ -91,7 +91,7 @@ class FoundState(ABC):
         """
         found = list[str]()
         for name in names:
-            variable, _, label = name.removesuffix("]").partition("[")
+            variable, label = variable_and_label(name)
             mode = self._mode_of(variable, label) if variable in OF_MODES else None
             if mode is not None and mode.alike > 1:
                 found.append(name)
@@ -201,7 +201,7 @@ class Resting(FoundState):
             "tensioner_position": ("tensioner", there.tensioner_positions),
         }
         named = {
-            f"{name}[{label}]": float(value)
+            name_of(name, label): float(value)
             for name, (of, values) in found.items()
             for label, value in zip(labels[of], values, strict=True)
         }

@@ -28,6 +28,31 @@ AT_REST |= OWN
 """Results of a drive at rest."""
 
 
+def name_of(variable: str, label: str = "") -> str:
+    """The name of a scalar result.
+
+    Parameters
+    ----------
+    variable
+        Name of the variable.
+    label
+        What it belongs to, such as a pulley; nothing for a result of the whole drive.
+    """
+    return f"{variable}[{label}]" if label else variable
+
+
+def variable_and_label(name: str) -> tuple[str, str]:
+    """Variable and label of a scalar result; the reverse of `name_of`.
+
+    Parameters
+    ----------
+    name
+        Such as "pulley_slip[driven]".
+    """
+    variable, _, label = name.removesuffix("]").partition("[")
+    return variable, label
+
+
 def listed(text: str) -> list[str]:
     """Names with commas between."""
     return [name.strip() for name in text.split(",") if name.strip()]
@@ -46,8 +71,7 @@ def values_of(run: Run) -> dict[str, float]:
     for name, values in values_by_name(run, summary).items():
         dims, numbers = VARIABLES[name].dims, np.asarray(values)
         if numbers.dtype.kind == "f" and len(dims) < 2:
-            inner = labels[dims[0]] if dims else []
-            parts = [f"{name}[{label}]" for label in inner] if dims else [name]
+            parts = [name_of(name, label) for label in (labels[dims[0]] if dims else [""])]
             found |= {part: float(value) for part, value in zip(parts, np.atleast_1d(numbers), strict=True)}
     return found
 
@@ -65,7 +89,7 @@ def names_of(drive: Drive, *, at_rest: bool = False) -> list[str]:
     labels, found = labels_of(drive) | {"mode": _numbers_of_modes(drive)}, list[str]()
     for name, variable in ((AT_REST if at_rest else VARIABLES) | OF_MODES).items():
         if variable.dtype != "str" and len(variable.dims) < 2:
-            found += [f"{name}[{label}]" for label in labels[variable.dims[0]]] if variable.dims else [name]
+            found += [name_of(name, label) for label in (labels[variable.dims[0]] if variable.dims else [""])]
     return found
 
 
@@ -95,9 +119,9 @@ def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of
         return list(known)
     found = list[str]()
     for wanted in listed(of):
-        named = [name for name in known if wanted in (name, name.partition("[")[0])]
+        named = [name for name in known if wanted in (name, variable_and_label(name)[0])]
         if not named:
-            names = known if "[" in wanted else dict.fromkeys(name.partition("[")[0] for name in known)
+            names = known if "[" in wanted else dict.fromkeys(variable_and_label(name)[0] for name in known)
             raise ModelError(f"{key} = {wanted!r} is no result that has a number. {suggest(wanted, list(names))}")
         found += named
     return list(dict.fromkeys(found))
@@ -113,7 +137,7 @@ def unit_of(name: str, drive: Drive) -> str:
     drive
         The drive, whose tensioners move along a line or turn.
     """
-    variable, _, label = name.removesuffix("]").partition("[")
+    variable, label = variable_and_label(name)
     unit = (VARIABLES | AT_REST | OF_MODES)[variable].units
     if unit == "m or rad":
         turning = {one.pulley: one.turns for one in drive.moving_tensioners}

@@ -18,6 +18,7 @@ from beltdyn.signals import uninterrupted
 from beltdyn.solve.studies.designs import Design, Free
 from beltdyn.solve.studies.found_drive import found_file, headed, require_free, write_found
 from beltdyn.solve.studies.goals import Aims, Limit
+from beltdyn.solve.studies.named_results import variable_and_label
 from beltdyn.solve.studies.study_points import OperatingPoint
 
 _KEPT = 1e-4
@@ -211,7 +212,7 @@ class History:
         if not np.isfinite(signed).any():
             return np.nan, ""
         place, point = map(int, np.unravel_index(int(np.nanargmin(signed)), signed.shape))
-        _, _, label = self._aims.watched[group[place].result].name.removesuffix("]").partition("[")
+        _, label = variable_and_label(self._aims.watched[group[place].result].name)
         where = self._points[point].label if len(self._points) > 1 else ""
         return group[place].sign * float(signed[place, point]), ", ".join(filter(None, (label, where)))
 
