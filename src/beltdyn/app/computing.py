@@ -158,5 +158,5 @@ def given_speed(drive: Drive, number: int) -> float:
     """Speed at which a pulley is driven at the end of the simulation, by its speed or a motor, rad/s."""
     pulley = drive.pulleys[number]
     if pulley.speed is not None:
-        return float(pulley.speed.at([drive.simulation.duration])[0])
+        return float(pulley.speed.at([drive.simulation.end])[0])
     return pulley.driven_speed()

@@ -147,7 +147,7 @@ class Drive(Part):
     @cached_property
     def completed(self) -> Completed:
         """The parts with nothing left open, as an analysis takes them."""
-        staying = self.simulation.frame == "staying"
+        staying = (self.simulation.frame, self.simulation.mesh) == ("staying", "auto")
         return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends, staying))
 
     @property

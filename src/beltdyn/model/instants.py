@@ -12,7 +12,7 @@ SAME = 1e-11
 
 @dataclass(frozen=True)
 class Instants:
-    """Multiples of an interval from zero on, and the end; every few of them fields along the belt are recorded.
+    """Multiples of an interval from a beginning on, and the end; at every few of them fields along the belt are kept.
 
     Attributes
     ----------
@@ -22,17 +22,21 @@ class Instants:
         s; a multiple that is nearer to it than a billionth of it is left out.
     stride : int
         Number of instants from one at which fields are recorded to the next; the end is one too.
+    begin : float
+        The first of them, s.
     """
 
     interval: float
     end: float
     stride: int = 1
+    begin: float = 0.0
 
     @property
     def count(self) -> int:
         """How many there are."""
-        multiples = int(np.floor(self.end / self.interval * (1.0 + 1e-12)))
-        return multiples + 1 + (self.end - multiples * self.interval > 1e-9 * self.end)
+        length = self.end - self.begin
+        multiples = int(np.floor(length / self.interval * (1.0 + 1e-12)))
+        return multiples + 1 + (length - multiples * self.interval > 1e-9 * self.end)
 
     @property
     def fields(self) -> int:
@@ -45,7 +49,7 @@ class Instants:
 
     def __getitem__(self, numbers: IntArray) -> FloatArray:
         """Some of them, s, by their numbers."""
-        return np.where(numbers < self.count - 1, self.interval * numbers, self.end)
+        return np.where(numbers < self.count - 1, self.begin + self.interval * numbers, self.end)
 
     def until(self, time: float) -> int:
         """How many lie before a time (s) or on it."""
@@ -53,6 +57,6 @@ class Instants:
 
     def counts_until(self, times: FloatArray) -> IntArray:
         """How many lie before each of several times (s) or on it."""
-        multiples = np.floor((times + SAME) / self.interval) + 1.0
+        multiples = np.floor((times - self.begin + SAME) / self.interval) + 1.0
         before_end = np.clip(multiples, 0.0, self.count - 1.0).astype(np.int64)
         return np.where(times >= self.end - SAME, self.count, before_end)

@@ -1,6 +1,6 @@
 """How a drive is simulated: duration, outputs, start and integrator."""
 
-from math import floor
+from math import floor, inf
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
@@ -15,7 +15,7 @@ _FIELDS = 100
 
 
 class Simulation(Part):
-    """Settings of a transient simulation from time zero."""
+    """Settings of a transient simulation, from time zero or from a later instant on."""
 
     duration: Time = Field(gt=0, description="the simulated time, in s")
     output_interval: Time = Field(gt=0, description="the time between two outputs, in s")
@@ -29,10 +29,28 @@ class Simulation(Part):
         "travelling",
         description="whether the mesh travels with the belt, or stays in place while the belt flows through it",
     )
+    mesh: Literal["auto", "uniform"] = Field(
+        "auto",
+        description="the mesh that stays: graded towards the ends of arcs, or as many equal elements as "
+        "`belt.elements` says, as published",
+    )
+    force_tolerance: Ratio | None = Field(
+        None,
+        gt=0,
+        lt=1,
+        description="the error of contact forces at the beginning, over the largest of a pulley, up to which the mesh "
+        "that stays is refined, below 1; by default it has the number of elements that is given or chosen",
+    )
     start: Literal["equilibrium", "laid", "steady"] = Field(
         "equilibrium",
-        description="the state at time zero: static equilibrium, the belt laid on its path, or, on a mesh that stays, "
-        "steady running under the speeds and loads of that instant",
+        description="the state at the beginning: static equilibrium, the belt laid on its path, or steady running "
+        "under the speeds and loads of that instant",
+    )
+    start_at: Time = Field(
+        0.0,
+        ge=0,
+        lt=inf,
+        description='the instant of speeds, torques and schedules at which the run begins, in s; with start = "steady"',
     )
     integrator: Literal["generalized_alpha", "cvode", "ida", "bdf", "radau"] = Field(
         "generalized_alpha", description="the time integrator"
@@ -52,16 +70,35 @@ class Simulation(Part):
         """Output instants; fields along the belt are recorded at least as often as asked for."""
         wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
         stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
-        return Instants(self.output_interval, self.duration, stride)
+        return Instants(self.output_interval, self.end, stride, self.start_at)
+
+    @property
+    def end(self) -> float:
+        """The instant at which the run ends, s."""
+        return self.start_at + self.duration
+
+    @model_validator(mode="after")
+    def _begins_later_in_steady_running(self) -> Self:
+        if self.start_at > 0.0 and self.start != "steady":
+            raise ValueError(
+                f'start_at = {self.start_at:g} s does not fit start = "{self.start}", a belt at rest. '
+                'Set start = "steady", or remove start_at'
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _is_refined_or_not(self) -> Self:
+        other = 'frame = "travelling"' if self.frame == "travelling" else 'mesh = "uniform"'
+        if self.force_tolerance is not None and (self.frame, self.mesh) != ("staying", "auto"):
+            raise ValueError(
+                f"force_tolerance = {self.force_tolerance:g} does not fit {other}, which is not refined. Remove it, or "
+                'set frame = "staying" and mesh = "auto"'
+            )
+        return self
 
     @model_validator(mode="after")
     def _fits_the_frame(self) -> Self:
         if self.frame == "travelling":
-            if self.start == "steady":
-                raise ValueError(
-                    'start = "steady" does not fit frame = "travelling", whose equal elements would ring. '
-                    'Set frame = "staying", or start = "equilibrium"'
-                )
             return self
         for key, value, fits in (
             ("start", self.start, ("equilibrium", "steady")),

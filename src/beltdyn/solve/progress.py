@@ -20,9 +20,9 @@ class Progress:
     Attributes
     ----------
     time : float
-        Simulated time, s.
+        Simulated time since the beginning, s.
     duration : float
-        Time at which the simulation ends, s.
+        All of it, s.
     step_size : float
         Latest step of the solver, s; zero before the first one.
     outputs_written : int

@@ -113,7 +113,7 @@ def sensitivity(
     """
     if about not in _USUAL:
         raise ModelError(f'about = {about!r} is no state. Give "{STEADY}" or "{REST}".')
-    given = without_schedules(drive, drive.simulation.duration if at is None else at)[0]
+    given = without_schedules(drive, drive.simulation.end if at is None else at)[0]
     chosen, wanted = _chosen(given, numbers), names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about])
     rest = bring_to_stand(given)
     state = Resting(rest) if about == REST else Running(steady_state(rest.drive, force_tolerance=force_tolerance))

@@ -16,8 +16,9 @@ from beltdyn.solve.observation.observer import Arrays
 from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Report
 from beltdyn.solve.rest.installation import bring_to_rest
-from beltdyn.solve.steady import require_steady, steady_state
+from beltdyn.solve.steady import require_steady, require_steady_start, steady_state
 from beltdyn.solve.steady_running.flowing_start import Beginning, begin_flowing
+from beltdyn.solve.steady_running.travelling_start import Held, steady_state_on
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
@@ -115,8 +116,11 @@ def record_run(
     if compare_steady:
         require_steady(drive)
     integrator = integrator or choose_integrator(drive)
-    flowing = None
-    if drive.simulation.frame == "staying":
+    flowing, staying, steady = None, drive.simulation.frame == "staying", drive.simulation.start == "steady"
+    if steady:
+        require_steady_start(drive)
+        begin = begin or (None if staying else Held())
+    if staying:
         _require_flowing(integrator)
         flowing = begin_flowing(drive, progress)
     system = flowing.system if flowing else drive_system(drive)
@@ -155,7 +159,10 @@ def _begin_travelling(drive: Drive, system: System, progress: Report | None) -> 
     if drive.belt.installed_tension is None and start == "laid":
         return Beginning(drive, system, laid(system, drive.path))
     rest = bring_to_rest(drive, progress)
-    state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
+    if start == "steady":
+        state = steady_state_on(rest)
+    else:
+        state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
     return Beginning(rest.drive, rest.system, state, rest.unstable)
 
 

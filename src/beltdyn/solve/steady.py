@@ -90,7 +90,7 @@ def steady_state(
         elements = drive.elements
     tolerance = next(one for one in (force_tolerance, drive.steady.force_tolerance, _TOLERANCE) if one is not None)
     _require_sense(tolerance, elements)
-    instant = drive.simulation.duration if at is None else at
+    instant = drive.simulation.end if at is None else at
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     found = _continued(drive, start, instant, tolerance) if start is not None else None
@@ -113,7 +113,7 @@ def steady_on_mesh(drive: Drive, start: Run) -> Run:
         If it is not found from there.
     """
     require_neighbour(drive, start, None)
-    instant = drive.simulation.duration
+    instant = drive.simulation.end
     found = _continued(drive, start, instant, None)
     if found is None:
         raise ConvergenceError("Newton's method does not follow so small a change.")
@@ -179,7 +179,9 @@ def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
     """What was found, as the results of a run of two turns of the belt."""
     search = found.search
     duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
-    turns = drive.simulation.replace(duration=duration, output_interval=duration, field_interval=None)
+    turns = drive.simulation.replace(
+        duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=0.0
+    )
     shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
     title = f"{drive.title} in steady running, as at {instant:g} s"
     with Recording(shown, search.constant, None, title, None) as recording:
@@ -223,6 +225,22 @@ def require_steady(drive: Drive) -> None:
             "as steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor "
             "as `speed`, or simulate the drive with `beltdyn run`."
         )
+
+
+def require_steady_start(drive: Drive) -> None:
+    """Make sure that a drive whose run is to begin in steady running may do so.
+
+    Raises
+    ------
+    ModelError
+        If not.
+    """
+    try:
+        require_steady(drive)
+    except ModelError as error:
+        raise ModelError(
+            f'simulation.start = "steady" needs steady running, and {error} Or set simulation.start = "equilibrium".'
+        ) from error
 
 
 def _require_sense(force_tolerance: float, elements: int | None) -> None:

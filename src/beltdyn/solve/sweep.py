@@ -191,7 +191,9 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     speed = {"kind": "table", "times": [0.0, duration], "values": [start, end]}
     pulleys = list(drive.pulleys)
     pulleys[number] = pulleys[number].replace(speed=speed)
-    return drive.replace(pulley=pulleys, simulation=drive.simulation.replace(duration=duration))
+    settings = drive.simulation
+    begun = "equilibrium" if settings.start == "steady" else settings.start
+    return drive.replace(pulley=pulleys, simulation=settings.replace(duration=duration, start=begun, start_at=0.0))
 
 
 def _number(name: str, value: float | str, unit: str) -> float:

@@ -28,6 +28,13 @@ def test_multiples_and_the_end(interval: float, end: float, expected: list[float
     assert listed(Instants(interval, end))[-1] == end
 
 
+def test_instants_from_a_beginning_on() -> None:
+    instants = Instants(0.1, 2.35, begin=2.0)
+    assert listed(instants) == pytest.approx([2.0, 2.1, 2.2, 2.3, 2.35])
+    np.testing.assert_array_equal(instants.counts_until(listed(instants)), np.arange(1, 6))
+    assert instants.until(1.99) == 0
+
+
 @given(number=st.integers(1, 10**6), interval=st.floats(1e-6, 1.0))
 def test_whole_multiples_have_no_short_interval_at_the_end(number: int, interval: float) -> None:
     instants = Instants(interval, number * interval)

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
@@ -25,6 +26,14 @@ def test_fields_are_recorded_at_least_as_often_as_asked_for(settings: dict[str, 
     assert instants.end == 1.0
 
 
+def test_a_run_that_begins_later_ends_as_much_later() -> None:
+    settings = Simulation(duration=1.0, output_interval=0.01, start="steady", start_at=2.5)
+    assert settings.end == 3.5
+    assert settings.instants.count == 101
+    assert settings.instants.stride == 1
+    assert settings.instants[np.array([0, 1, 100])] == pytest.approx([2.5, 2.51, 3.5])
+
+
 @pytest.mark.parametrize(
     ("settings", "sentence"),
     [
@@ -34,7 +43,17 @@ def test_fields_are_recorded_at_least_as_often_as_asked_for(settings: dict[str, 
         ({"rtol": 1.0}, "must be less than 1"),
         ({"spectral_radius": -0.1}, "must be at least 0"),
         ({"integrator": "euler"}, "is not a choice here"),
-        ({"start": "steady"}, 'start = "steady" does not fit frame = "travelling"'),
+        (
+            {"start_at": 0.5},
+            'start_at = 0.5 s does not fit start = "equilibrium", a belt at rest. Set start = "steady"',
+        ),
+        ({"start": "steady", "start_at": -0.5}, "must be at least 0"),
+        ({"force_tolerance": 0.01}, 'force_tolerance = 0.01 does not fit frame = "travelling", which is not refined'),
+        (
+            {"frame": "staying", "mesh": "uniform", "force_tolerance": 0.01},
+            'does not fit mesh = "uniform", which is not',
+        ),
+        ({"frame": "staying", "force_tolerance": 1.0}, "must be less than 1"),
         ({"frame": "staying", "start": "laid"}, 'start = "laid" does not fit frame = "staying". Set start'),
         ({"frame": "staying", "integrator": "bdf"}, 'integrator = "bdf" does not fit frame = "staying"'),
         ({"frame": "staying", "joint": "multipliers"}, 'joint = "multipliers" does not fit frame = "staying"'),

@@ -132,23 +132,23 @@ def profile_integral(profiles: Profiles, number: int, time: float) -> float:
     return float(profiles.segment[k].integral + segment_integral(profiles.segment[k], begin, time))
 
 
-def go_on(profiles: Profiles, before: Profiles, numbers: Sequence[int], time: float) -> None:
-    """Let integrals go on from those that other profiles have at a time, as angles of prescribed speeds do.
+def go_on(profiles: Profiles, numbers: Sequence[int], time: float, values: Sequence[float]) -> None:
+    """Let integrals go on from given values at a time, as angles of prescribed speeds do.
 
     Parameters
     ----------
     profiles
-        The profiles, whose integrals from their time zero on are raised.
-    before
-        As many profiles.
+        The profiles, changed in place.
     numbers
         Which of them.
     time
         s.
+    values
+        Integral of each of them then, such as an angle in rad.
     """
-    for number in numbers:
+    for number, value in zip(numbers, values, strict=True):
         rows = slice(profiles.table[number].segment, profiles.table[number + 1].segment)
-        profiles.segment.integral[rows] += interpreted(profile_integral)(before, number, time)
+        profiles.segment.integral[rows] += value - interpreted(profile_integral)(profiles, number, time)
 
 
 @kernel

@@ -28,8 +28,7 @@ def unfinished(evidence: Evidence) -> Iterator[Finding]:
     if status != "completed":
         ended = {"interrupted": "was interrupted", "failed": "failed"}.get(status, "goes on, or was killed")
         yield Finding(
-            f"the run {ended}: results end at t = {evidence.time[-1]:.6g} s "
-            f"of {evidence.drive.simulation.duration:.6g} s.",
+            f"the run {ended}: results end at t = {evidence.time[-1]:.6g} s of {evidence.drive.simulation.end:.6g} s.",
             f"Means are those from {evidence.window.start:.4g} s on, and may be those of a start.",
             "Run the drive again for the rest, unless it is being computed.",
         )
@@ -42,9 +41,16 @@ def least_window(pulley: Pulley, speed: float) -> float:
 
 
 def unsettled(evidence: Evidence) -> Iterator[Finding]:
-    """Say that a run-up began before the transients of its start had died."""
+    """Say that a run-up, or a run from steady running, began before the transients of its start had died."""
     left = attribute(evidence.recorded, "settling_left", 0.0)
-    if not left < SETTLED:
+    if not left < SETTLED and evidence.drive.simulation.start == "steady":
+        yield Finding(
+            f"steady running had not settled on the mesh that travels: {left:.1%} of the largest mean span tension is "
+            "still on its way.",
+            "What the run shows at its beginning is in part that.",
+            'Set simulation.frame = "staying", or give more belt.elements.',
+        )
+    elif not left < SETTLED:
         much, longer = f"{left:.1%} of the largest mean span tension is", "a longer settling"
         swept = [one for one in evidence.drive.pulleys if one.name == evidence.recorded.attrs.get("swept_pulley")]
         if isnan(left) and swept and swept[0].speed is not None:

@@ -16,10 +16,12 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
 
     Pressures at the ends of arcs need not be resolved by a number of elements that is chosen for a run over time.
     """
-    found = found_errors(evidence.recorded)
-    chosen = found and math.isnan(found["slip"]) and not _given(evidence)
+    found, settings = found_errors(evidence.recorded), evidence.drive.simulation
+    chosen = found and math.isnan(found["slip"]) and not _given(evidence) and settings.force_tolerance is None
     judged = [name for name in found if not (chosen and name in PRESSURES)]
-    worse = [f"{name} ({found[name]:.1%})" for name in judged if found[name] > ERROR_LIMITS[name]]
+    asked = settings.force_tolerance
+    limits = ERROR_LIMITS if asked is None else {**ERROR_LIMITS, "peak pressure": asked}
+    worse = [f"{name} ({found[name]:.1%})" for name in judged if found[name] > limits[name]]
     if worse:
         yield Finding(
             f"the mesh does not resolve {', '.join(worse)}.",

@@ -122,11 +122,11 @@ def advance(
 @kernel(inline=True)
 def _next_step(clock: np.record, settings: Settings, stop: float) -> float:
     """One of the equal steps to the stop, or to the last output instant that one step reaches, or else to the next."""
-    wanted, interval = clock.next_step, settings.output_interval
+    wanted, interval, since = clock.next_step, settings.output_interval, clock.time - settings.output_begin
     longest = min(settings.max_step, STRETCH * wanted)
-    following = floor((clock.time + 0.5 * wanted) / interval) + 1.0
-    reached = floor((clock.time + longest) / interval)
-    end = max(following, reached) * interval if interval < inf else stop
+    following = floor((since + 0.5 * wanted) / interval) + 1.0
+    reached = floor((since + longest) / interval)
+    end = settings.output_begin + max(following, reached) * interval if interval < inf else stop
     left = min(stop, end) - clock.time
     return float(left / ceil(left / longest * (1.0 - 1e-6)))
 

@@ -57,23 +57,24 @@ class GeneralizedAlpha:
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
-        system, start = task.system, task.start
+        system, start, begin = task.system, task.start, task.instants.begin
         period = _CROSSINGS * crossing_time(system)
         settings = Settings(
             spectral_radius=self.spectral_radius,
             velocity_tolerance=self.rtol * task.velocity_scale,
             newton_fraction=_NEWTON_FRACTION,
-            max_step=self.max_step or task.instants.end,
+            max_step=self.max_step or task.instants.end - begin,
             long_step=self.rtol**0.5 * period,
+            output_begin=begin,
             output_interval=task.instants.interval,
             numerical_share=_NUMERICAL_SHARE * self.rtol if self.rtol <= _FINE else np.inf,
             averaging_time=period,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
-        state = new_state(system, 0.0, first_step, start.position, start.velocity)
+        state = new_state(system, begin, first_step, start.position, start.velocity)
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
-        yield Chunk.start(system, start)
+        yield Chunk.start(system, start, begin)
         for stop in task.stops:
             restart(system, state, equations)
             while state.clock.time < stop:

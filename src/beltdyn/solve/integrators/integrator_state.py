@@ -46,8 +46,10 @@ class Settings(NamedTuple):
     """s."""
     long_step: float = np.inf
     """Length from which on a step is allowed no more local error than one of this length, s."""
+    output_begin: float = 0.0
+    """First output, s."""
     output_interval: float = np.inf
-    """Steps end on multiples of this where they can, s."""
+    """Steps end on multiples of this after the first output where they can, s."""
     numerical_share: float = np.inf
     """Part of the losses that numerical damping may take in the mean."""
     averaging_time: float = np.inf

@@ -1,4 +1,4 @@
-"""What goes before a run-up and is not recorded: the drive reaches its first speed, and its transients die."""
+"""What goes before a run and is not recorded: the drive runs at constant speeds, and its transients die."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -6,12 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.machines.profiles.functions import go_on
+from beltdyn.arrays import FloatArray
+from beltdyn.kernel import interpreted
+from beltdyn.machines.profiles.functions import go_on, profile_integral
 from beltdyn.model import Drive, Pulley
 from beltdyn.model.instants import Instants
 from beltdyn.results.checks.ending import LEAST_WINDOWS, SETTLED, least_window
-from beltdyn.solve.integrators.trajectory import Chunk, Integrator, Statistics, drive_task
+from beltdyn.solve.integrators.trajectory import Chunk, Integrator, Statistics, Task, drive_task
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.system.arrays import System
 from beltdyn.system.build_machines import profile_arrays
@@ -34,6 +35,20 @@ class Start(NamedTuple):
     state: State
     attributes: dict[str, float | str]
     """What is said of it, global attributes of the dataset."""
+
+
+class Settled(NamedTuple):
+    """What settling took."""
+
+    time: float
+    """s."""
+    left: float
+    """What is left of the start in the span tensions, over the largest mean one."""
+
+    @property
+    def attributes(self) -> dict[str, float | str]:
+        """What is said of it."""
+        return {"settling_time": self.time, "settling_left": self.left}
 
 
 @dataclass(frozen=True)
@@ -91,19 +106,8 @@ class Settling:
         stops = self.lead + window * np.arange(1, np.ceil(self.longest / window) + 1)
         instants = Instants(drive.simulation.output_interval, float(stops[-1]))
         task = replace(task, instants=instants, breakpoints=(*before.breakpoints, *stops.tolist()))
-        left = _Left()
-        for reached, states in _between(integrator(task), stops):
-            if progress is not None:
-                progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "settling"))
-            last = states.only(slice(-1, None))
-            if reached in stops and reached - self.lead > 0.5 * window:
-                seen = observe_motion(slower, states.position, states.velocity, states.forces, _first(states))
-                left.take(states.time, seen.span_tension)
-                if left.known and left.part < SETTLED:
-                    break
-        end = State(last.position[0], last.velocity[0], np.zeros_like(last.velocity[0]))
-        time = float(last.time[0])
-        return Start(_going_on(drive, system, slower, time), end, {"settling_time": time, "settling_left": left.part})
+        end, said = settle(task, integrator, stops, drive.simulation.duration, progress)
+        return Start(with_angles(drive, system, slower, said.time), end, said.attributes)
 
     def _before(self, drive: Drive) -> Drive:
         """The drive that reaches the first speed and stays there."""
@@ -153,24 +157,70 @@ class _Left:
         return late * ratio**2 / (1.0 - ratio)
 
 
-def _between(chunks: Iterator[Chunk], stops: FloatArray) -> Iterator[tuple[float, Chunk]]:
-    """The states from one of the stops to the next, and of what goes on the last states alone."""
+def settle(
+    task: Task, integrator: Integrator, stops: FloatArray, duration: float, progress: Report | None
+) -> tuple[State, Settled]:
+    """Run until transients have died.
+
+    Parameters
+    ----------
+    task
+        The drive at constant speeds, whose steps end on the stops.
+    integrator
+        Method of time integration.
+    stops : ndarray, shape (k,)
+        Ends of the windows over which means are taken, s.
+    duration
+        Of the run to come, s.
+    progress
+        Whom to tell.
+
+    Returns
+    -------
+    state
+        At the last stop, or at the first one by which transients have died.
+    settled
+        What it took.
+    """
+    left = _Left()
+    for states in _between(integrator(task), stops):
+        if progress is not None:
+            progress(Progress(0.0, duration, 0.0, 0, "settling"))
+        last, shown = states.only(slice(-1, None)), np.arange(len(states.time)) == 0
+        seen = observe_motion(task.system, states.position, states.velocity, states.forces, shown)
+        left.take(states.time, seen.span_tension)
+        if left.known and left.part < SETTLED:
+            break
+    end = State(last.position[0], last.velocity[0], np.zeros_like(last.velocity[0]))
+    return end, Settled(float(last.time[0]), left.part)
+
+
+def with_angles(drive: Drive, system: System, before: System | None = None, time: float = 0.0) -> System:
+    """Arrays of a drive whose prescribed angles go on from what they were in another system.
+
+    Parameters
+    ----------
+    drive, system
+        The drive.
+    before
+        The other system; by default angles are zero at the beginning.
+    time
+        When the other system had the angles, s.
+    """
+    profiles = profile_arrays(drive.pulleys)
+    prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
+    integral = interpreted(profile_integral)
+    angles = [0.0 if before is None else integral(before.profiles, number, time) for number in prescribed]
+    go_on(profiles, prescribed, drive.simulation.start_at, angles)
+    return system._replace(profiles=profiles)
+
+
+def _between(chunks: Iterator[Chunk], stops: FloatArray) -> Iterator[Chunk]:
+    """The states from one of the stops to the next; the last one of each begins the next."""
     waiting = list[Chunk]()
     for chunk in chunks:
         waiting += [chunk] if len(chunk.time) else []
         at = float(stops[np.argmin(np.abs(stops - chunk.reached))])
         if abs(at - chunk.reached) < 1e-9 * at:
-            yield at, Chunk.join(waiting)
+            yield Chunk.join(waiting)
             waiting = [waiting[-1].only(slice(-1, None))]
-
-
-def _first(states: Chunk) -> BoolArray:
-    return np.asarray(np.arange(len(states.time)) == 0)
-
-
-def _going_on(drive: Drive, system: System, before: System, time: float) -> System:
-    """Arrays of a drive whose prescribed angles go on from what they were in another system at a time."""
-    profiles = profile_arrays(drive.pulleys)
-    prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
-    go_on(profiles, before.profiles, prescribed, time)
-    return system._replace(profiles=profiles)

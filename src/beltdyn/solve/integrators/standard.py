@@ -54,8 +54,8 @@ class StandardIntegrator:
         equations = FirstOrder(task.system)
         tolerances = equations.tolerances(_PART * self.rtol * task.velocity_scale, POSITION_TIME)
         bound = StepBound(task.system, _PART * self.rtol * task.velocity_scale)
-        y, time = equations.pack(task.start), 0.0
-        yield Chunk.start(task.system, task.start)
+        y, time = equations.pack(task.start), task.instants.begin
+        yield Chunk.start(task.system, task.start, time)
         written = 1
         for stop in task.stops:
             make = _Sundials if self.name in ("cvode", "ida") else _SciPy

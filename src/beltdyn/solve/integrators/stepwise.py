@@ -174,8 +174,8 @@ class Stepwise:
         """Integrate; see `Integrator`."""
         equations = FirstOrder(task.system)
         bound = StepBound(task.system, self.control.missed * task.velocity_scale)
-        y, time = equations.pack(task.start), 0.0
-        yield Chunk.start(task.system, task.start)
+        y, time = equations.pack(task.start), task.instants.begin
+        yield Chunk.start(task.system, task.start, time)
         for stop in task.stops:
             after = float(np.nextafter(time, np.inf))
             equations.jump(after, y)

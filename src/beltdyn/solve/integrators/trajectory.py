@@ -44,11 +44,11 @@ class Chunk:
     reached: float
 
     @classmethod
-    def start(cls, system: System, state: State) -> Self:
-        """The state at time zero, before the first step."""
-        zero, position, velocity = np.zeros(1), state.position[None].copy(), state.velocity[None].copy()
-        forces = body_forces_at(system, zero, position, velocity)
-        return cls(zero, zero, position, velocity, np.zeros((1, len(ENERGY_WORKS))), forces, 0.0)
+    def start(cls, system: System, state: State, begin: float = 0.0) -> Self:
+        """The state at the beginning (s), before the first step."""
+        time, position, velocity = np.full(1, begin), state.position[None].copy(), state.velocity[None].copy()
+        forces = body_forces_at(system, time, position, velocity)
+        return cls(time, np.zeros(1), position, velocity, np.zeros((1, len(ENERGY_WORKS))), forces, begin)
 
     @classmethod
     def join(cls, chunks: Sequence[Self]) -> Self:
@@ -186,9 +186,9 @@ class Task:
     system : System
         Belt, pulleys, supports.
     start : State
-        State at time zero.
+        State at the first output instant.
     instants : Instants
-        Output instants, on which steps end where they can; the solver ends at the last one.
+        Output instants, on which steps end where they can; the solver begins at the first and ends at the last one.
     breakpoints : sequence of float
         Instants between, s, on which a step must end because what drives the system has a kink or a jump there.
     velocity_scale : float
@@ -207,8 +207,8 @@ class Task:
     @property
     def stops(self) -> list[float]:
         """Breakpoints after the start, and the end, s."""
-        last = self.instants.end
-        return [*sorted({float(t) for t in self.breakpoints if 0.0 < t < last}), last]
+        first, last = self.instants.begin, self.instants.end
+        return [*sorted({float(t) for t in self.breakpoints if first < t < last}), last]
 
 
 class Integrator(Protocol):
@@ -243,7 +243,7 @@ def drive_task(drive: Drive, system: System, start: State, statistics: Statistic
     system
         Its arrays.
     start
-        State at time zero.
+        State at the beginning.
     statistics
         Where the solver counts.
 
@@ -270,6 +270,6 @@ def velocity_scale(drive: Drive) -> float:
         m/s; rims are driven by a prescribed speed, or by a motor up to its synchronous speed.  The second is strain at
         rest times the speed of axial waves, the velocity of a belt end that is let go.
     """
-    duration = drive.simulation.duration
-    rims = [radius * pulley.driven_speed(duration) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
+    end = drive.simulation.end
+    rims = [radius * pulley.driven_speed(end) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
     return float(max(*rims, install(drive).strain * drive.belt.wave_speed, 0.0))

@@ -22,7 +22,7 @@ def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
     statistics
         What the solver did so far.
     reached
-        Time that it has reached, s.
+        Simulated time until now, s.
 
     Returns
     -------

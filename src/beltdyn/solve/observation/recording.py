@@ -96,7 +96,7 @@ class Recording:
         self._before: tuple[Chunk, Arrays] | None = None
         self._done: Arrays = {}
         self._written = 0
-        self._reached = self._step = 0.0
+        self._step = 0.0
         self._pace = Pace()
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
         self._ended: float | None = None
@@ -128,13 +128,13 @@ class Recording:
 
     def prepare(self) -> None:
         """Compile the kernels, so that the time taken is that of the simulation."""
-        self.tell(0.0, "compiling")
+        self.tell(self._instants.begin, "compiling")
         compile_kernels(self._system, laid(self._system, self._drive.path))
         self._compiled = self._started = time.perf_counter()
         self._cpu_started = time.process_time()
 
     def start(self, drive: Drive, system: System, unstable: tuple[str, ...]) -> None:
-        """Note that the state at time zero is known.
+        """Note that the state at the beginning is known.
 
         Parameters
         ----------
@@ -158,7 +158,6 @@ class Recording:
         if len(chunk.time):
             self._waiting.append(chunk)
             self._step = float(chunk.step[-1])
-        self._reached = chunk.reached
         self.tell(chunk.reached, phase)
         states = sum(len(chunk.time) for chunk in self._waiting)
         if states > _MOST_WAITING or time.perf_counter() - self._last_write > _SECONDS_BETWEEN_WRITES:
@@ -167,12 +166,12 @@ class Recording:
     def tell(self, reached: float, phase: Phase) -> None:
         """Tell of progress."""
         if self._progress is not None:
-            duration = self._drive.simulation.duration
+            duration, passed = self._drive.simulation.duration, reached - self._instants.begin
             outputs = self._instants.until(float(self._waiting[-1].time[-1])) if self._waiting else self._written
             elapsed = time.perf_counter() - self._started if phase == "integrating" else 0.0
-            bound = step_bound(self._drive, self.statistics, reached)
-            pace = self._pace.at(elapsed, reached)
-            self._progress(Progress(reached, duration, self._step, outputs, phase, elapsed, bound, pace))
+            bound = step_bound(self._drive, self.statistics, passed)
+            pace = self._pace.at(elapsed, passed)
+            self._progress(Progress(passed, duration, self._step, outputs, phase, elapsed, bound, pace))
 
     def note(self, **facts: Any) -> None:
         """Add global attributes to the dataset."""
@@ -201,7 +200,7 @@ class Recording:
         """Record the outputs that lie in the steps to the states that wait."""
         states = Chunk.join(self._waiting)
         self._waiting.clear()
-        before = self._before[0].time[0] if self._before else -self._instants.interval
+        before = self._before[0].time[0] if self._before else self._instants.begin - self._instants.interval
         shown = states.around(self._instants, before)
         shown[-1] = True  # the next step may hold an output
         seen, for_spectra = self._observer.see(states, shown)

@@ -134,7 +134,7 @@ def on_equal_elements(drive: Drive) -> Drive:
     settings = drive.simulation
     if settings.frame == "travelling":
         return drive
-    return drive.replace(simulation=settings.replace(frame="travelling", start="equilibrium"))
+    return drive.replace(simulation=settings.replace(frame="travelling"))
 
 
 def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:

@@ -31,7 +31,7 @@ def held_at(drive: Drive, at: float | None) -> Drive:
 
 def at_instant(drive: Drive, at: float | None) -> Drive:
     """Hold speeds, torques and schedules as they are at an instant (s), by default the end of the simulation."""
-    return without_schedules(drive, drive.simulation.duration if at is None else at)[0]
+    return without_schedules(drive, drive.simulation.end if at is None else at)[0]
 
 
 def sense_of(drive: Drive, number: int) -> float:

@@ -10,13 +10,13 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.defaults import MOST
 from beltdyn.model.graded_mesh import FINENESS
+from beltdyn.solve.integrators.settling import with_angles
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.rest.staying import Standing, anchor_at, bring_to_stand, stand
-from beltdyn.solve.steady import require_steady
-from beltdyn.solve.steady_running.refinement import errors_at_rest
+from beltdyn.solve.rest.staying import FINER, Standing, anchor_at, bring_to_stand, stand
+from beltdyn.solve.steady_running.refinement import MeshRule, errors_at_rest, refine, refine_at_rest
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.build_staying import flowing_system, smoothed_over_time
+from beltdyn.system.build_staying import flowing_system, on_other_mesh, smoothed_over_time
 from beltdyn.system.state import State
 
 
@@ -30,7 +30,7 @@ class Beginning(NamedTuple):
     unstable: tuple[str, ...] = ()
     """Names of the pulleys whose tensioners are not in stable balance at rest."""
     mesh_errors: Mapping[str, float] = MappingProxyType({})
-    """What a mesh that stays makes wrong at rest, relative, where a finer one has told."""
+    """What a mesh that stays makes wrong at rest, or in steady running, relative, where a finer one has told."""
 
 
 def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
@@ -55,43 +55,60 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
             'simulation.frame = "staying" does not fit an open belt: no belt flows past its ends. '
             'Set simulation.frame = "travelling".'
         )
-    steady = drive.simulation.start == "steady"
-    if steady:
-        _require_steady(drive)
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    rest = _meshed(drive)
-    direction = anchor_at(rest.system, rest.state, True).direction
-    state = _running(rest) if steady else rest.state
-    speed = float(rest.system.frame.speed[0])
-    flowing = flowing_system(smoothed_over_time(rest.system), direction)
-    errors = errors_at_rest(rest)
-    return Beginning(rest.drive, flowing, with_passage(rest.system, state, speed), mesh_errors=errors)
+    meshed = _meshed(drive)
+    if drive.simulation.start == "steady":
+        meshed = _running(meshed, drive.simulation.force_tolerance)
+    system, direction = meshed.system, anchor_at(meshed.system, meshed.state, True).direction
+    flowing = with_angles(meshed.drive, flowing_system(smoothed_over_time(system), direction))
+    return Beginning(meshed.drive, flowing, with_passage(system, meshed.state, meshed.speed), (), meshed.errors)
 
 
-def _require_steady(drive: Drive) -> None:
-    """Make sure that a drive may run steadily at time zero."""
-    try:
-        require_steady(drive)
-    except ModelError as error:
-        raise ModelError(
-            f'simulation.start = "steady" needs steady running, and {error} Or set simulation.start = "equilibrium".'
-        ) from error
+class _Meshed(NamedTuple):
+    """A state on a mesh that stays."""
+
+    rest: Standing
+    """The belt at rest on that mesh, or on one from which it was refined."""
+    system: System
+    state: State
+    speed: float
+    """Of the belt, m/s."""
+    errors: Mapping[str, float]
+    """Of the mesh, relative, as far as they are known."""
+
+    @property
+    def drive(self) -> Drive:
+        """With the length, or the take-up, that gives the installed tension."""
+        return self.rest.drive
 
 
-def _meshed(drive: Drive) -> Standing:
-    """The drive at rest on a graded mesh of about the number of elements that it asks for."""
-    rest = bring_to_stand(drive)
-    given = drive.belt.elements
-    fineness = rest.fineness * (given or MOST) / rest.system.nodes
-    return stand(rest.drive, fineness=fineness if given else min(FINENESS, fineness))
+def _meshed(drive: Drive) -> _Meshed:
+    """The drive at rest, on a mesh as it asks for."""
+    settings, given = drive.simulation, drive.belt.elements
+    if settings.mesh == "uniform":
+        rest = bring_to_stand(drive, drive.elements)
+        errors = errors_at_rest(rest, drive.elements)
+    elif settings.force_tolerance is not None:
+        rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), settings.force_tolerance)
+    else:
+        rest = bring_to_stand(drive)
+        fineness = rest.fineness * (given or MOST) / rest.system.nodes
+        rest = stand(rest.drive, fineness=fineness if given else min(FINENESS, fineness))
+        errors = errors_at_rest(rest)
+    return _Meshed(rest, rest.system, rest.state, 0.0, errors)
 
 
-def _running(rest: Standing) -> State:
-    """Steady running at time zero."""
-    search = SteadySearch(rest.drive, rest.system, rest.state, 0.0)
+def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
+    """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
+    rest = meshed.rest
+    search = SteadySearch(rest.drive, rest.system, rest.state, rest.drive.simulation.start_at)
     search.run(rest)
-    return search.running()
+    system, errors = rest.system, meshed.errors
+    if force_tolerance is not None:
+        errors, _ = refine(search, MeshRule(rest.layer, rest.fineness / FINER), force_tolerance)
+        system = on_other_mesh(rest.drive, rest.system, search.constant.length)
+    return meshed._replace(system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
 
 
 def with_passage(system: System, state: State, speed: float) -> State:

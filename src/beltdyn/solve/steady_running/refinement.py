@@ -167,13 +167,15 @@ def _seen(system: System, state: State) -> Observations:
     return observe(system, np.zeros(1), state.position[None], state.velocity[None])
 
 
-def errors_at_rest(rest: Standing) -> dict[str, float]:
+def errors_at_rest(rest: Standing, elements: int | None = None) -> dict[str, float]:
     """Errors of a mesh in tension and contact pressures at rest, relative, by a finer one.
 
     Parameters
     ----------
     rest
         The drive at rest on the mesh.
+    elements
+        Number of its equal elements; by default it is graded.
 
     Returns
     -------
@@ -181,9 +183,50 @@ def errors_at_rest(rest: Standing) -> dict[str, float]:
         As `refine` gives them, without slip; empty where the finer mesh finds no rest.
     """
     try:
-        finer = stand(rest.drive, fineness=FINER * rest.fineness)
+        return _between(rest, _finer(rest, elements))
     except ConvergenceError:
         return {}
+
+
+def refine_at_rest(rest: Standing, tolerance: float) -> tuple[Standing, dict[str, float]]:
+    """Refine a graded mesh of a drive at rest.
+
+    Parameters
+    ----------
+    rest
+        The drive at rest.
+    tolerance
+        Change of contact forces to the next mesh, over the largest of a pulley, that is small enough.
+
+    Returns
+    -------
+    rest
+        On the first mesh from which the next one changes little enough.
+    errors
+        By that next one, as from `errors_at_rest`.
+
+    Raises
+    ------
+    ConvergenceError
+        If a finer mesh finds no rest.
+    """
+    while True:
+        finer = _finer(rest, None)
+        errors = _between(rest, finer)
+        if is_fine(errors, tolerance) or rest.system.nodes > MOST_ELEMENTS:
+            return rest, errors
+        rest = finer
+
+
+def _finer(rest: Standing, elements: int | None) -> Standing:
+    """The same drive at rest on a finer mesh, of equal elements where their number is given."""
+    if elements is None:
+        return stand(rest.drive, fineness=FINER * rest.fineness)
+    return stand(rest.drive, round(FINER * elements))
+
+
+def _between(rest: Standing, finer: Standing) -> dict[str, float]:
+    """Differences of a drive at rest on two meshes, relative."""
     none = np.zeros(rest.system.pulleys.size)
     before, after = (Solution(one.system, one.state, _seen(one.system, one.state), none) for one in (rest, finer))
     found = _differences(before, after)

@@ -40,7 +40,7 @@ def held(drive: Drive, points: Points) -> Drive:
     points
         The operating points of the study.
     """
-    return without_schedules(drive, drive.simulation.duration if points.at is None else points.at)[0]
+    return without_schedules(drive, drive.simulation.end if points.at is None else points.at)[0]
 
 
 def study_points(drive: Drive, points: Points, base: Path) -> list[OperatingPoint]:

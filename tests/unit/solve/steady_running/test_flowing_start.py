@@ -113,3 +113,32 @@ def test_bending_loses_as_much_as_in_steady_running() -> None:
     steady = summarize(bd.steady_state(drive)).balance.losses["belt bending"]
     loss = bd.simulate(drive).dataset["bending_loss"]
     assert float(loss[-1] - loss[-21]) / 0.02 == pytest.approx(steady, rel=0.03)
+
+
+@pytest.mark.parametrize("begin", [{}, {"start": "steady", "start_at": 1.6}])
+def test_a_mesh_is_refined_to_a_tolerance(short: Drive, begin: dict[str, object]) -> None:
+    """At rest, or in steady running; the finer one has twice the elements, and a tenth of the errors or less."""
+    settings = short.simulation
+    coarse, fine = (
+        bd.simulate(short.replace(simulation=settings.replace(force_tolerance=tolerance, **begin)))
+        for tolerance in (0.05, 1e-4)
+    )
+    assert 1e-4 < coarse.resolution.errors["peak pressure"] < 0.05
+    assert fine.resolution.errors["peak pressure"] < 1e-4
+    assert fine.dataset.sizes["node"] > 1.3 * coarse.dataset.sizes["node"]
+    one, other = (run.dataset.span_tension.values[0] for run in (coarse, fine))
+    np.testing.assert_allclose(one, other, rtol=1e-4)
+
+
+def test_a_mesh_of_equal_elements(short: Drive) -> None:
+    settings = short.simulation.replace(mesh="uniform")
+    run = bd.simulate(short.replace(belt=short.belt.replace(elements=40), simulation=settings))
+    lengths = element_lengths(run.dataset, run.drive.belt_length)
+    np.testing.assert_allclose(lengths, run.drive.belt_length / 40, rtol=1e-9)
+    assert run.resolution.errors["peak pressure"] < 0.01
+
+
+def test_a_tolerance_comes_before_a_number_of_elements(short: Drive) -> None:
+    settings = short.simulation.replace(force_tolerance=0.01)
+    free, given = (short.replace(belt=short.belt.replace(elements=n), simulation=settings) for n in (None, 80))
+    assert bd.simulate(given).dataset.sizes["node"] == bd.simulate(free).dataset.sizes["node"] < 40
