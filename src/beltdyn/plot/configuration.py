@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.plot.drive import DrivePicture, draw_rotation, size_of
+from beltdyn.plot.headline import at_instant
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import axes_or_new, new_figure
 from beltdyn.results import Result, Run, StaticResult
@@ -47,6 +48,7 @@ def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes |
     ax = axes_or_new(ax, size_of(run.drive))
     tension = instant["belt_tension"].values
     DrivePicture(run, ax, Normalize(tension.min(), tension.max())).show(instant)
+    ax.set_title(at_instant(run, float(instant["time"])))
     centers = instant["pulley_center"].values if "pulley_center" in instant else run.drive.centers
     for pulley, center, speed in zip(run.drive.pulleys, centers, instant["pulley_speed"].values, strict=True):
         draw_rotation(ax, center, pulley.radius, float(speed))

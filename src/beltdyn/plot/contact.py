@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.arrays import FloatArray
+from beltdyn.plot.headline import at_instant
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import INK, SHADE, axes_or_new, color, dash, label, reserve, unit
@@ -91,7 +92,7 @@ def contact_forces(
     ax.locator_params(axis="x", nbins=5)
     coordinate_unit = unit(run.dataset["belt_coordinate"])
     ax.set(xlabel=f"Belt coordinate from entry to exit [{coordinate_unit}]", ylabel=label(force))
-    ax.set_title(f"{name}, t = {float(instant['time']):.4g} s")
+    ax.set_title(_title(run, name, float(instant["time"])))
     if not run.resolution.resolves("peak pressure"):
         reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
     return ax
@@ -135,10 +136,15 @@ def contact_pressure(
     _shade_sliding(ax, angle, arc["sliding"].values)
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
     ax.set(xlabel="Angle from the inlet [°]", ylabel="On the belt [kPa]")
-    ax.set_title(f"{run.drive.pulleys[number].name}, t = {float(arc['time']):.4g} s")
+    ax.set_title(_title(run, run.drive.pulleys[number].name, float(arc["time"])))
     if not run.resolution.resolves("peak pressure"):
         reserve(ax, f"peaks not resolved by {run.drive.elements} elements")
     return ax
+
+
+def _title(run: Result, name: str, time: float) -> str:
+    """The pulley, and the instant of a run."""
+    return ", ".join(filter(None, (name, at_instant(run, time))))
 
 
 def _shade_sliding(ax: Axes, angle: FloatArray, sliding: FloatArray) -> None:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import mean_window
+from beltdyn.results.recorded import runs_steadily
 
 _SIZE = 11
 _AN_INCH = 11.5
@@ -47,6 +48,12 @@ def headline(result: Result) -> str:
     else:
         point = result.kind
     return ": ".join(part for part in (name_of(result), point) if part)
+
+
+def at_instant(result: Result, time: float) -> str:
+    """Name an instant of a run; nothing at rest and in steady running, where all instants are alike."""
+    lasts = isinstance(result, StaticResult) or runs_steadily(result.dataset)
+    return "" if lasts else f"t = {time:.4g} s"
 
 
 def name_of(result: Result) -> str:

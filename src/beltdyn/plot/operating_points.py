@@ -68,6 +68,8 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     if _over_both(result):
         values = values.sel(load=1.0, method="nearest")
     values, ax = _in_shown_units(values), axes_or_new(ax)
+    if _over_both(result):
+        ax.set_title(f"load {float(values['load']):.4g}")
     along = _in_shown_units(dataset[axis])
     for number, (name, line) in enumerate(_lines(values, axis)):
         mark = "o" if axis == "row" else None

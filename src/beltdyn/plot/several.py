@@ -59,6 +59,8 @@ def overlay(
         titles.append(ax.get_title(loc="left"))
         new = [artist for artist in ax.get_children() if artist not in before | {ax.patch, *ax.spines.values()}]
         drawn[number] = [artist for artist in new if isinstance(artist, Line2D)]
+        for line in drawn[number]:
+            line.set_gid(names[number])
         _tell_apart(new, number)
         for one in new:
             if isinstance(one, Text) and one.get_gid() == NOTE:

@@ -50,7 +50,7 @@ _BESIDE = 40
 """Letters of a name that fit beside the axes."""
 _BEYOND_A_SCALE = 1.2
 """Where a legend begins beside axes with a second scale."""
-_RESERVATION, _BEYOND_WORDS = "reservation", 2.0
+RESERVATION, _BEYOND_WORDS = "reservation", 2.0
 """Name of what is written along the right edge, and the distance of a legend beside it, in letters."""
 
 _RULES: dict[Any, Any] = {
@@ -183,7 +183,7 @@ def reserve(ax: Axes, text: str) -> None:
     ax.annotate(
         text,
         (1.0, 0.5),
-        gid=_RESERVATION,
+        gid=RESERVATION,
         xycoords="axes fraction",
         xytext=(4.0, 0.0),
         textcoords="offset points",
@@ -226,7 +226,7 @@ def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
         ax.figure.figure.legend(handles=lines, loc="outside lower center")
     else:
         beside = _BEYOND_A_SCALE if ax.child_axes else 1.0
-        pad = _BEYOND_WORDS if any(text.get_gid() == _RESERVATION for text in ax.texts) else None
+        pad = _BEYOND_WORDS if any(text.get_gid() == RESERVATION for text in ax.texts) else None
         ax.legend(handles=lines, loc="center left", bbox_to_anchor=(beside, 0.5), borderaxespad=pad)
 
 

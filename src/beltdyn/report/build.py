@@ -18,7 +18,7 @@ from beltdyn.plot.style import tension_colors
 from beltdyn.report.figures import charted
 from beltdyn.report.library import embedded, library
 from beltdyn.report.motion import motion
-from beltdyn.report.origin import differing_keys, origin
+from beltdyn.report.origin import analysis_of, differing_keys, origin
 from beltdyn.report.verdict import compared, in_unit, limit_in_words, verdict
 from beltdyn.results import Result, Run
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
@@ -128,6 +128,7 @@ def _page(results: Sequence[Result]) -> str:
         title=" and ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} more",
         mark=_SAYS_WHO_MADE_IT,
         compares=len(results) > 1,
+        kinds={analysis_of(one) for one in results},
         verdict=verdict(results),
         parts=[_part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))],
         numbers=compared(results),
@@ -156,6 +157,7 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
     return {
         "name": name,
         "kind": result.kind,
+        "title": result.dataset.attrs["title"],
         "status": result.status,
         "description": result.drive.description or "",
         "picture": picture(result.drive),

@@ -9,12 +9,14 @@ from beltdyn.errors import ModelError
 from beltdyn.plot.figures import chosen_by_default
 from beltdyn.plot.registry import FIGURES, Choice
 from beltdyn.plot.saving import data_uri
-from beltdyn.plot.style import styled
+from beltdyn.plot.style import NOTE, RESERVATION, styled
 from beltdyn.report.chart import charts
 from beltdyn.results import Result
 
 _LARGEST_DRAWING = 300_000
 """Letters of a drawing of lines from which on it is smaller as pixels."""
+_WIDE = 8.0
+"""Width of a picture of several panels side by side, inches."""
 
 
 class Shown(NamedTuple):
@@ -30,12 +32,18 @@ class Shown(NamedTuple):
         Where its charts stand on the page; none where it is best as it is.
     missing : str
         Why it cannot be drawn of these results, as of drives with other pulleys; empty where it is.
+    notes : tuple of str
+        What is written on the picture, and stands below its charts.
+    wide : bool
+        Whether it has panels side by side, so that it is scrolled where there is no room for it.
     """
 
     name: str
     source: str
     charts: list[str]
     missing: str = ""
+    notes: tuple[str, ...] = ()
+    wide: bool = False
 
 
 @styled
@@ -64,9 +72,15 @@ def charted(results: Sequence[Result]) -> tuple[list[Shown], dict[str, Any]]:
             shown.append(Shown(title, "", [], str(error)))
             continue
         places = {f"{name}-{number}": chart for number, chart in enumerate(charts(drawn))}
-        shown.append(Shown(title, _picture(drawn), list(places)))
+        shown.append(Shown(title, _picture(drawn), list(places), "", _notes(drawn), drawn.get_figwidth() > _WIDE))
         models |= places
     return shown, models
+
+
+def _notes(drawn: Figure) -> tuple[str, ...]:
+    """What is written into the corners and along the edges of panels, each once."""
+    texts = (text for ax in drawn.axes for text in ax.texts if text.get_gid() in (NOTE, RESERVATION))
+    return tuple(dict.fromkeys(line for text in texts for line in text.get_text().splitlines() if line))
 
 
 def _picture(drawn: Figure) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from beltdyn.parts.messages import show
 from beltdyn.plot.several import given_keys
 from beltdyn.results import Result, Run
+from beltdyn.results.recorded import runs_steadily
 
 _MOST_DIFFERENCES = 40
 
@@ -27,7 +28,7 @@ def origin(result: Result) -> list[tuple[str, str]]:
     packages = ("beltdyn", "numba", "numpy", "scipy", "python")
     versions = ", ".join(f"{name} {said[f'{name}_version']}" for name in packages if f"{name}_version" in said)
     facts = [
-        ("analysis", f"{result.kind}, {result.status}"),
+        ("analysis", f"{analysis_of(result)}, {result.status}"),
         ("versions", versions),
         ("computed", str(said.get("created", "not known"))),
         ("format of the result file", str(said.get("format", "not known"))),
@@ -42,6 +43,13 @@ def origin(result: Result) -> list[tuple[str, str]]:
     facts += [("belt elements", f"{result.drive.elements}, {result.drive.belt.discretization}")]
     facts += [(choice.key, choice.words) for choice in result.drive.completed.choices]
     return facts
+
+
+def analysis_of(result: Result) -> str:
+    """Name of the analysis: of a run, whether it is steady running or a sweep."""
+    if isinstance(result, Run) and runs_steadily(result.dataset):
+        return "steady"
+    return "sweep" if "swept_pulley" in result.dataset.attrs else result.kind
 
 
 def differing_keys(results: Sequence[Result]) -> list[tuple[str, list[str]]]:

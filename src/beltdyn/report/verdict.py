@@ -7,6 +7,9 @@ import numpy as np
 
 from beltdyn.results import KeyNumber, Result, key_numbers
 
+_WHOLE, _HUGE = 1e4, 1e9
+"""Between these a number is written without an exponent."""
+
 
 class SideBySide(NamedTuple):
     """A key number of all results.
@@ -100,4 +103,6 @@ def in_unit(value: float, unit: str, sign: str = "") -> str:
         return "–"
     if unit == "%":
         return f"{100.0 * value:{sign}.3g} %"
-    return f"{value:{sign}.4g} {unit}".removesuffix(" 1")
+    rounded = float(f"{value:.4g}")
+    number = f"{rounded:{sign}.0f}" if _WHOLE <= abs(rounded) < _HUGE else f"{value:{sign}.4g}"
+    return f"{number} {unit}".removesuffix(" 1")

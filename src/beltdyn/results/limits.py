@@ -9,7 +9,7 @@ import numpy as np
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.arrays import FloatArray
 from beltdyn.results.means import pulley_means
-from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.recorded import names, runs_steadily
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.shown import in_words
@@ -96,19 +96,15 @@ def _of_run(run: Result) -> Iterator[Found]:
         means = pulley_means(recorded, run.drive)
         hub_load = np.linalg.norm(np.asarray(recorded["hub_force"]), axis=2)
         tension = np.asarray(recorded["span_tension"])
-        pulleys, spans, time = names(recorded, "pulley"), names(recorded, "span"), _times(recorded)
-    over = "" if len(time) == 1 else "mean at the end"
+        pulleys, spans = names(recorded, "pulley"), names(recorded, "span")
+        lasts = runs_steadily(recorded) or len(recorded["time"]) == 1
+        time = [""] * len(hub_load) if lasts else [f"at {one:.4g} s" for one in np.asarray(recorded["time"])]
+    over = "" if lasts else "mean at the end"
     yield _worst("largest_slip", np.abs([[one.slip for one in means]]), "%", [over], pulleys)
     yield _worst("largest_hub_load", hub_load, "N", time, pulleys)
     yield _worst("largest_tension", tension, "N", time, spans)
     yield _worst("least_tension", tension, "N", time, spans)
     yield _worst("least_margin", np.array([[one.margin for one in means]]), "1", [over], pulleys)
-
-
-def _times(recorded: Recorded) -> list[str]:
-    """The outputs in words; nothing where there is but one."""
-    time = np.asarray(recorded["time"])
-    return [""] if len(time) == 1 else [f"at {one:.4g} s" for one in time]
 
 
 _OF_TABLES = {

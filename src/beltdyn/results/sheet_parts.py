@@ -1,6 +1,9 @@
 """Parts of a sheet, which is what is written of a result for a reader."""
 
+import re
 from typing import NamedTuple
+
+_NUMBER = re.compile(r"[<>]?\s*[-+−]?[\d.]|[–-]?$|nan|-?inf")
 
 
 class Table(NamedTuple):
@@ -19,6 +22,10 @@ class Table(NamedTuple):
     title: str
     headings: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+
+    def has_words(self, column: int) -> bool:
+        """Whether a column holds words, and not numbers alone."""
+        return any(_NUMBER.match(row[column]) is None for row in self.rows)
 
 
 class Facts(NamedTuple):

@@ -2,20 +2,53 @@
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from html.parser import HTMLParser
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.report import report_file, write_report
 from beltdyn.results import Result, Run
 
 _EMPTY = {"meta", "img", "input", "link", "br", "hr", "circle", "path"}
 LARGEST = 5_000_000
+EXAMPLES = files("beltdyn").joinpath("examples")
+MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[str, ...]]] = {
+    "static": (bd.equilibrium, ("Largest hub load", "Wrap angle"), ("contact_pressure-0",)),
+    "steady": (bd.steady_state, ("Least capstan margin", "steady, completed", "efficiency"), ("contact_forces-0",)),
+    "map": (
+        lambda drive: bd.operating_map(drive, speed="700, 1500 rpm", load="0.5, 1"),
+        ("Largest slip", "speed 1500 rpm, load 1", "Efficiency map"),
+        ("operating_points-0",),
+    ),
+    "traction": (lambda drive: bd.traction(drive, points=3), ("Largest torque", "Euler"), ("traction_curve-0",)),
+    "tensioner": (bd.tensioner_sheet, ("longest belt", "Path per rad"), ("tensioner_sheet-0",)),
+    "modes": (lambda drive: bd.modes(drive, count=3), ("Parts with most of the energy", "Mode shape"), ()),
+    "campbell": (
+        lambda drive: bd.campbell(drive, speed="1000, 1500 rpm", count=3),
+        ("Critical speed", "Flutter rate"),
+        ("campbell-0", "campbell-1"),
+    ),
+    "response": (
+        lambda drive: bd.response(drive, speed="1000, 1500 rpm"),
+        ("Amplitude of span tension", "speed of crank, order 2"),
+        ("response-0",),
+    ),
+}
+"""Name -> how it is made, words of its report, and places of its charts."""
+MEANINGS = {
+    "Kinds of modes": {"modes", "campbell"},
+    "Critical speed": {"campbell"},
+    "<dt>Amplitude": {"response"},
+    "Tension that an arm holds": {"tensioner"},
+}
+"""What is explained, and in reports of which kinds."""
 
 
 class Page(HTMLParser):
@@ -129,7 +162,8 @@ def test_a_result_without_a_time_has_a_report(run: Run, tmp_path: Path) -> None:
     Page(text)
     assert "it is wrong." in text
     assert "Bokeh" not in text
-    assert "not judged by limits" in text
+    assert 'id="numbers"' not in text
+    assert "limit" not in text[: text.index('id="drive"')].partition("<body>")[2]
 
 
 def test_a_drive_that_stands_still_does_not_move(make_run: Callable[..., Run], tmp_path: Path) -> None:
@@ -164,3 +198,44 @@ def test_the_name_of_a_report() -> None:
     assert report_file([Path("a/b.nc")]) == Path("a/b.html")
     assert report_file([Path("a/b.nc"), Path("c.nc")]) == Path("a/b-and-c.html")
     assert report_file([Path("a/b.nc"), Path("c.nc"), Path("d.nc")]) == Path("a/b-and-2-more.html")
+
+
+@pytest.fixture(scope="module")
+def excited() -> bd.Drive:
+    text = EXAMPLES.joinpath("alternator_drive.toml").read_text(encoding="utf-8")
+    harmonics = "harmonics = [{ order = 2, amplitude = 0.001 }]\n"
+    return bd.loads(text.replace("speed = {", f"{harmonics}speed = {{", 1) + "\n[limits]\nleast_margin = 1.5\n")
+
+
+@pytest.mark.parametrize("kind", MAKERS)
+def test_a_report_has_what_matters(kind: str, excited: bd.Drive, tmp_path: Path) -> None:
+    make, words, charts = MAKERS[kind]
+    result = make(excited)
+    text = write_report(result, tmp_path / "report.html").read_text(encoding="utf-8")
+    Page(text)
+    assert len(text.encode()) < LARGEST
+    for word in (*words, "Hub load" if kind != "modes" else "growth rate", "<math", "SHA-256", "[[pulley]]"):
+        assert word in text, word
+    roots = data(text, "charts").get("items", [{"roots": {}}])[0]["roots"].values()
+    assert set(charts) <= set(roots)
+    explained = text.partition('id="meaning"')[2].partition("</section>")[0]
+    for meaning, kinds in MEANINGS.items():
+        assert (meaning in explained) == (kind in kinds), meaning
+    judged = kind in ("steady", "map")
+    assert ("The limit is kept" in text) == judged
+    assert ('id="numbers"' in text) == (judged or kind == "static")
+
+
+def test_steady_running_names_no_instants(excited: bd.Drive, tmp_path: Path) -> None:
+    text = write_report(bd.steady_state(excited), tmp_path / "steady.html").read_text(encoding="utf-8")
+    assert "at 0 s" not in text
+    assert "mean at the end" not in text
+    titles = {one.get("text") for one in _parts(data(text, "charts")) if one.get("name") == "Title"}
+    assert "t = " not in str(titles)
+
+
+def _parts(content: object) -> list[dict[str, object]]:
+    """All mappings within a document."""
+    inner = list(content.values()) if isinstance(content, dict) else content if isinstance(content, list) else []
+    found = [content] if isinstance(content, dict) else []
+    return [*found, *(one for part in inner for one in _parts(part))]

@@ -1,10 +1,9 @@
-"""Figures as charts: the same lines, and no peak lost where they are thinned."""
+"""Figures as charts: the same lines."""
 
 import numpy as np
-import pytest
 from matplotlib.figure import Figure
 
-from beltdyn.report.chart import charts, thinned
+from beltdyn.report.chart import charts
 
 
 def test_lines_keep_names_numbers_and_labels() -> None:
@@ -30,24 +29,6 @@ def test_a_figure_of_more_than_lines_stays_as_it_is() -> None:
     assert charts(Figure()) == []
 
 
-@pytest.mark.parametrize("bins", [10, 97])
-def test_peaks_survive_thinning(bins: int) -> None:
-    x = np.linspace(0.0, 1.0, 10_000)
-    values = np.column_stack([np.sin(50.0 * x), x])
-    values[1234, 0], values[8765, 1], values[4000, 0] = 9.0, -7.0, np.nan
-    thin_x, thin = thinned(x, values, bins)
-    assert thin.shape == (2 * bins, 2) == (len(thin_x), 2)
-    assert np.all(np.diff(thin_x) >= 0.0)
-    np.testing.assert_array_equal(
-        [np.nanmax(thin, axis=0), np.nanmin(thin, axis=0)], [np.nanmax(values, axis=0), np.nanmin(values, axis=0)]
-    )
-
-
-def test_few_points_stay() -> None:
-    x, values = np.arange(5.0), np.arange(5.0)[:, None]
-    assert thinned(x, values) == (x, values)
-
-
 def test_a_chart_with_many_names_is_higher_so_that_lines_have_room_below_them() -> None:
     heights = []
     for count in (3, 10):
@@ -56,4 +37,4 @@ def test_a_chart_with_many_names_is_higher_so_that_lines_have_room_below_them() 
         for number in range(count):
             ax.plot([0.0, 1.0], [0.0, number], label=f"line {number}")
         heights += [chart.height for chart in charts(figure)]
-    assert heights == [340, 340 + 6 * 18]
+    assert heights == [340, 340 + 6 * 24]
