@@ -9,6 +9,9 @@ from typing import Any, NamedTuple
 RUN, STATIC = "run", "static"
 """Kinds of results that have a class of their own: those that grow over time, of any analysis, and those at rest."""
 
+STUDY = "study"
+"""Kind of the results of many analyses of drives that differ in some numbers."""
+
 
 class Analysis(NamedTuple):
     """Where an analysis is found, without importing it.
@@ -43,6 +46,11 @@ class Analysis(NamedTuple):
     def grows(self) -> bool:
         """Whether results grow over time and are written as they come: the function has a parameter ``output``."""
         return "output" in signature(self.function).parameters
+
+    @property
+    def tells(self) -> bool:
+        """Whether the function tells of its progress: it has a parameter ``progress``."""
+        return "progress" in signature(self.function).parameters
 
     def result_file(self, drive_file: Path) -> Path:
         """The result file of a drive file where none is named.

@@ -131,7 +131,9 @@ def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) ->
     assert loads(dumps(drive)) == drive
 
 
-@pytest.mark.parametrize("document", ["README.md", "docs/index.md", "docs/machines.md", "docs/tutorial.md"])
+@pytest.mark.parametrize(
+    "document", ["README.md", "docs/index.md", "docs/machines.md", "docs/studies.md", "docs/tutorial.md"]
+)
 def test_python_blocks_run_one_after_another(
     document: str, new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

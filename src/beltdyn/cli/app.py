@@ -20,6 +20,7 @@ from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
 from beltdyn.cli.report import report
 from beltdyn.cli.schema import schema
+from beltdyn.cli.study import study
 from beltdyn.errors import BeltdynError
 from beltdyn.signals import ending_in_order, exit_code
 
@@ -36,7 +37,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, check),
     *ANALYSES.values(),
-    *(plot, report, page, demo, paper, catalogue, schema),
+    *(study, plot, report, page, demo, paper, catalogue, schema),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

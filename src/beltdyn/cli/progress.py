@@ -27,8 +27,9 @@ _PHASES = {
     "integrating": "simulating",
     "operating points": "finding operating points",
     "designs": "trying designs",
+    "points": "computing points",
 }
-_COUNTED = "integrating", "operating points", "designs"
+_COUNTED = "integrating", "operating points", "designs", "points"
 """Phases of which it is known how far they are."""
 
 

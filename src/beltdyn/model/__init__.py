@@ -38,6 +38,7 @@ from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
 from beltdyn.model.installation import Installation, describe, install, tensioner_balances
 from beltdyn.model.limits import Limits
+from beltdyn.model.parameter_study import ParameterStudy
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import ERROR_LIMITS, Running, elements_needed, layer_lengths, mesh_errors, unresolved
@@ -78,6 +79,7 @@ __all__ = [
     "MovingTensioner",
     "OneWayClutch",
     "OptimizationStudy",
+    "ParameterStudy",
     "Path",
     "Profile",
     "PulledEnd",

@@ -33,6 +33,11 @@ from beltdyn.plot.spans import tension_spectrum as tension_spectrum
 from beltdyn.plot.spans import tensioners as tensioners
 from beltdyn.plot.stretch import save_stretch as save_stretch
 from beltdyn.plot.stretch import stretch as stretch
+from beltdyn.plot.study import parallel_coordinates as parallel_coordinates
+from beltdyn.plot.study import study_contour as study_contour
+from beltdyn.plot.study import study_lines as study_lines
+from beltdyn.plot.study_effects import sobol_indices as sobol_indices
+from beltdyn.plot.study_effects import tornado as tornado
 from beltdyn.plot.sweep import orders as orders
 from beltdyn.plot.sweep import waterfall as waterfall
 from beltdyn.plot.tensioner_sheet import tensioner_sheet as tensioner_sheet

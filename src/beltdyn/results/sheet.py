@@ -3,12 +3,14 @@
 import re
 from typing import TYPE_CHECKING
 
+from beltdyn.analyses import STUDY
 from beltdyn.parts.columns import aligned
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.run_sheet import run_sheet
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
 from beltdyn.results.shown import VARIOUS, in_words, shown_unit
+from beltdyn.results.study_sheet import study_sheet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,6 +36,8 @@ def sheet(result: Result) -> Sheet:
     """
     if isinstance(result, Run):
         return run_sheet(result)
+    if result.kind == STUDY:
+        return study_sheet(result)
     dataset = result.dataset
     variables = dataset.data_vars.values()
     numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]

@@ -18,6 +18,7 @@ from beltdyn.solve.rest.static import Equilibrium, find_equilibrium
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.simulate import simulate
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.study import study
 from beltdyn.solve.sweep import sweep
 from beltdyn.solve.tensioner_sheet import tensioner_sheet
 from beltdyn.solve.traction import traction
@@ -49,6 +50,7 @@ __all__ = [
     "simulate",
     "simulate_all",
     "steady_state",
+    "study",
     "sweep",
     "tensioner_sheet",
     "traction",

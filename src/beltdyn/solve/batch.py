@@ -1,18 +1,11 @@
 """Many simulations side by side on all cores, each into its own file."""
 
 import math
-import multiprocessing
-import os
-import signal
-import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from threading import current_thread, main_thread
-from types import ModuleType
 from typing import Any
 
 from beltdyn.analyses import ANALYSES, RUN, Analysis
@@ -21,14 +14,12 @@ from beltdyn.model.toml_writer import refuse_functions
 from beltdyn.results import Run
 from beltdyn.solve.compilation import compile_kernels, usable_cores
 from beltdyn.solve.progress import BatchProgress
+from beltdyn.solve.spawning import SPAWN, bare_workers
 from beltdyn.solve.worker import Ending, Work, analyse, start_worker
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
 _POLL = 0.2  # s
-_SPAWN = multiprocessing.get_context("spawn")
-_THREADS = "OMP_NUM_THREADS"
-"""What OpenBLAS and MKL ask for their number of threads."""
 
 
 def simulate_all(
@@ -101,7 +92,7 @@ def analyse_all(
         rule = f"{file.name} is computed by another process, which a function of Python does not reach"
         refuse_functions(drive, rule, "call `simulate` or another analysis for this drive by itself.")
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
-    stop = _SPAWN.Event()
+    stop = SPAWN.Event()
 
     def tell(running: Mapping[Path, float], ended: int) -> None:
         if progress is not None:
@@ -142,9 +133,9 @@ def _run_pool(
     work: Work,
 ) -> dict[Path, Ending]:
     """Simulate in a pool of processes; if one of these is killed, what had not begun by then has no ending yet."""
-    parts = _SPAWN.RawArray("d", [math.nan] * len(drives))
-    with ProcessPoolExecutor(jobs, _SPAWN, start_worker, (stop, parts)) as pool:
-        with _bare_workers():
+    parts = SPAWN.RawArray("d", [math.nan] * len(drives))
+    with ProcessPoolExecutor(jobs, SPAWN, start_worker, (stop, parts)) as pool:
+        with bare_workers():
             futures = [pool.submit(analyse, place, *one, work) for place, one in enumerate(drives)]
         try:
             pending = set(futures)
@@ -167,25 +158,3 @@ def _ending(future: Future[Ending]) -> Ending:
     if isinstance(error, BrokenProcessPool):
         return Ending("failed", "its process or one beside it was killed, as when memory runs out. Run fewer at once.")
     return future.result()
-
-
-@contextmanager
-def _bare_workers() -> Iterator[None]:
-    """Let processes that are started meanwhile inherit little.
-
-    They ignore Ctrl-C, of which the parent tells them; use one thread for linear algebra unless the user chose a
-    number; and see an empty script in place of the caller's, which each of them would run otherwise.
-    """
-    script, threads = sys.modules["__main__"], os.environ.get(_THREADS)
-    in_main_thread = current_thread() is main_thread()
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
-    sys.modules["__main__"] = ModuleType("__main__")
-    os.environ.setdefault(_THREADS, "1")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = script
-        if threads is None:
-            del os.environ[_THREADS]
-        if in_main_thread:
-            signal.signal(signal.SIGINT, handler)

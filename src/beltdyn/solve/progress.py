@@ -10,7 +10,7 @@ from typing import Literal
 _LATELY, _OFTEN = 5.0, 0.2
 """Computing time over which the pace is taken, and between the marks that it is taken from, s."""
 
-Phase = Literal["compiling", "equilibrium", "settling", "integrating", "operating points", "designs"]
+Phase = Literal["compiling", "equilibrium", "settling", "integrating", "operating points", "designs", "points"]
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Progress:
         Outputs recorded so far.
     phase : str
         "compiling" (the kernels, once on a machine), "equilibrium", "settling" (at the first speed of a run-up),
-        "integrating", or "operating points" and "designs", of which time and duration are the numbers of those done
-        and of all.
+        "integrating", or "operating points", "designs" and "points" (of a study), of which time and duration are the
+        numbers of those done and of all.
     elapsed : float
         Computing time since the first step, s.
     bound : str

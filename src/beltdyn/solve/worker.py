@@ -61,13 +61,13 @@ class Ending:
     kept: bool = False
 
 
-_stop: SharedEvent
+_stop: SharedEvent | None = None
 _parts: "Array[c_double]"
 _working = Lock()
 _leaving = Event()
 
 
-def start_worker(stop: SharedEvent, parts: "Array[c_double]") -> None:
+def start_worker(stop: SharedEvent, parts: "Array[c_double] | tuple[()]" = ()) -> None:
     """Keep what is shared with the parent.
 
     Parameters
@@ -75,10 +75,12 @@ def start_worker(stop: SharedEvent, parts: "Array[c_double]") -> None:
     stop
         Set when the parent is interrupted.
     parts
-        The part of each simulation that is done, 0 to 1; NaN before it begins.
+        The part of each simulation of a batch that is done, 0 to 1; NaN before it begins.
     """
     global _stop, _parts
-    _stop, _parts = stop, parts
+    _stop = stop
+    if parts:
+        _parts = parts
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, _leave)
@@ -91,8 +93,9 @@ def _follow_parent() -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()
-        _stop.set()
-        with _working:
+        if _stop is not None:
+            _stop.set()
+        with working():
             os._exit(1)
 
 
@@ -104,9 +107,48 @@ def _leave(number: int, frame: FrameType | None) -> None:
 
 def _exit_when_told() -> None:
     """End the process when the simulation has closed its file and the parent has had time to hear of it."""
-    with _working:
+    with working():
         sleep(_GRACE)
         os._exit(1)
+
+
+def working() -> Lock:
+    """What is held while a file is written, so that the process does not end meanwhile."""
+    return _working
+
+
+def stopped() -> bool:
+    """Whether the parent was interrupted, or is gone."""
+    return _stop is not None and _stop.is_set()
+
+
+def leaving() -> bool:
+    """Whether this process was told to end; another one takes what it is given from now on."""
+    return _leaving.is_set()
+
+
+def wait_for_the_end() -> None:
+    """Wait until this process ends, if it was told to."""
+    if leaving():
+        Event().wait()
+
+
+def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progress], None]:
+    """What an analysis tells of its progress, which is ended when the parent says so.
+
+    Parameters
+    ----------
+    tell
+        Is told too.
+    """
+
+    def heed(progress: Progress) -> None:
+        if tell is not None:
+            tell(progress)
+        if stopped() or leaving():
+            raise KeyboardInterrupt
+
+    return heed
 
 
 def analyse(place: int, file: Path, drive: Drive, work: Work) -> Ending:
@@ -128,21 +170,17 @@ def analyse(place: int, file: Path, drive: Drive, work: Work) -> Ending:
     Ending
         How it ended; no error is raised.
     """
-    if _stop.is_set():
+    if stopped():
         return Ending("not started")
-    if _leaving.is_set():
-        Event().wait()  # another process takes it
+    wait_for_the_end()
     _parts[place] = 0.0
 
-    def heed(progress: Progress) -> None:
-        """Tell the parent, and end the simulation when it says so."""
+    def note(progress: Progress) -> None:
         _parts[place] = progress.time / progress.duration
-        if _stop.is_set() or _leaving.is_set():
-            raise KeyboardInterrupt
 
     try:
-        with _working:
-            result = work.analysis.write(drive, file, heed, work.overwrite, **work.options)
+        with working():
+            result = work.analysis.write(drive, file, heeding(note), work.overwrite, **work.options)
             ending = _ended(result)
             if work.finish is not None and result.status == "completed":
                 work.finish(result)

@@ -1,0 +1,69 @@
+"""The command `beltdyn study`: any analysis of a drive at many points, on all cores or on a cluster."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter as Option
+from cyclopts.validators import Number
+
+from beltdyn.cli.console import show, show_error
+from beltdyn.cli.progress import progress_bar
+from beltdyn.cli.result import show_result
+from beltdyn.errors import ModelError, SimulationError
+from beltdyn.signals import exit_code
+
+
+def study(
+    file: Path,
+    /,
+    *,
+    output: Annotated[Path | None, Option(alias="-o")] = None,
+    jobs: Annotated[int | None, Option(alias="-j", validator=Number(gte=1))] = None,
+    scheduler: str | None = None,
+    retry: Annotated[bool, Option(negative="")] = False,
+    report: Annotated[bool, Option(negative="")] = False,
+    force: Annotated[bool, Option(negative="")] = False,
+) -> int:
+    """Analyse a drive at many points, at which numbers of its file differ, on all cores or on a cluster.
+
+    A point that fails is marked with its reason, and the others go on. Rows are written to a CSV file as points finish.
+    A study that was interrupted or killed goes on where it was when the same command is given again; so does one to
+    which points were added.
+
+    Parameters
+    ----------
+    file
+        The study file, TOML.
+    output
+        The result file; by default named after the study file, beside it, with the ending .nc. The rows are in the
+        CSV file of the same name.
+    jobs
+        How many points to compute at a time; by default as many as there are cores.
+    scheduler
+        Compute on a Dask cluster instead: the address of its scheduler, such as tcp://host:8786.
+    retry
+        Compute points again that failed before.
+    report
+        Write a report too: a page beside the result file.
+    force
+        Compute all points anew, and replace other files too.
+    """
+    from beltdyn.cli.output import Extras, write_extras
+    from beltdyn.solve.study import study as compute
+
+    path = output or file.with_suffix(".nc")
+    if file.resolve() in (path.resolve(), path.with_suffix(".csv").resolve()):
+        raise ModelError(f"{file} is the study file: the results would overwrite it. Choose another --output.")
+    with progress_bar() as tell:
+        result = compute(file, jobs=jobs, scheduler=scheduler, retry=retry, output=path, progress=tell, overwrite=force)
+    show_result(result)
+    if result.status == "interrupted":
+        show("\nInterrupted: what was computed is kept, and the same command goes on from there.")
+    show(f"\nResults: {path}, {path.with_suffix('.csv')}   (figures: beltdyn plot {path})")
+    write_extras(result, path, Extras(csv=False, report=report), force)
+    if result.status == "interrupted":
+        return exit_code()
+    if result.dataset.sizes["point"] == int((result.dataset["failure"] != "").sum()):
+        show_error("no point of the study has results.")
+        return SimulationError.exit_code
+    return 0

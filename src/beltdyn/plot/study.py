@@ -1,0 +1,170 @@
+"""Figures of a study: results over numbers, in lines, as contours, and along parallel axes."""
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+
+from beltdyn.analyses import STUDY
+from beltdyn.errors import ModelError
+from beltdyn.plot.registry import figure
+from beltdyn.plot.study_values import (
+    chosen_number,
+    chosen_result,
+    in_shown_units,
+    labelled,
+    panel_for_each_result,
+    results_of,
+    spans_a_plane,
+    suits,
+    value_in_words,
+    varied_numbers,
+)
+from beltdyn.plot.style import INK, axes_or_new, color, dash
+from beltdyn.results import Result
+
+_FAMILY = 7
+"""Lines of one panel."""
+_MOST_LINES = 1500
+_AXES = 4
+"""Results along parallel axes."""
+_LEVELS = 12
+_NARROW = 11
+"""Letters in a line below one of them."""
+_BACK = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
+"""Behind numbers."""
+
+
+@figure(suits("lines"), panel_for_each_result, of=(STUDY,))
+def study_lines(result: Result, of: str | None = None, over: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw a result of a study over a number, a line for each value of a second one; over more numbers, its points.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study`.
+    of : str, optional
+        Name of the result; by default the first.
+    over : str, optional
+        Path of the number along the horizontal axis; by default the one that has most values.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result or number.
+    """
+    name, ax, varied = chosen_result(result, of), axes_or_new(ax), varied_numbers(result)
+    along = chosen_number(result, over, varied)
+    others = [one for one in varied if one != along]
+    x, y = in_shown_units(result.dataset[along]), in_shown_units(result.dataset[name])
+    family = np.unique(result.dataset[others[0]].values) if len(others) == 1 else np.empty(0)
+    if others and not 0 < len(family) <= _FAMILY:
+        ax.plot(x, y, "o", markersize=3, color=color(0))
+    else:
+        for number, value in enumerate(family if len(family) else [None]):
+            chosen = np.isfinite(y) if value is None else (result.dataset[others[0]].values == value) & np.isfinite(y)
+            order = np.flatnonzero(chosen)[np.argsort(x[chosen], kind="stable")]
+            told = None if value is None else value_in_words(result.dataset[others[0]], value)
+            ax.plot(x[order], y[order], color=color(number), linestyle=dash(number), marker="o", ms=3, label=told)
+    if len(family):
+        ax.legend(title=str(result.dataset[others[0]].name))
+    ax.set(xlabel=labelled(result.dataset[along]), ylabel=labelled(result.dataset[name]))
+    return ax
+
+
+@figure(suits("contour"), panel_for_each_result, of=(STUDY,))
+def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw a result of a study over two numbers, as contours between its points; crosses are points that failed.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study`, in which two numbers vary.
+    of : str, optional
+        Name of the result; by default the first.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result, or other than two numbers vary.
+    """
+    name = chosen_result(result, of)
+    if not spans_a_plane(result):
+        raise ModelError(
+            f"contours need two numbers that vary, and {', '.join(varied_numbers(result)) or 'none'} does."
+        )
+    ax, (first, second) = axes_or_new(ax), varied_numbers(result)
+    x, y, z = (in_shown_units(result.dataset[one]) for one in (first, second, name))
+    known = np.isfinite(z)
+    if np.count_nonzero(known) > 2 and np.ptp(z[known]) > 0.0:
+        filled = ax.tricontourf(x[known], y[known], z[known], levels=_LEVELS, cmap="viridis")
+        page = ax.get_figure()
+        assert page is not None
+        page.colorbar(filled, ax=ax)
+    ax.set_title(labelled(result.dataset[name]))
+    ax.plot(x[known], y[known], ".", color=INK, markersize=2)
+    ax.plot(x[~known], y[~known], "x", color=color(1), markersize=5)
+    ax.set(xlabel=labelled(result.dataset[first]), ylabel=labelled(result.dataset[second]))
+    ax.grid(visible=False)
+    return ax
+
+
+@figure(suits("parallel"), of=(STUDY,))
+def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw each point of a study as a line across parallel axes, of numbers and then of results.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study`.
+    of : str, optional
+        Name of the result that colors the lines; by default the first, which stands last.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result.
+    """
+    name = chosen_result(result, of)
+    names = [*varied_numbers(result), *[one for one in results_of(result) if one != name][: _AXES - 1], name]
+    ax = axes_or_new(ax, (1.6 * len(names) + 1.5, 4.2))
+    table = np.stack([in_shown_units(result.dataset[one]) for one in names], axis=1)
+    table = table[np.isfinite(table).all(axis=1)]
+    table = table[np.unique(np.linspace(0, len(table) - 1, _MOST_LINES).astype(int))]
+    low, high = table.min(axis=0), table.max(axis=0)
+    scaled = (table - low) / np.where(high > low, high - low, 1.0)
+    places = np.arange(len(names))
+    paths = [np.column_stack([places, row]) for row in scaled]
+    shade = colormaps["viridis"](scaled[:, -1])
+    ax.add_collection(LineCollection(paths, colors=shade, linewidths=0.8, alpha=0.6))
+    for place, bottom, top in zip(range(len(names)), low, high, strict=True):
+        ax.axvline(place, color=INK, linewidth=0.9)
+        for value, height, side in ((bottom, -0.02, "top"), (top, 1.02, "bottom")):
+            ax.text(place, height, f"{value:.4g}", ha="center", va=side, fontsize=7, bbox=_BACK)
+    ax.set_xticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=7)
+    ax.set(xlim=(-0.5, len(names) - 0.5), ylim=(-0.12, 1.12), yticks=[])
+    ax.tick_params(axis="x", length=0, pad=8)
+    ax.spines[["left", "bottom"]].set_visible(False)
+    ax.grid(visible=False)
+    return ax

@@ -1,0 +1,116 @@
+"""Figures of a study: what results owe to numbers, by moving one at a time, and by parts of the variance."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from beltdyn.analyses import STUDY
+from beltdyn.errors import ModelError
+from beltdyn.plot.registry import figure
+from beltdyn.plot.study_values import (
+    chosen_result,
+    in_shown_units,
+    labelled,
+    moved_from_base,
+    numbers_of,
+    panel_for_each_result,
+    suits,
+)
+from beltdyn.plot.style import INK, axes_or_new, color, name_lines
+from beltdyn.results import Result
+from beltdyn.results.sobol_indices import sobol_indices as indices_of
+
+_MOST_BARS = 12
+_NARROW = 22
+"""Letters in a line beside a bar."""
+
+
+@figure(suits("tornado"), panel_for_each_result, of=(STUDY,))
+def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw between which values a result lies while one number varies and the others are as in the drive file.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study` with the sampling "one_at_a_time".
+    of : str, optional
+        Name of the result; by default the first.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result, or several numbers vary at a time.
+    """
+    name, ax = chosen_result(result, of), axes_or_new(ax)
+    if result.dataset.attrs["sampling"] != "one_at_a_time":
+        raise ModelError('a tornado needs one number that varies at a time. Use sampling = "one_at_a_time".')
+    values = in_shown_units(result.dataset[name])
+    moved = {path: moved_from_base(result.dataset[path]) for path in numbers_of(result)}
+    at_base = values[~np.any(list(moved.values()), axis=0)]
+    base = float(at_base[0]) if at_base.size else np.nan
+    spans = {path: (np.append(values[where], base), where) for path, where in moved.items() if where.any()}
+    widths = {path: float(np.nan_to_num(np.nanmax(some) - np.nanmin(some))) for path, (some, _) in spans.items()}
+    order = sorted(spans, key=lambda path: widths[path])[-_MOST_BARS:]
+    for row, path in enumerate(order):
+        some, where = spans[path]
+        numbers = in_shown_units(result.dataset[path])[where]
+        for value, number in ((np.nanmin(some), int(np.nanargmin(some))), (np.nanmax(some), int(np.nanargmax(some)))):
+            ax.barh(row, value - base, left=base, color=color(int(value < base)), height=0.7)
+            if number < len(numbers):
+                side = "left" if value > base else "right"
+                ax.annotate(f"{numbers[number]:.4g}", (value, row), (3 if value > base else -3, 0), "data",
+                            "offset points", ha=side, va="center", fontsize=7)  # fmt: skip
+    ax.axvline(base, color=INK, linewidth=0.9)
+    ax.set_yticks(range(len(order)), [labelled(result.dataset[path], _NARROW) for path in order], fontsize=7)
+    ax.margins(x=0.2)
+    ax.set_xlabel(labelled(result.dataset[name]))
+    return ax
+
+
+@figure(suits("indices"), panel_for_each_result, of=(STUDY,))
+def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw what part of the variance of a result is due to each number: by itself, and with all others.
+
+    Bars are first-order and total Sobol indices, with 95 % confidence intervals.
+
+    Parameters
+    ----------
+    result : Result
+        Of `study` with the sampling "saltelli".
+    of : str, optional
+        Name of the result; by default the first.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result, or the points are no such design.
+    """
+    name, ax = chosen_result(result, of), axes_or_new(ax)
+    if result.dataset.attrs["sampling"] != "saltelli":
+        raise ModelError('Sobol indices need the design of Saltelli. Use sampling = "saltelli".')
+    names = numbers_of(result)
+    first, total, first_error, total_error = indices_of(result.dataset[name].values[:, None], len(names))
+    places = np.arange(len(names))
+    for side, values, errors, told in (
+        (0.2, first[0], first_error[0], "by itself"),
+        (-0.2, total[0], total_error[0], "with others"),
+    ):
+        ax.barh(places + side, values, 0.38, xerr=errors, capsize=2, color=color(int(side < 0.0)), label=told)
+    ax.set_yticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=7)
+    ax.set_xlim(left=min(0.0, float(np.nan_to_num(first[0]).min()) - 0.05))
+    ax.set_xlabel(f"Part of the variance of\n{name}", fontsize=9)
+    name_lines(ax)
+    return ax

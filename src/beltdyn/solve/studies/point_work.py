@@ -1,0 +1,117 @@
+"""What a process does for a study: it analyses drives that differ in some numbers, one after another."""
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from beltdyn import __version__
+from beltdyn.analyses import Analysis
+from beltdyn.errors import BeltdynError
+from beltdyn.model import Drive
+from beltdyn.results import Result
+from beltdyn.solve.studies.result_columns import columns_of
+from beltdyn.solve.worker import heeding, leaving, stopped, wait_for_the_end, working
+
+_one_at_a_time = Lock()
+"""A process of another engine may have several threads, which would share the memory of kernels."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointWork:
+    """What is asked of every point."""
+
+    drive: Drive
+    analysis: Analysis
+    options: Mapping[str, Any]
+    results: tuple[str, ...]
+    folder: Path | None
+    """Where result files are kept; None if they are not."""
+    version: str = __version__
+    """That of beltdyn where the study was started."""
+
+    def file_of(self, point: int) -> Path:
+        """The result file of a point, counted from zero."""
+        return (self.folder or Path()) / f"{point + 1:06d}.nc"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a point."""
+
+    point: int
+    values: dict[str, float]
+    failure: str
+    """Why there are no values; empty where there are."""
+    warnings: str
+    """What makes them doubtful, one line each."""
+    seconds: float
+    """That it took."""
+    missing: str = ""
+    """Which results there are not; see `Columns`."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChunkOutcome:
+    """What became of some points; those are left out that were not finished when the process was told to end."""
+
+    outcomes: list[Outcome]
+    units: dict[str, str]
+    interrupted: bool = False
+
+
+def compute_points(work: PointWork, points: Sequence[tuple[int, Mapping[str, Any]]]) -> ChunkOutcome:
+    """Analyse drives.
+
+    Parameters
+    ----------
+    work
+        What is asked of each.
+    points
+        Numbers of points, and what differs from the drive there.
+    """
+    wait_for_the_end()
+    outcomes, units = list[Outcome](), dict[str, str]()
+    with _one_at_a_time, working():
+        for point, changes in points:
+            if stopped() or leaving():
+                return ChunkOutcome(outcomes, units, interrupted=True)
+            try:
+                outcomes.append(_outcome(work, point, changes, units))
+            except KeyboardInterrupt:
+                return ChunkOutcome(outcomes, units, interrupted=True)
+    return ChunkOutcome(outcomes, units)
+
+
+def _outcome(work: PointWork, point: int, changes: Mapping[str, Any], units: dict[str, str]) -> Outcome:
+    """Analyse the drive of a point; units of results are added to those that are known."""
+    begun = time.perf_counter()
+    try:
+        result = _analysed(work, point, changes)
+        if result.status == "interrupted":
+            raise KeyboardInterrupt
+        columns = columns_of(result, work.results)
+        told = "\n".join(result.warnings)
+    except BeltdynError as error:
+        return Outcome(point, {}, str(error), "", time.perf_counter() - begun)
+    except Exception as error:
+        return Outcome(point, {}, f"{type(error).__name__}: {error}", "", time.perf_counter() - begun)
+    units |= columns.units
+    return Outcome(point, columns.values, "", told, time.perf_counter() - begun, columns.missing)
+
+
+def _analysed(work: PointWork, point: int, changes: Mapping[str, Any]) -> Result:
+    """The result at a point, in memory or in a file."""
+    if work.version != __version__:
+        raise RuntimeError(
+            f"this worker has beltdyn {__version__}, and the study was started by {work.version}. Install the same."
+        )
+    drive = work.drive.with_(changes)
+    if work.folder is not None:
+        result: Result = work.analysis.write(drive, work.file_of(point), heeding(), True, **work.options)
+        return result
+    taken = {"progress": heeding()} if work.analysis.tells else {}
+    found: Result = work.analysis.function(drive, **taken, **work.options)
+    return found

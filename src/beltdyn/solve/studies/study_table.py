@@ -1,0 +1,266 @@
+"""What is known of the points of a study: a dataset, in a file if one is named, and rows in a CSV file beside it."""
+
+import hashlib
+import json
+import re
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from beltdyn.analyses import STUDY
+from beltdyn.arrays import BoolArray, FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, ParameterStudy, dumps
+from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.atomic import require_replaceable, unwritable
+from beltdyn.results.dataset import is_result, read_dataset
+from beltdyn.results.lock import OutputLock
+from beltdyn.signals import uninterrupted
+from beltdyn.solve.studies.point_work import Outcome
+from beltdyn.solve.studies.study_plan import Plan
+from beltdyn.solve.studies.study_rows import StudyRows, is_study_table
+
+_POINT = ("point",)
+_OFTEN, _SHARE = 2.0, 20.0
+"""Least time between two writings of the result file, s, and times that a writing takes."""
+_COMPUTING = "computing"
+"""Attribute: what tells apart what is computed at a point."""
+
+
+class StudyTable:
+    """The points of a study, a context that closes its files whatever happens; an interruption keeps what was found.
+
+    Parameters
+    ----------
+    study, drive, plan
+        What is computed.
+    output
+        Result file; the rows are beside it, with the ending ``.csv``. Without one, results stay in memory.
+    overwrite
+        Begin anew, whatever is there.
+    retry
+        Compute points again that failed.
+
+    Raises
+    ------
+    ModelError
+        If files cannot be written, are no results, or hold points of another study, which would be lost.
+    """
+
+    def __init__(
+        self,
+        study: ParameterStudy,
+        drive: Drive,
+        plan: Plan,
+        output: Path | None,
+        overwrite: bool = False,
+        retry: bool = False,
+    ) -> None:
+        self._study, self._drive, self._plan, self._path = study, drive, plan, output
+        count = len(plan.values)
+        self.done: BoolArray = np.zeros(count, dtype=bool)
+        self._columns: dict[str, str] = {}
+        self._values: dict[str, FloatArray] = {}
+        self._seconds = np.full(count, np.nan)
+        self._texts: dict[str, NDArray[np.object_]] = {
+            name: np.full(count, "", dtype=object) for name in ("failure", "warnings")
+        }
+        self._early: list[Outcome] = []
+        self._status, self._written, self._pause = "running", time.perf_counter(), _OFTEN
+        self._rows = None if output is None else StudyRows(output.with_suffix(".csv"), plan)
+        self._lock: OutputLock | None = None
+        if output is not None:
+            self._begin_files(output, overwrite, retry)
+
+    def _begin_files(self, output: Path, overwrite: bool, retry: bool) -> None:
+        """Take the rows that are there, and write both files."""
+        assert self._rows is not None
+        require_replaceable(output, is_result, overwrite)
+        require_replaceable(self._rows.path, is_study_table, overwrite)
+        try:
+            self._lock = OutputLock(output.resolve())
+        except OSError as error:
+            raise ModelError(unwritable(output, error)) from error
+        try:
+            if not overwrite:
+                self._go_on(output, retry)
+            self._rows.begin(self._columns, [self._outcome(int(one)) for one in np.flatnonzero(self.done)])
+            self._save()
+        except BaseException:
+            self._lock.release()
+            raise
+
+    def _go_on(self, output: Path, retry: bool) -> None:
+        """Take over points that were computed before."""
+        assert self._rows is not None
+        rows = self._rows.read()
+        if not rows:
+            return
+        remedy = "Choose another --output, or compute all anew with --force (in Python: overwrite=True)."
+        if self._known_computing(output) != self.computing:
+            raise ModelError(
+                f"{self._rows.path} holds {len(rows)} points of another drive, analysis or list of results. {remedy}"
+            )
+        places = {self._rows.key(point): point for point in range(len(self._plan.values))}
+        lost = sum(row.key not in places for row in rows)
+        if lost:
+            raise ModelError(f"{self._rows.path} holds {lost} points that are not in the study any more. {remedy}")
+        self._columns = dict(self._rows.columns)
+        self._values = {name: np.full(len(self.done), np.nan) for name in self._columns}
+        for row in rows:
+            if not (retry and row.outcome.failure):
+                self._note(row.outcome, places[row.key])
+
+    def _known_computing(self, output: Path) -> str:
+        try:
+            dataset = read_dataset(output)
+        except ModelError:
+            return ""
+        with dataset:
+            return str(dataset.attrs.get(_COMPUTING, ""))
+
+    @property
+    def computing(self) -> str:
+        """What tells apart what is computed at a point: drive, analysis, its options, and results."""
+        study = self._study
+        said = [dumps(self._drive), study.analysis, sorted(study.options.items()), study.results, self._plan.paths]
+        return hashlib.sha256(json.dumps(said, default=str).encode()).hexdigest()
+
+    def __enter__(self) -> Self:
+        """Begin."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        """Close the files with a status."""
+        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
+        self._status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        try:
+            with uninterrupted():
+                self._append(self._early)  # those of a study of which no point has results
+                self._early = []
+                self._save()
+        finally:
+            if self._lock is not None:
+                self._lock.release()
+        return interrupted
+
+    def take(self, outcomes: list[Outcome], units: Mapping[str, str]) -> None:
+        """Take what became of points, and write it.
+
+        Raises
+        ------
+        ModelError
+            If the first point that was computed has no such results as are asked for.
+        OutputError
+            If the rows cannot be written.
+        """
+        fresh = [one for one in outcomes if not self.done[one.point]]
+        if not self._columns:
+            missing = next((one.missing for one in fresh if not one.failure and one.missing), "")
+            if missing:
+                raise ModelError(missing)
+        added = {name: unit for name, unit in units.items() if name not in self._columns}
+        self._columns |= added
+        self._values |= {name: np.full(len(self.done), np.nan) for name in added}
+        for one in fresh:
+            self._note(one, one.point)
+        if not self._columns:
+            self._early += fresh
+            return
+        if added and self._rows is not None:
+            self._rows.begin(self._columns, [self._outcome(int(one)) for one in np.flatnonzero(self.done)])
+            self._early = []
+        else:
+            self._append(fresh)
+        if time.perf_counter() - self._written > self._pause:
+            self._save()
+
+    def _append(self, outcomes: Sequence[Outcome]) -> None:
+        if self._rows is not None and outcomes:
+            self._rows.append(outcomes)
+
+    def _note(self, outcome: Outcome, point: int) -> None:
+        for name, value in outcome.values.items():
+            self._values[name][point] = value
+        self._texts["failure"][point], self._texts["warnings"][point] = outcome.failure, outcome.warnings
+        self._seconds[point] = outcome.seconds
+        self.done[point] = True
+
+    def _outcome(self, point: int) -> Outcome:
+        values = {name: float(one[point]) for name, one in self._values.items()}
+        failure, warnings = self._texts["failure"][point], self._texts["warnings"][point]
+        return Outcome(point, values, failure, warnings, float(self._seconds[point]))
+
+    def result(self) -> Result:
+        """What is known until now."""
+        plan, points = self._plan, np.arange(1, len(self.done) + 1)
+        coordinates: dict[str, tuple[Variable, ArrayLike]] = {
+            "point": (Variable(_POINT, "1", "Point", "int64"), points)
+        }
+        for path, unit, values in zip(plan.paths, plan.units, plan.values.T, strict=True):
+            coordinates[path] = Variable(_POINT, unit or "1", path), np.array(values.tolist())
+        variables: dict[str, tuple[Variable, ArrayLike]] = {
+            name: (Variable(_POINT, unit, name), self._values[name]) for name, unit in self._columns.items()
+        }
+        variables["seconds"] = Variable(_POINT, "s", "Computing time of the point"), self._seconds
+        variables["failure"] = Variable(_POINT, "1", "Why the point failed", "str"), self._texts["failure"]
+        variables["point_warnings"] = Variable(_POINT, "1", "Warnings of the point", "str"), self._texts["warnings"]
+        result = build_result(STUDY, self._drive, variables, coordinates, self._warnings())
+        result.dataset.attrs |= self._about()
+        for path, base in zip(plan.paths, plan.base, strict=True):
+            result.dataset[path].attrs["base"] = json.dumps(base, default=str)
+        return result
+
+    def _about(self) -> dict[str, Any]:
+        """Global attributes."""
+        title = f"{self._drive.title}: {self._study.analysis} at {len(self.done)} points"
+        return {
+            "title": title,
+            "status": self._status,
+            "analysis": self._study.analysis,
+            "sampling": "table" if self._study.table is not None else self._study.sampling,
+            "numbers": "\n".join(self._plan.paths),
+            "results": "\n".join(self._columns),
+            "done": int(self.done.sum()),
+            _COMPUTING: self.computing,
+        }
+
+    def _warnings(self) -> list[str]:
+        """Failures, and warnings of points, each but once, whatever its numbers."""
+        failed = np.flatnonzero(self._texts["failure"] != "")
+        said = _grouped(failed, lambda point: [str(self._texts["failure"][point]).splitlines()[0]])
+        found = [f"{len(failed)} of {int(self.done.sum())} points failed."] if len(failed) else []
+        found += [f"failed at {where}: {text}" for where, text in said]
+        warned = np.flatnonzero(self._texts["warnings"] != "")
+        return found + [
+            f"at {where}: {text}"
+            for where, text in _grouped(warned, lambda point: str(self._texts["warnings"][point]).splitlines())
+        ]
+
+    def _save(self) -> None:
+        """Write the result file, if one is named."""
+        begun = time.perf_counter()
+        if self._path is not None:
+            with uninterrupted():
+                self.result().save(self._path, overwrite=True)
+        self._written = time.perf_counter()
+        self._pause = max(_OFTEN, _SHARE * (self._written - begun))
+
+
+def _grouped(points: NDArray[np.intp], texts: Callable[[int], list[str]]) -> list[tuple[str, str]]:
+    """Texts that differ in numbers alone, once, with where they are said."""
+    groups: dict[str, tuple[str, list[int]]] = {}
+    for point in points.tolist():
+        for text in texts(point):
+            groups.setdefault(re.sub(r"[\d.,e+\-−–%]+", "#", text), (text, []))[1].append(point + 1)
+    return [
+        (f"point {places[0]}" + (f" and {len(places) - 1} more" if places[1:] else ""), text)
+        for text, places in groups.values()
+    ]

@@ -1,0 +1,176 @@
+"""A study: any analysis of a drive at many points, at which numbers of its file differ."""
+
+import time
+from collections.abc import Mapping
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from beltdyn.analyses import ANALYSES, Analysis
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, ParameterStudy, load
+from beltdyn.model.toml_reader import read_study
+from beltdyn.model.toml_writer import refuse_functions
+from beltdyn.parts.messages import suggest
+from beltdyn.results import Result
+from beltdyn.results.atomic import make_folder
+from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.progress import Pace, Progress, Report
+from beltdyn.solve.studies.dispatch import Dispatch
+from beltdyn.solve.studies.executors import ThisProcess, workers_of
+from beltdyn.solve.studies.point_work import PointWork
+from beltdyn.solve.studies.result_columns import require_reductions
+from beltdyn.solve.studies.study_plan import plan_of
+from beltdyn.solve.studies.study_table import StudyTable
+from beltdyn.system.build import drive_system
+from beltdyn.system.state import laid
+
+_OWN = ("output", "progress", "overwrite", "start", "integrator")
+"""Parameters of analyses that a study fills in, or leaves alone."""
+
+
+def study(
+    study: Path | str | ParameterStudy,
+    drive: Drive | None = None,
+    *,
+    jobs: int | None = None,
+    scheduler: str | None = None,
+    retry: bool = False,
+    output: Path | str | None = None,
+    progress: Report | None = None,
+    overwrite: bool = False,
+) -> Result:
+    """Analyse a drive at many points, at which numbers of its file differ, on all cores or on a cluster.
+
+    A point that fails is marked with its reason, and the others go on.  Results are written as points finish; a study
+    that was interrupted or killed goes on where it was when it is started again with the same file.  So does one to
+    which points were added.
+
+    Parameters
+    ----------
+    study
+        The study file, TOML, or the study.
+    drive
+        The drive; by default that of the file that the study names.
+    jobs
+        How many points to compute at a time; by default as many as there are cores. With 1 they are computed in this
+        process.
+    scheduler
+        Address of the scheduler of a Dask cluster that computes them instead, such as "tcp://host:8786".
+    retry
+        Compute points again that failed before.
+    output
+        Result file (NetCDF4), with rows of all finished points beside it in a file with the ending ``.csv``; without
+        one the results stay in memory.
+    progress
+        Called now and then with a `Progress`.
+    overwrite
+        Begin anew, and replace any regular files.
+
+    Returns
+    -------
+    Result
+        Along ``point`` the results, each under its name such as "hub_load[driven]", the numbers that vary as
+        coordinates under their paths, ``seconds``, ``failure`` and ``point_warnings``.
+
+    Raises
+    ------
+    ModelError
+        If the study does not fit the drive or its analysis, there is no such result, files cannot be written, or hold
+        points of another study.
+    SimulationError
+        If the cluster is gone.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     number=[{"path": "belt.width", "values": "10, 15 mm"}],
+    ...     results=["hub_load"],
+    ... )
+    >>> found = bd.study(study, drive, jobs=1)
+    >>> found.dataset["hub_load[driven]"].round(1).values.tolist()  # N
+    [53.5, 77.9]
+    """
+    given, base = (study, Path()) if isinstance(study, ParameterStudy) else (_read(study), Path(study).parent)
+    drive = _drive_of(given, base) if drive is None else drive
+    analysis = ANALYSES[given.analysis]
+    options = _options(analysis, given.options, base)
+    require_reductions(given.results)
+    plan = plan_of(given, drive, base)
+    path = None if output is None else Path(output)
+    work = PointWork(drive, analysis, options, given.results, _folder(given, path))
+    workers = workers_of(jobs, scheduler)
+    if not isinstance(workers, ThisProcess):
+        refuse_functions(drive, "points are computed by other processes, which a function of Python does not reach",
+                         "Compute them in this one, by jobs = 1.")  # fmt: skip
+    with StudyTable(given, drive, plan, path, overwrite, retry) as table:
+        waiting = np.flatnonzero(~table.done).tolist()
+        teller = _Teller(table, progress)
+        if waiting and scheduler is None:
+            teller.compiling()
+            _compile(drive)
+        Dispatch(workers, work, plan.changes, table.take, teller.tell).run(waiting)
+    return table.result()
+
+
+def _read(file: Path | str) -> ParameterStudy:
+    return read_study(file, ParameterStudy)
+
+
+def _drive_of(study: ParameterStudy, base: Path) -> Drive:
+    if study.drive is None:
+        raise ModelError('the study names no drive. Write drive = "drive.toml", by its path from the study file.')
+    return load(base / study.drive)
+
+
+def _options(analysis: Analysis, given: Mapping[str, Any], base: Path) -> dict[str, Any]:
+    """Options of the analysis, with files by their paths from here."""
+    parameters = dict(list(signature(analysis.function).parameters.items())[1:])
+    known = {name: one for name, one in parameters.items() if name not in _OWN}
+    for name in given:
+        if name not in known:
+            told = suggest(name, list(known)) if known else "It has none"
+            raise ModelError(f'options: {name} is no option of "{analysis.name}". {told}.'.replace("?.", "?"))
+    missing = [name for name, one in known.items() if one.default is one.empty and name not in given]
+    if missing:
+        raise ModelError(f'options: "{analysis.name}" needs {missing[0]}. Write it in [options].')
+    return {
+        name: base / value if isinstance(value, str) and "Path" in str(known[name].annotation) else value
+        for name, value in given.items()
+    }
+
+
+def _folder(study: ParameterStudy, output: Path | None) -> Path | None:
+    """Where result files of points are kept."""
+    if not study.keep_files:
+        return None
+    if output is None:
+        raise ModelError("keep_files = true needs a result file, beside which theirs are kept. Name an output.")
+    return make_folder(output.with_name(f"{output.stem}-points")).resolve()
+
+
+def _compile(drive: Drive) -> None:
+    """Compile kernels once, before processes need them."""
+    system = drive_system(drive)
+    compile_kernels(system, laid(system, drive.path))
+
+
+class _Teller:
+    """Tells of progress."""
+
+    def __init__(self, table: StudyTable, progress: Report | None) -> None:
+        self._table, self._progress = table, progress
+        self._begun, self._pace, self._before = time.perf_counter(), Pace(), int(table.done.sum())
+
+    def compiling(self) -> None:
+        if self._progress is not None:
+            self._progress(Progress(0.0, float(len(self._table.done)), 0.0, 0, "compiling"))
+
+    def tell(self) -> None:
+        if self._progress is not None:
+            done, elapsed = int(self._table.done.sum()), time.perf_counter() - self._begun
+            pace = self._pace.at(elapsed, float(done - self._before))
+            self._progress(Progress(float(done), float(len(self._table.done)), 0.0, done, "points", elapsed, "", pace))

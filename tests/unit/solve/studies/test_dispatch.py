@@ -1,0 +1,130 @@
+"""Every point comes back once, whoever computes it, and whatever is killed meanwhile."""
+
+import warnings
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import SimulationError
+from beltdyn.solve.studies.dispatch import Dispatch
+from beltdyn.solve.studies.executors import DaskWorkers, LocalProcesses, ThisProcess, Workers
+from beltdyn.solve.studies.point_work import Outcome, PointWork
+
+Make = Callable[..., PointWork]
+
+
+def compute(workers: Workers, work: PointWork, widths: list[float]) -> list[Outcome]:
+    """Have a point computed for each width."""
+    found: list[Outcome] = []
+
+    def take(outcomes: list[Outcome], units: Mapping[str, str]) -> None:
+        assert set(units) <= {"width"}
+        found.extend(outcomes)
+
+    Dispatch(workers, work, lambda point: {"belt.width": widths[point]}, take, lambda: None).run(range(len(widths)))
+    return found
+
+
+def require_each_once(found: list[Outcome], widths: list[float]) -> None:
+    assert sorted(one.point for one in found) == list(range(len(widths)))
+    assert all(one.values["width"] == widths[one.point] for one in found if not one.failure)
+
+
+def test_a_point_that_fails_leaves_the_others_alone(tiny_work: Make) -> None:
+    widths = [0.01, -1.0, 0.02]
+    found = compute(ThisProcess(), tiny_work(), widths)
+    require_each_once(found, widths)
+    (failed,) = [one for one in found if one.failure]
+    assert failed.point == 1
+    assert "belt.width = -1.0" in failed.failure
+
+
+def test_tiny_points_travel_in_chunks(tiny_work: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Chunks grow towards a second of computing, and the last points are shared out."""
+    sizes: list[int] = []
+    inner = ThisProcess.submit
+
+    def submit(self: ThisProcess, function: Callable[..., object], work: PointWork, points: list[object]) -> object:
+        sizes.append(len(points))
+        return inner(self, function, work, points)
+
+    monkeypatch.setattr(ThisProcess, "submit", submit)
+    widths = np.linspace(0.0101, 0.02, 300).tolist()
+    require_each_once(compute(ThisProcess(), tiny_work(), widths), widths)
+    assert sizes[0] == 1
+    assert max(sizes) > 20
+    assert sizes[-1] <= 2
+
+
+@pytest.mark.slow
+def test_thousands_of_tiny_points_come_back_from_processes(tiny_work: Make) -> None:
+    widths = np.linspace(0.0101, 0.02, 3000).tolist()
+    require_each_once(compute(LocalProcesses(2), tiny_work(), widths), widths)
+
+
+def test_a_killed_process_loses_and_doubles_no_point(tiny_work: Make, tmp_path: Path) -> None:
+    widths = [*np.linspace(0.0101, 0.0129, 10).tolist(), 0.013, *np.linspace(0.0131, 0.02, 10).tolist()]
+    found = compute(LocalProcesses(2), tiny_work(kills=1), widths)
+    require_each_once(found, widths)
+    assert not any(one.failure for one in found)
+    assert len(list(tmp_path.glob("killed-*"))) == 1
+
+
+@pytest.mark.slow
+def test_a_point_that_kills_each_of_its_processes_fails_alone(tiny_work: Make, tmp_path: Path) -> None:
+    widths = [*np.linspace(0.0101, 0.0129, 10).tolist(), 0.013, *np.linspace(0.0131, 0.02, 10).tolist()]
+    found = compute(LocalProcesses(2), tiny_work(kills=99), widths)
+    require_each_once(found, widths)
+    (failed,) = [one for one in found if one.failure]
+    assert widths[failed.point] == 0.013
+    assert "killed 3 times" in failed.failure
+    assert len(list(tmp_path.glob("killed-*"))) == 3
+
+
+def test_an_interruption_keeps_what_was_computed(tiny_work: Make) -> None:
+    found: list[Outcome] = []
+
+    def take(outcomes: list[Outcome], units: Mapping[str, str]) -> None:
+        found.extend(outcomes)
+
+    def tell() -> None:
+        if len(found) > 3:
+            raise KeyboardInterrupt
+
+    dispatch = Dispatch(ThisProcess(), tiny_work(), lambda point: {"belt.width": 0.01 + 1e-4 * point}, take, tell)
+    with pytest.raises(KeyboardInterrupt):
+        dispatch.run(range(100))
+    assert 3 < len(found) < 100
+
+
+@pytest.mark.slow
+def test_a_cluster_whose_worker_is_killed_loses_and_doubles_no_point(tiny_work: Make, tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    widths = [*np.linspace(0.0101, 0.0129, 40).tolist(), 0.013, *np.linspace(0.0131, 0.02, 200).tolist()]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # those of the cluster, whose worker is killed
+        with distributed.LocalCluster(n_workers=3, threads_per_worker=1, dashboard_address=None) as cluster:
+            found = compute(DaskWorkers(cluster.scheduler_address), tiny_work(kills=1), widths)
+    require_each_once(found, widths)
+    assert not any(one.failure for one in found)
+    assert len(list(tmp_path.glob("killed-*"))) == 1
+
+
+@pytest.mark.slow
+def test_a_cluster_that_goes_ends_the_study_with_what_came_back(tiny_work: Make) -> None:
+    distributed = pytest.importorskip("distributed")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        cluster = distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None)
+        workers, found = DaskWorkers(cluster.scheduler_address), list[Outcome]()
+
+        def take(outcomes: list[Outcome], units: Mapping[str, str]) -> None:
+            found.extend(outcomes)
+            cluster.close()
+
+        dispatch = Dispatch(workers, tiny_work(seconds=0.2), lambda _: {"belt.width": 0.01}, take, lambda: None)
+        with pytest.raises(SimulationError, match="goes on where it was"):
+            dispatch.run(range(50))
+    assert 0 < len(found) < 50
