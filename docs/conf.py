@@ -1,10 +1,14 @@
 """Sphinx settings."""
 
+import sys
 from collections.abc import Mapping
 from importlib.metadata import version as installed_version
+from pathlib import Path
 
 from beltdyn.model import Entry, read_catalogue
 from beltdyn.results import COORDINATES, VARIABLES, Variable
+
+sys.path.insert(0, str(Path(__file__).parent))
 
 project = "beltdyn"
 author = "The beltdyn developers"
@@ -13,10 +17,10 @@ release = installed_version("beltdyn")
 version = release
 
 extensions = [
+    "mathml",
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "sphinx.ext.napoleon",
 ]
 myst_enable_extensions = ["amsmath", "colon_fence", "dollarmath", "substitution"]
@@ -68,11 +72,19 @@ myst_substitutions = {
 }
 napoleon_google_docstring = False
 autodoc_typehints = "description"
+html_math_renderer = "mathml"
 templates_path = ["_templates"]
 exclude_patterns = ["_build"]
 
 html_theme = "pydata_sphinx_theme"
 html_title = "beltdyn"
 html_static_path = ["_static"]
-html_theme_options = {"header_links_before_dropdown": 6, "navigation_with_keys": True}
-html_sidebars = {page: [] for page in ("index", "tutorial", "reference")}  # without pages below them
+html_css_files = ["pages.css"]
+html_theme_options = {
+    "header_links_before_dropdown": 6,
+    "navigation_with_keys": True,
+    "show_toc_level": 2,
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+html_sidebars = {page: [] for page in ("index", "tutorial")}  # without pages below them

@@ -8,8 +8,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import mathml
 import matplotlib.pyplot as plt
 import pytest
+import run_tasks
 import tomli_w
 
 from beltdyn.analyses import ANALYSES, RUN, STATIC
@@ -172,6 +174,39 @@ def test_the_tutorial_prints_what_it_says(
             assert found == pytest.approx(expected, rel=0.02)
     plt.close("all")
     assert told == 3
+
+
+@pytest.mark.parametrize("page", run_tasks.pages(), ids=lambda page: page.stem)
+def test_tasks_print_what_they_say(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same words, and numbers to 2 % and a unit of the last digit."""
+    monkeypatch.chdir(tmp_path)
+    number = r"\d+(?:\.\d+)?"
+    told = list(run_tasks.printed(page))
+    assert told
+    for said, found in told:
+        assert re.sub(number, "#", said) == re.sub(number, "#", found)
+        for one, other in zip(re.findall(number, said), re.findall(number, found), strict=True):
+            digit = 10.0 ** -len(one.partition(".")[2])
+            assert float(other) == pytest.approx(float(one), rel=0.02, abs=1.01 * digit)
+
+
+def test_each_task_is_reached_from_the_first_page_and_the_guide() -> None:
+    for page in run_tasks.pages():
+        for index in ("index.md", "guide.md"):
+            assert f"(tasks/{page.name})" in (ROOT / "docs" / index).read_text(encoding="utf-8")
+
+
+def test_formulas_of_all_pages_are_written_without_leftovers() -> None:
+    """As MathML, in which no command of LaTeX and no separator of columns is left."""
+    count = 0
+    for page in (ROOT / "docs").rglob("*.md"):
+        text = re.sub(r"```.*?```|`[^`]*`", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        text = re.sub(r"^ {4}.*$", "", text, flags=re.MULTILINE)
+        for shown, inline in re.findall(r"\$\$(.*?)\$\$|\$([^$]+?)\$", text, flags=re.DOTALL):
+            found = mathml.written(shown or inline, bool(shown))
+            count += 1
+            assert re.search(r"\\[a-zA-Z]|<mi>&</mi>", found) is None, (page.name, shown or inline)
+    assert count > 1000
 
 
 def test_python_of_the_results_page_runs(new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
