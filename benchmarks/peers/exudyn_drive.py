@@ -201,11 +201,12 @@ class _Model:
 
 def _profile(profile: Profile) -> Callable[..., float]:
     """A user function of Exudyn from a profile over time, in plain floats; its other arguments do not matter."""
-    starts, pieces = (array.tolist() for array in profile.segments())
+    pieces = profile.segments()
+    starts, parts = pieces.start.tolist(), pieces[["offset", "slope", "amplitude", "frequency", "phase"]].tolist()
 
     def function(_system: Any, t: float, *_: Any) -> float:
         k = max(bisect_left(starts, t) - 1, 0)
-        constant, slope, amplitude, omega, phase = pieces[k]
+        constant, slope, amplitude, omega, phase = parts[k]
         rise = slope * (t - starts[k]) if slope else 0.0
         return float(constant + rise + amplitude * cos(omega * t + phase))
 

@@ -19,6 +19,8 @@ from beltdyn.published import better, loaded_two_pulley
 
 LOAD = 45.0
 ALLOWED = 3e-3
+CLEAN = 1e-4
+"""Amplitude over the load of any line on the mesh that stays."""
 FACTORS = (1e4, 1e5)
 FINE = 1e-4
 INTERVAL, WINDOW = 1e-4, 0.2
@@ -118,6 +120,33 @@ def test_ripple_is_nodes_and_waves(
         curve(f"torque_ripple/{factor:.0e}", spectrum.frequency[shown], amplitude, f"{elements} elements", "-")
         assert parts["rest"] < 0.5 * ripple(run) * LOAD
     assert parts["rest"] < 0.5 * ALLOWED * LOAD
+
+
+@pytest.mark.parametrize("factor", FACTORS)
+def test_the_mesh_that_stays_has_no_lines(
+    measured: Callable[..., None], curve: Callable[..., None], factor: float
+) -> None:
+    """No node passes, and no span is left swinging by nodes that pass; what remains is the torsion of the run-up."""
+    drive = better(loaded_two_pulley(factor), elements=30, frame="staying", rtol=FINE, duration=1.0)
+    run = simulate(drive.replace(simulation=drive.simulation.replace(output_interval=INTERVAL)))
+    spectrum = spectrum_of(run)
+    shown, above = spectrum.frequency < 1000.0, spectrum.frequency > 100.0
+    amplitude = np.sqrt(2.0 * spectrum.power) / LOAD
+    measured(all=ripple(run), above_100_hz=amplitude[above].max())
+    curve(f"torque_ripple/{factor:.0e}", spectrum.frequency[shown], amplitude[shown], "mesh that stays", "-")
+    assert amplitude[above].max() < CLEAN
+
+
+@pytest.mark.parametrize("factor", FACTORS)
+@pytest.mark.parametrize("elements", [21, 30])
+def test_the_mesh_that_stays_is_clean_in_steady_running(
+    measured: Callable[..., None], factor: float, elements: int
+) -> None:
+    drive = better(loaded_two_pulley(factor), elements=elements, frame="staying", duration=WINDOW)
+    settings = drive.simulation.replace(output_interval=INTERVAL, start="steady", start_at=0.8)
+    torque = simulate(drive.replace(simulation=settings)).dataset["pulley_torque"].values[:, 1]
+    measured(largest=np.abs(torque - torque.mean()).max() / LOAD)
+    assert np.abs(torque - torque.mean()).max() < CLEAN * LOAD
 
 
 @pytest.mark.parametrize("elements", [30, 45, 60])

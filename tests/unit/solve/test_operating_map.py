@@ -110,3 +110,17 @@ def test_the_command(drive_file: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert ended.value.code == 0
     assert all(words in said for words in ("Speed of driver", "120.0", "Largest hub load", "point.csv"))
     assert bd.open_result(drive_file.with_name("drive-map.nc")).dataset.sizes["speed"] == 2
+
+
+def test_a_torque_over_the_angle_counts_with_its_mean_and_the_map_says_so(loaded: Drive) -> None:
+    driver, driven = loaded.pulleys
+    table = {"kind": "angle_table", "angles": [0.0, 0.5 * np.pi, np.pi, 1.5 * np.pi], "torques": [0, -10, -20, -10]}
+    uneven, even = (
+        operating_map(loaded.replace(pulley=[driver, driven.replace(torque=torque, load=load)]), speed="60, 120 rad/s")
+        for torque, load in ((None, [table]), ({"kind": "constant", "value": -10.0}, ()))
+    )
+    np.testing.assert_allclose(uneven.dataset.span_tension, even.dataset.span_tension, rtol=1e-9)
+    said = [warning for warning in uneven.warnings if "it counts with its mean over a cycle" in warning]
+    assert len(said) == 1
+    assert said[0].startswith("at speed 573 rpm: the load of driven")
+    assert said[0].endswith("So at 1 more point, up to speed 1146 rpm.")

@@ -15,7 +15,7 @@ from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved_by_mesh
 from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
 from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
-from beltdyn.results.checks.steady import mean_torques
+from beltdyn.results.checks.steady import begun_by_means, mean_torques
 from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
@@ -39,6 +39,7 @@ CHECKS: tuple[Check, ...] = (
     regularised_slip,
     driving_loads,
     mean_torques,
+    begun_by_means,
     negative_losses,
     artificial_losses,
     flutter,

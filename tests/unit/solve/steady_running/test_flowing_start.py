@@ -142,3 +142,17 @@ def test_a_tolerance_comes_before_a_number_of_elements(short: Drive) -> None:
     settings = short.simulation.replace(force_tolerance=0.01)
     free, given = (short.replace(belt=short.belt.replace(elements=n), simulation=settings) for n in (None, 80))
     assert bd.simulate(given).dataset.sizes["node"] == bd.simulate(free).dataset.sizes["node"] < 40
+
+
+def test_what_begins_to_swing_with_the_run_is_told(constant: Drive) -> None:
+    driver, driven = constant.pulleys
+    table = {"kind": "angle_table", "angles": [0.0, 0.5 * np.pi, np.pi, 1.5 * np.pi], "torques": [0, -10, -20, -10]}
+    swinging = constant.replace(
+        pulley=[
+            driver.replace(harmonics=[{"order": 2.0, "amplitude": 0.01}]),
+            driven.replace(torque=None, load=[table]),
+        ],
+        simulation=constant.simulation.replace(duration=2e-3),
+    )
+    said = "steady running with the means of the speed of driver and the load of driven, which swing from then on"
+    assert [said in warning for warning in bd.simulate(swinging).warnings].count(True) == 1
