@@ -102,7 +102,7 @@ def over_arc(run: Run, pulley: int) -> FloatArray:
     touching = last.contact_pulley.values == pulley
     rows = [np.argsort(np.where(one, along, np.inf))[: one.sum()] for along, one in zip(angle, touching, strict=True)]
     forces = zip(rows, angle, last.normal_force.values, strict=True)
-    return np.mean([np.interp(ANGLES, along[row], force[row]) for row, along, force in forces], axis=0)
+    return np.asarray(np.mean([np.interp(ANGLES, along[row], force[row]) for row, along, force in forces], axis=0))
 
 
 def solve(case: Case, frame: Frame, elements: int, rtol: float) -> Seen:
