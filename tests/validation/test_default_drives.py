@@ -4,6 +4,7 @@ Two-pulley drives from a 5 mm to a 2 m pulley, 0.1 to 60 m/s and 5 N to 50 kN, i
 of what they transmit at most.  Slip is compared with the elastic creep of their tensions (Grashof 1883).
 """
 
+from collections.abc import Callable
 from math import asin, pi, tanh
 from typing import Any, NamedTuple
 
@@ -14,6 +15,9 @@ from beltdyn import steady_state
 from beltdyn.model import Belt, Drive
 from beltdyn.results import summarize
 from beltdyn.results.summary import Summary
+from beltdyn.solve.vibration.flutter import flutter_shift
+from beltdyn.solve.vibration.small_motions import about_steady
+from beltdyn.solve.vibration.vibrations import Vibrations
 
 LOADS = (0.5, 0.2)
 """Over the load of gross slip, about."""
@@ -87,6 +91,17 @@ def test_slip_is_elastic_creep(summaries: tuple[str, list[Summary]]) -> None:
     (slip, creep), (less, least) = ((one.pulleys[1].slip, one.pulleys[1].elastic_creep) for one in (half, fifth))
     assert slip - less == pytest.approx(creep - least, rel=0.03)
     assert slip == pytest.approx(creep, rel=0.03)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", DRIVES)
+def test_sliding_arcs_do_not_flutter(name: str, measured: Callable[..., None]) -> None:
+    """Under 97 % of the load of gross slip nothing grows near the frequency of the belt on its contact."""
+    motions = about_steady(steady_state(drive_of(DRIVES[name], 0.97)))
+    state, shift = motions.state, flutter_shift(motions.system)
+    growth = Vibrations(motions.system).fastest_growing(0.0, state.position, state.velocity, shift).real
+    measured(growth=growth)
+    assert growth < 0.0
 
 
 @pytest.mark.slow

@@ -152,3 +152,21 @@ def test_growth_near_contact_is_that_of_all_eigenvalues(
     assert found.real >= near[:24].real.max() - 1e-6 * abs(shift)
     by_pencil = nearest(first_order, shift, 24)[0]
     np.testing.assert_allclose(np.sort(by_pencil[:24].real), np.sort(near[:24].real), rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_growth_of_a_belt_with_hysteresis() -> None:
+    """In units of other masses than one residuals are small of what is no vibration of a belt with hysteresis."""
+    belt = {"profile": "PJ-elastic", "ribs": 5, "installed_tension": 155.0}
+    driver = {"name": "motor", "center": (0.0, 0.0), "radius": 8e-3, "speed": {"kind": "constant", "value": 1250.0}}
+    load = [{"kind": "resistance", "constant": 12.0}]
+    drum = {"name": "drum", "center": (0.36, 0.0), "radius": 0.135, "inertia": 1e-3, "load": load}
+    simulation = {"duration": 1.0, "output_interval": 0.01}
+    drive = Drive(belt=belt, pulley=[driver, drum], contact={"friction": 0.4}, simulation=simulation)
+    motions = about_steady(steady_state(drive))
+    shift, state = flutter_shift(motions.system), motions.state
+    found = Vibrations(motions.system).fastest_growing(0.0, state.position, state.velocity, shift)
+    every = all_eigenvalues(pencil(motions.stiffness, motions.damping, motions.mass, motions.free))[0]
+    near = every[np.argsort(np.abs(every - shift))]
+    assert np.abs(near - found).min() < 1e-6 * abs(shift)
+    assert near[:24].real.max() - 1e-6 * abs(shift) <= found.real < 0.0

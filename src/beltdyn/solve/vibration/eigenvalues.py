@@ -96,8 +96,7 @@ def pencil(stiffness: "csc_array", damping: "csc_array", mass: "csc_array", free
     from scipy.sparse import block_array, csc_array, diags_array, eye_array
 
     size, count = free.shape
-    own = np.abs(mass.diagonal())
-    scale = np.divide(1.0, np.sqrt(own), out=np.ones(size), where=own > 0.0)
+    scale = unit_masses(mass)
     stiffness, damping, mass = (matrix @ diags_array(scale) for matrix in (stiffness, damping, mass))
     free = free / scale[:, None]
     given = qr(free.T, mode="r", pivoting=True)[1][:count] if count else np.zeros(0, int)
@@ -112,6 +111,27 @@ def pencil(stiffness: "csc_array", damping: "csc_array", mass: "csc_array", free
         free,
         scale,
     )
+
+
+def unit_masses(mass: "csc_array") -> FloatArray:
+    """Scales of the coordinates in which their masses are one.
+
+    In other units the matrices are so far from normal that residuals tell nothing: slopes and curvatures of quintic
+    elements are numbers of other sizes than places.
+
+    Parameters
+    ----------
+    mass : csc_array, shape (n, n)
+        M.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        One for coordinates without mass.
+    """
+    own = np.abs(mass.diagonal())
+    scale: FloatArray = np.divide(1.0, np.sqrt(own), out=np.ones(own.size), where=own > 0.0)
+    return scale
 
 
 def all_eigenvalues(given: Pencil) -> tuple[ComplexArray, ComplexArray]:

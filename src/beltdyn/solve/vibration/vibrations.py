@@ -12,6 +12,7 @@ import numpy as np
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.solve.integrators.engine import linearise
 from beltdyn.solve.vibration.arnoldi import arnoldi
+from beltdyn.solve.vibration.eigenvalues import unit_masses
 from beltdyn.system.arrays import Motion, System, TangentFactors
 from beltdyn.system.frame import Flowing
 from beltdyn.system.motion import new_equations, no_multipliers
@@ -24,8 +25,7 @@ if TYPE_CHECKING:
 _BATCHES = 2
 """Batches of steps of the Arnoldi method, at most."""
 _TOLERANCE = 1e-6
-"""Residual of an eigenvalue that counts as found, relative; with 1e-3 some would be none, as matrices are far from
-normal."""
+"""Residual of an eigenvalue that counts as found, relative; with 1e-3 some would be none."""
 _ENOUGH = 24
 """Eigenvalues around a shift after which no more are looked for."""
 
@@ -112,22 +112,27 @@ class Vibrations:
     def _shifted_inverse(
         self, tangents: tuple[FloatArray, FloatArray, FloatArray], shift: complex
     ) -> Callable[[ComplexArray], ComplexArray] | None:
-        """Solve (A - shift) z = y, where A has the eigenvectors (x, s x / |shift|); None if that is singular."""
+        """Solve (A - shift) z = y, where A has the eigenvectors (a, s a / |shift|); None if that is singular.
+
+        The coordinates a = x / S are those of unit masses.
+        """
+        from scipy.sparse import diags_array
         from scipy.sparse.linalg import splu
 
-        stiffness, damping, mass = tangents
+        scale = diags_array(unit_masses(self.matrix(tangents[2])))
+        stiffness, damping, mass = ((scale @ self.matrix(values) @ scale).tocsc() for values in tangents)
         try:
-            factors = splu(self.matrix(stiffness + shift * damping + shift**2 * mass))
+            factors = splu((stiffness + shift * damping + shift**2 * mass).tocsc())
         except RuntimeError:
             return None
-        scale = abs(shift)
-        by_place, by_rate = self.matrix(damping + shift * mass), self.matrix(scale * mass)
+        rate = abs(shift)
+        by_place, by_rate = damping + shift * mass, rate * mass
         massless = np.flatnonzero(np.diff(by_rate.indptr) == 0)
 
         def solve(deviation: ComplexArray) -> ComplexArray:
-            place, rate = deviation[: self.size], deviation[self.size :]
-            moved = -factors.solve(np.asarray(by_place @ place + by_rate @ rate))
+            place, turned = deviation[: self.size], deviation[self.size :]
+            moved = -factors.solve(np.asarray(by_place @ place + by_rate @ turned))
             moved[massless] = 0.0  # multipliers, on which nothing depends but themselves
-            return np.concatenate([moved, (shift * moved + place) / scale])
+            return np.concatenate([moved, (shift * moved + place) / rate])
 
         return solve
