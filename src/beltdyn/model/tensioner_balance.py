@@ -151,7 +151,7 @@ class _Layout(NamedTuple):
         return isinstance(other, _Layout) and self._values == other._values
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=1024)
 def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
     """Places of the tensioners of a layout; see `balance_tensioners`."""
     path, belt, contact, carriers = layout

@@ -56,7 +56,7 @@ def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
         level = float(np.nanmax(goal)) if runs.any() else 0.0
         ax.plot(number[~runs], np.full((~runs).sum(), level), "x", color=color(2), label="does not run")
     unit = str(dataset["requirement_unit"].values[0])
-    name = str(dataset["requirement"].values[0])
+    name = str(dataset["requirement"].values[0]).partition(" ")[2]
     ax.set(xlabel="Design", ylabel=f"{name} [{unit or '1'}]")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.legend(fontsize=8)

@@ -1,6 +1,7 @@
 """The numbers that sum up a run."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,20 @@ from beltdyn.results.means import (
 from beltdyn.results.recorded import Recorded, attribute
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
+from beltdyn.results.window import Window
+
+
+class Means(NamedTuple):
+    """Means over the end of a run."""
+
+    pulleys: tuple[PulleySummary, ...]
+    """One for each pulley."""
+    spans: tuple[SpanSummary, ...]
+    """One for each span."""
+    tensioners: tuple[TensionerSummary, ...]
+    """One for each tensioner that moves."""
+    balance: Balance
+    """Mean powers of shafts and losses by cause."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +131,27 @@ def summarize(run: Run) -> Summary:
         return _summarize(run, recorded)
 
 
+def means_of(run: Run) -> Means:
+    """Means over the end of a run, without what makes them doubtful.
+
+    Parameters
+    ----------
+    run : Run
+        The run, with at least one output.
+    """
+    with run.recorded() as recorded:
+        return _means(run, recorded, mean_window(recorded, run.drive))
+
+
+def _means(run: Run, recorded: Recorded, window: Window) -> Means:
+    return Means(
+        pulleys=pulley_means(recorded, run.drive, window),
+        spans=span_means(recorded, run.drive, window),
+        tensioners=tensioner_means(recorded, run.drive, window),
+        balance=power_balance(recorded, window),
+    )
+
+
 def _summarize(run: Run, recorded: Recorded) -> Summary:
     window = mean_window(recorded, run.drive)
     return Summary(
@@ -124,10 +160,7 @@ def _summarize(run: Run, recorded: Recorded) -> Summary:
         end=window.end,
         turns=window.turns,
         outputs=len(window.time),
-        pulleys=pulley_means(recorded, run.drive, window),
-        spans=span_means(recorded, run.drive, window),
-        tensioners=tensioner_means(recorded, run.drive, window),
-        balance=power_balance(recorded, window),
+        **_means(run, recorded, window)._asdict(),
         resolution=run.resolution,
         energy_closure=largest_closure(recorded).error,
         integrator=str(recorded.attrs.get("integrator", "")),

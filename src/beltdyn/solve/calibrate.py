@@ -107,7 +107,7 @@ def calibrate(
     """
     path = None if output is None else Path(output)
     if path is not None:
-        require_free(path, overwrite)
+        require_free(path, overwrite, study)
     given = study if isinstance(study, CalibrationStudy) else read_study(study, CalibrationStudy)
     base = Path() if isinstance(study, CalibrationStudy) else Path(study).parent
     numbers = tuple(free_number(drive, one) for one in given.numbers)

@@ -9,7 +9,7 @@ from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable
 from beltdyn.solve.progress import Report
-from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of, with_load
+from beltdyn.solve.steady_running.changed_drive import at_speed_under, driver_of, held_at, sense_of, with_load
 from beltdyn.solve.steady_running.operating_points import OperatingPoints, serpentine
 
 
@@ -108,10 +108,10 @@ def at_point(held: Drive, pulley: int, there: Mapping[str, float]) -> Drive:
     there
         Its "speed" in the sense in which it turns, rad/s, and the "load", a factor; either may be missing.
     """
-    changed = with_load(held, there.get("load", 1.0))
+    factor = there.get("load", 1.0)
     if "speed" not in there:
-        return changed
-    return at_speed(changed, pulley, sense_of(held, pulley) * there["speed"])
+        return with_load(held, factor)
+    return at_speed_under(held, pulley, sense_of(held, pulley) * there["speed"], factor)
 
 
 def load_factors(load: str, count: int) -> FloatArray:

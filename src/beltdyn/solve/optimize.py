@@ -84,7 +84,7 @@ def optimize(
     numbers, there = tuple(free_number(drive, one) for one in given.numbers), held(drive, given.points)
     points = study_points(drive, given.points, base)
     aims = aims_of(given, there, points)
-    history = History(drive, numbers, points, aims, output, overwrite)
+    history = History(drive, numbers, points, aims, output, overwrite, study=study)
 
     def tell(part: float) -> None:
         if progress is not None:
@@ -99,6 +99,5 @@ def optimize(
     descent = Descent(designs, aims, most, history.note)
     with history:
         ended = descent.run(start)
-        best = designs.find(history.best.changes)
-        history.end(ended, history.best if best.failure else best, designs.failed)
+        history.end(ended, designs.refined(history.best), designs.failed)
     return history.result()

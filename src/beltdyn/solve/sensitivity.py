@@ -25,7 +25,7 @@ from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
-from beltdyn.solve.studies.named_results import listed, names_in, names_of, unit_of
+from beltdyn.solve.studies.named_results import listed, names_in, names_of, need_bands, unit_of
 from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.sweep import without_schedules
 
@@ -116,7 +116,12 @@ def sensitivity(
     given = without_schedules(drive, drive.simulation.end if at is None else at)[0]
     chosen, wanted = _chosen(given, numbers), names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about])
     rest = bring_to_stand(given)
-    state = Resting(rest) if about == REST else Running(steady_state(rest.drive, force_tolerance=force_tolerance))
+    bands = need_bands(wanted)
+    state = (
+        Resting(rest)
+        if about == REST
+        else Running(steady_state(rest.drive, force_tolerance=force_tolerance), bands=bands)
+    )
     values = _values(state, wanted)
     changes = SmallChanges(given, rest)
     derivatives, warnings = np.full((len(values), len(chosen)), np.nan), _warnings(state, list(values))

@@ -88,13 +88,79 @@ def steady_state(
         require_neighbour(drive, start, elements)
     if force_tolerance is None and elements is None and drive.steady.mesh == "uniform":
         elements = drive.elements
-    tolerance = next(one for one in (force_tolerance, drive.steady.force_tolerance, _TOLERANCE) if one is not None)
+    tolerance = _tolerance(drive, force_tolerance)
     _require_sense(tolerance, elements)
     instant = drive.simulation.end if at is None else at
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
-    found = _continued(drive, start, instant, tolerance) if start is not None else None
-    return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, elements))
+    found = _continued(drive, start, instant, tolerance, bands=True) if start is not None else None
+    return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, elements, bands=True))
+
+
+def steady_from(drive: Drive, start: Run | None, force_tolerance: float | None, *, bands: bool) -> Run:
+    """Find the steady running of a drive from that of another one, or from rest, as `steady_state` does.
+
+    Parameters
+    ----------
+    drive
+        The drive, with constant speeds and torques.
+    start
+        Steady running of one that differs a little, if there is one.
+    force_tolerance
+        As for `steady_state`.
+    bands
+        Whether to find where dry friction holds tensioners, which takes several times as long as all else.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is none.
+    """
+    instant, tolerance = drive.simulation.end, _tolerance(drive, force_tolerance)
+    found = None if start is None else _continued(drive, start, instant, tolerance, bands=bands)
+    return _as_run(drive, instant, found or _from_rest(drive, instant, tolerance, None, bands=bands))
+
+
+class Beside(NamedTuple):
+    """Steady running that was found on the mesh of that of a drive that differs a little."""
+
+    drive: Drive
+    search: SteadySearch
+    start: Run
+    """Of the other drive; the errors of its mesh are taken over."""
+    change: FloatArray
+    """By how much its unknowns differ from those that were carried over."""
+    seconds: float
+    """Of the search, s."""
+
+    def run(self, *, bands: bool) -> Run:
+        """Its results; `bands` as for `steady_from`."""
+        errors = {name: error for name, error in self.start.resolution.errors.items() if np.isfinite(error)}
+        band = self.search.friction_band(self.start.dataset.attrs) if bands else {}
+        found = _Found(self.search, band, errors, _rule_of(self.start), self.seconds)
+        return _as_run(self.drive, self.drive.simulation.end, found)
+
+
+def steady_beside(drive: Drive, start: Run, guess: FloatArray | None = None) -> Beside | None:
+    """Look for the steady running of a drive on the mesh of another one; None if it is not found from there.
+
+    Parameters
+    ----------
+    drive
+        The drive, with constant speeds and torques.
+    start
+        Steady running of one that differs a little.
+    guess
+        By how much its unknowns may differ from those that are carried over from the other one, as far as is known.
+    """
+    require_neighbour(drive, start, None)
+    search, begun = _begin(drive, start, drive.simulation.end), time.perf_counter()
+    carried = search.unknowns()
+    if guess is not None:
+        search.place(carried + guess)
+    if not search.resume():
+        return None
+    return Beside(drive, search, start, search.unknowns() - carried, time.perf_counter() - begun)
 
 
 def steady_on_mesh(drive: Drive, start: Run) -> Run:
@@ -112,12 +178,25 @@ def steady_on_mesh(drive: Drive, start: Run) -> Run:
     ConvergenceError
         If it is not found from there.
     """
-    require_neighbour(drive, start, None)
-    instant = drive.simulation.end
-    found = _continued(drive, start, instant, None)
+    return require_found(steady_beside(drive, start)).run(bands=True)
+
+
+def require_found(found: Beside | None) -> Beside:
+    """Make sure that steady running was found.
+
+    Raises
+    ------
+    ConvergenceError
+        If it was not.
+    """
     if found is None:
-        raise ConvergenceError("Newton's method does not follow so small a change.")
-    return _as_run(drive, instant, found)
+        raise ConvergenceError("Newton's method does not follow so large a change.")
+    return found
+
+
+def _tolerance(drive: Drive, force_tolerance: float | None) -> float:
+    """Error of contact forces that is asked for, or that of the drive, or the usual one."""
+    return next(one for one in (force_tolerance, drive.steady.force_tolerance, _TOLERANCE) if one is not None)
 
 
 class _Found(NamedTuple):
@@ -133,13 +212,13 @@ class _Found(NamedTuple):
     """Of the search, s."""
 
 
-def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None) -> _Found:
+def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None, *, bands: bool) -> _Found:
     """Find steady running from the belt at rest, on a finer mesh where that on a coarse one leads to no other."""
     rest, begun = bring_to_stand(drive, elements), time.perf_counter()
     for trial in range(1, _MOST_STARTS + 1):
         search = SteadySearch(rest.drive, rest.system, rest.state, instant)
         search.run(rest)
-        band = search.friction_band()
+        band = search.friction_band() if bands else {}
         rule = MeshRule(rest.layer, rest.fineness) if elements is None else MeshRule(0.0, elements=elements)
         try:
             errors, rule = refine(search, rule, force_tolerance)
@@ -151,28 +230,34 @@ def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: i
     return _Found(search, band, errors, rule, time.perf_counter() - begun)
 
 
-def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float | None) -> _Found | None:
+def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float, *, bands: bool) -> _Found | None:
     """Find steady running from that of a neighbour, on its mesh, or on another one where that is too coarse.
 
-    None if that fails. Without a tolerance the errors of the mesh are taken over.
+    None if that fails.
     """
-    installed = with_length_of(drive, start) or bring_to_stand(drive).drive
-    search, begun = search_from(installed, start, instant), time.perf_counter()
-    rule = MeshRule(*start.dataset.attrs["mesh_rule"].tolist())
+    search, begun = _begin(drive, start, instant), time.perf_counter()
     if not search.resume():
         return None
-    if force_tolerance is None:
-        errors = {name: error for name, error in start.resolution.errors.items() if np.isfinite(error)}
-    else:
-        try:
-            errors, coarser = against_coarser(search, rule)
-            if not (is_fine(errors, force_tolerance) or rule.elements):
-                errors, rule = refine(coarser, rule.finer(1.0 / FINER), force_tolerance)
-                search = coarser
-        except ConvergenceError:
-            return None
-    band = search.friction_band(start.dataset.attrs)
+    rule = _rule_of(start)
+    try:
+        errors, coarser = against_coarser(search, rule)
+        if not (is_fine(errors, force_tolerance) or rule.elements):
+            errors, rule = refine(coarser, rule.finer(1.0 / FINER), force_tolerance)
+            search = coarser
+    except ConvergenceError:
+        return None
+    band = search.friction_band(start.dataset.attrs) if bands else {}
     return _Found(search, band, errors, rule, time.perf_counter() - begun)
+
+
+def _begin(drive: Drive, start: Run, instant: float) -> SteadySearch:
+    """A search that begins with the steady running of a neighbour."""
+    return search_from(with_length_of(drive, start) or bring_to_stand(drive).drive, start, instant)
+
+
+def _rule_of(start: Run) -> MeshRule:
+    """How the mesh of steady running was made."""
+    return MeshRule(*start.dataset.attrs["mesh_rule"].tolist())
 
 
 def _as_run(drive: Drive, instant: float, found: _Found) -> Run:

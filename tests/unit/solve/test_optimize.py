@@ -13,6 +13,9 @@ from beltdyn.results import Result, open_result, summarize
 from beltdyn.solve import Progress
 from beltdyn.solve.optimize import optimize
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.studies.designs import Designs, free_number
+from beltdyn.solve.studies.goals import aims_of
+from beltdyn.solve.studies.study_points import held, study_points
 
 TENSION, SAFETY = 600.0, 2.0
 FREE: dict[str, Any] = {"path": "belt.installed_tension", "least": 200.0, "largest": "900 N"}
@@ -143,3 +146,28 @@ def test_another_drive_file_is_not_replaced(loaded: Drive, tmp_path: Path) -> No
 def test_what_does_not_fit_the_drive_is_told(loaded: Drive, changes: dict[str, Any], said: str) -> None:
     with pytest.raises(ModelError, match=said):
         optimize(loaded, study=study(**changes))
+
+
+def test_a_design_followed_along_the_tangent_is_that_found_from_rest(loaded: Drive) -> None:
+    """Halving the tension is far beyond Newton's method from the state at hand, and not beyond the path of states."""
+    given = study()
+    there, points = held(loaded, given.points), study_points(loaded, given.points, Path())
+    number = free_number(loaded, given.numbers[0])
+    watched = aims_of(given, there, points).watched
+    designs = Designs(loaded, [number], points, given.points, watched, None, lambda part: None)
+    start = designs.find({number.path: TENSION})
+    slopes = designs.derivatives(start)
+    followed, alone = designs.find({number.path: 0.6 * TENSION}, start), designs.find({number.path: 0.6 * TENSION})
+    assert not followed.failure
+    assert all(path.keys() == {number.path} for path in start.tangents)
+    assert followed.values == pytest.approx(alone.values, rel=0.01, nan_ok=True)
+    assert slopes[:, 0, 0] == pytest.approx(2.0, rel=0.05)  # both spans pull at the hub
+
+
+def test_the_study_is_never_replaced(loaded: Drive, tmp_path: Path) -> None:
+    file = tmp_path / "s.toml"
+    number = '[[number]]\npath = "belt.installed_tension"\nleast = 200\nlargest = 900'
+    file.write_text(f'{number}\n[goal]\nresult = "hub_load"\n')
+    with pytest.raises(ModelError, match="which is the study"):
+        optimize(loaded, study=file, output=tmp_path / "s.nc", overwrite=True)
+    assert "installed_tension" in file.read_text()

@@ -74,8 +74,14 @@ def at_speed(drive: Drive, number: int, speed: float) -> Drive:
     speed
         rad/s.
     """
-    other = drive.pulleys[number].replace(speed=Constant(value=speed), torque=None, load=(), harmonics=())
-    return with_pulley(drive, number, other)
+    return with_pulley(drive, number, _at_speed(drive.pulleys[number], speed))
+
+
+def at_speed_under(drive: Drive, number: int, speed: float, factor: float) -> Drive:
+    """Multiply all torques and loads, as `with_load`, and prescribe the speed of a pulley, as `at_speed`."""
+    pulleys = _loaded(drive, factor)
+    pulleys[number] = _at_speed(pulleys[number], speed)
+    return drive.replace(pulley=pulleys)
 
 
 def with_torque(drive: Drive, number: int, torque: float) -> Drive:
@@ -103,13 +109,23 @@ def with_load(drive: Drive, factor: float) -> Drive:
     """
     if factor == 1.0:
         return drive
-    pulleys = [one.replace(torque=_scaled(one, factor), load=_multiplied(one.load, factor)) for one in drive.pulleys]
-    return drive.replace(pulley=pulleys)
+    return drive.replace(pulley=_loaded(drive, factor))
 
 
 def with_pulley(drive: Drive, number: int, pulley: Pulley) -> Drive:
     """The drive with another pulley in the place of one."""
     return drive.replace(pulley=[*drive.pulleys[:number], pulley, *drive.pulleys[number + 1 :]])
+
+
+def _at_speed(pulley: Pulley, speed: float) -> Pulley:
+    return pulley.replace(speed=Constant(value=speed), torque=None, load=(), harmonics=())
+
+
+def _loaded(drive: Drive, factor: float) -> list[Pulley]:
+    """The pulleys with all torques and loads multiplied."""
+    if factor == 1.0:
+        return list(drive.pulleys)
+    return [one.replace(torque=_scaled(one, factor), load=_multiplied(one.load, factor)) for one in drive.pulleys]
 
 
 def _scaled(pulley: Pulley, factor: float) -> Constant | None:

@@ -14,11 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
-from beltdyn.results import Result, Run, Summary, Variable, build_result, summarize
+from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.atomic import require_replaceable
 from beltdyn.results.balance import LOSSES
 from beltdyn.results.dataset import is_result
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
+from beltdyn.results.summary import Means, means_of
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.steady import steady_state
@@ -191,7 +192,7 @@ class OperatingPoints:
         except ConvergenceError as error:
             self.fail(index, "no operating point", str(error))
         else:
-            self._take(index, run, summarize(run))
+            self._take(index, run, means_of(run))
             self._near = run
         self._done += 1
         self._tell()
@@ -259,9 +260,9 @@ class OperatingPoints:
         shape = (*self.shape, *(len(self._sizes[name]) for name in variable.dims))
         return np.full(shape, "", dtype=object) if variable.dtype == "str" else np.full(shape, np.nan)
 
-    def _take(self, index: tuple[int, ...], run: Run, summary: Summary) -> None:
+    def _take(self, index: tuple[int, ...], run: Run, means: Means) -> None:
         """Note an operating point."""
-        for name, values in values_by_name(run, summary).items():
+        for name, values in values_by_name(run, means).items():
             if name in self.arrays:
                 self.arrays[name][index] = values
         if "mesh_error" in self.arrays:
@@ -311,24 +312,24 @@ def labels_of(drive: Drive) -> dict[str, list[str]]:
     }
 
 
-def values_by_name(run: Run, summary: Summary) -> dict[str, Any]:
+def values_by_name(run: Run, means: Means) -> dict[str, Any]:
     """The values of an operating point by the names of `VARIABLES`.
 
     Parameters
     ----------
     run
         Steady running.
-    summary
-        Its summary.
+    means
+        Its means.
     """
-    balance, dataset, tensions = summary.balance, run.dataset, [one.tension for one in summary.spans]
+    balance, dataset, tensions = means.balance, run.dataset, [one.tension for one in means.spans]
     values: dict[str, Any] = {
-        name: [getattr(one, attribute) for one in summary.pulleys] for name, attribute in _OF_PULLEYS.items()
+        name: [getattr(one, attribute) for one in means.pulleys] for name, attribute in _OF_PULLEYS.items()
     }
     values |= {
         "hub_force": dataset["hub_force"].values[-1],
         "span_tension": tensions,
-        "belt_speed": np.mean([abs(one.belt_speed) for one in summary.spans]),
+        "belt_speed": np.mean([abs(one.belt_speed) for one in means.spans]),
         "largest_tension": max(tensions),
         "power_in": balance.power_in,
         "power_out": balance.power_out,
@@ -338,9 +339,9 @@ def values_by_name(run: Run, summary: Summary) -> dict[str, Any]:
     safeties = np.array(values["slip_safety"])
     if np.any(np.isfinite(safeties)):
         least = int(np.nanargmin(safeties))
-        values |= {"least_slip_safety": safeties[least], "least_safe_pulley": summary.pulleys[least].name}
-    if summary.tensioners:
-        values["tensioner_position"] = stands = [one.position for one in summary.tensioners]
+        values |= {"least_slip_safety": safeties[least], "least_safe_pulley": means.pulleys[least].name}
+    if means.tensioners:
+        values["tensioner_position"] = stands = [one.position for one in means.tensioners]
         for name in ("tensioner_position_after_tensioning", "tensioner_position_after_yielding"):
             values[name] = dataset.attrs.get(name, stands)
     return values

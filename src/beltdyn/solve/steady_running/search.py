@@ -97,6 +97,22 @@ class SteadySearch:
         """Length of unstretched belt that passes in a second, m/s."""
         return float(self.constant.frame.speed[0])
 
+    def unknowns(self) -> FloatArray:
+        """All that steady running consists of, as one vector: position, velocity, speed of the belt."""
+        return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
+
+    def place(self, unknowns: FloatArray) -> None:
+        """Put the search in its place.
+
+        Parameters
+        ----------
+        unknowns
+            As from `unknowns`.
+        """
+        size = self.state.position.size
+        self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
+        self.constant.frame.speed[:] = unknowns[2 * size :]
+
     def resume(self) -> bool:
         """Find steady running under the loads that are asked for from that under others; False if that fails."""
         return self._try(Setting())
@@ -201,7 +217,7 @@ class SteadySearch:
 
         Ends that are known, each with its push, serve the guesses.
         """
-        begin, moments, own = self._unknowns(), self._moments, self.constant.tensioners.push
+        begin, moments, own = self.unknowns(), self._moments, self.constant.tensioners.push
         given = own.copy()
 
         def solve(part: float, guess: FloatArray) -> FloatArray | None:
@@ -213,7 +229,7 @@ class SteadySearch:
             solve, *((part, end) for part, other, end in parts if np.allclose(other, part * push)), (0.0, begin)
         )
         own[:], self._moments = given, moments
-        self._place(begin)
+        self.place(begin)
         return end
 
     def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
@@ -229,23 +245,13 @@ class SteadySearch:
             found.append(self._work.ahead_border[unknown])
         return found
 
-    def _unknowns(self) -> FloatArray:
-        """All that steady running consists of, as one vector: position, velocity, speed of the belt."""
-        return np.concatenate([self.state.position, self.state.velocity, self.constant.frame.speed])
-
-    def _place(self, unknowns: FloatArray) -> None:
-        """Put the search in its place."""
-        size = self.state.position.size
-        self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
-        self.constant.frame.speed[:] = unknowns[2 * size :]
-
     def _solve(self, setting: Setting, guess: FloatArray) -> FloatArray | None:
         """Steady running at a setting from a guess; None, and all as it was, if it is not found."""
-        before = self._unknowns()
-        self._place(guess)
+        before = self.unknowns()
+        self.place(guess)
         if self._try(setting):
-            return self._unknowns()
-        self._place(before)
+            return self.unknowns()
+        self.place(before)
         return None
 
     def _gentle(self, speed: float, tension: float) -> float:
@@ -274,7 +280,7 @@ class SteadySearch:
         """Go on to another setting; False if the way ends before."""
         begin = self.setting
         return (
-            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess), (0.0, self._unknowns()))
+            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess), (0.0, self.unknowns()))
             is not None
         )
 
@@ -290,7 +296,7 @@ class SteadySearch:
     def _try(self, setting: Setting) -> bool:
         """Look for steady running at a setting from the state that there is, which stays where that fails."""
         state, system = self.state, self._at(setting)
-        before = self._unknowns()
+        before = self.unknowns()
         drive_shafts(system, state.velocity)
         tolerance = TOLERANCE * float(np.min(self.drive.radii))
         anchor = anchor_at(system, state, False)
@@ -299,7 +305,7 @@ class SteadySearch:
         if status == FOUND:
             self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
             return True
-        self._place(before)
+        self.place(before)
         return False
 
     def _at(self, setting: Setting) -> System:

@@ -19,7 +19,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.solve.studies.designs import Design, Designs
 from beltdyn.solve.studies.goals import Aims
 
-_SETTLED = 1e-5
+_SETTLED = 1e-4
 """Expected fall of goal and violations at which the search ends, over their scales."""
 _FIRST_PART, _LARGEST_PART, _LEAST_PART = 0.15, 0.5, 1e-4
 """Part of the ways between bounds that the first, the largest and the least step may take."""

@@ -1,7 +1,8 @@
 """Designs of a study: drives that differ in some numbers, in steady running at all operating points."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -11,14 +12,18 @@ from beltdyn.model import Drive
 from beltdyn.model.study import FreeNumber, Points
 from beltdyn.parts.change import converted, unit_at, value_at
 from beltdyn.solve.rest.staying import Standing, bring_to_stand
-from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady import Beside, require_found, steady_beside, steady_from
+from beltdyn.solve.steady_running.continuation import go_on
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
+from beltdyn.solve.studies.named_results import need_bands
 from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.studies.study_points import OperatingPoint, held
 from beltdyn.solve.studies.watched import Watched
 
 _DIGITS = 6
 """Of numbers, over the distance of their bounds."""
+_BEHIND = 1e-2
+"""Part of the way to another design, as far as which before its start the tangent stands for solutions."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +70,7 @@ def free_number(drive: Drive, given: FreeNumber) -> Free:
             f"number {path}: the drive file has {start:g}, which is not between least = {least:g} and largest = "
             f"{largest:g}. Widen them, or change the drive file."
         )
-    return Free(path, unit_at(drive, path), least, largest, start)
+    return Free(path, unit_at(drive, path).replace("*", " "), least, largest, start)
 
 
 @dataclass(frozen=True)
@@ -82,6 +87,22 @@ class Design:
     """With constant speeds and torques."""
     rest: Standing | None = None
     states: tuple[FoundState, ...] = ()
+    tangents: tuple[dict[str, FloatArray], ...] = ()
+    """Path -> change of the unknowns of each state by a unit of the number; filled where derivatives are found."""
+
+    def ahead(self, point: int, changes: Mapping[str, float]) -> FloatArray:
+        """By how much the unknowns of another design differ at an operating point, to first order.
+
+        Parameters
+        ----------
+        point
+            Number of the operating point.
+        changes
+            Of the other design.
+        """
+        tangents = self.tangents[point]
+        ways = {path: value - self.changes[path] for path, value in changes.items() if path in tangents}
+        return np.asarray(sum((way * tangents[path] for path, way in ways.items()), np.zeros(1)))
 
 
 class Designs:
@@ -121,7 +142,7 @@ class Designs:
     ) -> None:
         self._drive, self.numbers, self._points, self._instant = drive, numbers, points, instant
         self.watched, self._tolerance, self._tell = watched, force_tolerance, tell
-        self._at_rest = at_rest
+        self._at_rest, self._bands = at_rest, need_bands(one.name for one in watched)
         self.failed: list[str] = []
         """Derivatives that were not found, and why."""
 
@@ -133,52 +154,117 @@ class Designs:
         changes
             Path -> number.
         near
-            A design from whose states the search begins; by default each operating point begins at that before it.
+            A design from whose states those of this one are followed; by default, and where that fails, each operating
+            point begins at that before it.
         """
         states: list[FoundState] = []
         where = ""
+
+        @cache
+        def between(part: float) -> Standing:
+            """A drive on the way from the other design, at rest."""
+            begin = changes if near is None else near.changes
+            there = {path: begin[path] + part * (end - begin[path]) for path, end in changes.items()}
+            return bring_to_stand(self._given(changes if part == 1.0 else there))
+
         try:
-            given = held(self._drive.with_(changes), self._instant)
-            rest = bring_to_stand(given)
+            rest = between(1.0)
             for number, point in enumerate(self._points):
                 where = f"at {point.label}: " if len(self._points) > 1 else ""
-                states.append(self._state(point, rest, near.states[number] if near and near.states else None, states))
+                found = self._on_way(near, changes, number, between) if near and near.states else None
+                states.append(found or self._state(point, rest, states))
                 self._tell((number + 1) / len(self._points))
             values = np.array([self._read(one, number) for number, one in enumerate(states)])
         except (ConvergenceError, ModelError) as error:
             return Design(changes, f"{where}{error}", np.full((len(self._points), len(self.watched)), np.nan))
-        return Design(changes, "", values, given, rest, tuple(states))
+        blank = tuple(dict[str, FloatArray]() for _ in states)
+        return Design(changes, "", values, self._given(changes), rest, tuple(states), blank)
 
-    def _state(
-        self, point: OperatingPoint, rest: Standing, near: FoundState | None, before: Sequence[FoundState]
-    ) -> FoundState:
-        """The state of a drive at an operating point, found from one nearby or from that before it."""
+    def refined(self, design: Design) -> Design:
+        """The same design on meshes that are made for it, where those on which it was found are too coarse.
+
+        Parameters
+        ----------
+        design
+            One that runs.
+        """
+        if self._at_rest:
+            return design
+        assert design.rest is not None
+        try:
+            pairs = list(zip(self._points, design.states, strict=True))
+            states = [self._state(point, design.rest, [state]) for point, state in pairs]
+        except ConvergenceError as error:
+            self.failed.append(f"the best design is not found anew on a mesh of its own: {error}")
+            return design
+        values = np.array([self._read(one, number) for number, one in enumerate(states)])
+        return replace(design, values=values, states=tuple(states))
+
+    def _given(self, changes: Mapping[str, float]) -> Drive:
+        """The drive of a design, with constant speeds and torques."""
+        return held(self._drive.with_(changes), self._instant)
+
+    def _on_way(
+        self, near: Design, changes: Mapping[str, float], number: int, between: Callable[[float], Standing]
+    ) -> FoundState | None:
+        """The state at an operating point, followed from that of another design; None where the way ends before.
+
+        The first step is the whole way, along the tangent; others are shorter, and follow a parabola.
+        """
+        start, last = near.states[number], list[Beside]()
+        if not isinstance(start, Running):
+            return None
+
+        def solve(part: float, guess: FloatArray) -> FloatArray | None:
+            try:
+                found = steady_beside(self._points[number].of(between(part).drive), start.run, guess)
+            except (ConvergenceError, ModelError):
+                return None
+            last[:] = [] if found is None else [found]
+            return None if found is None else found.change
+
+        ahead = near.ahead(number, changes)
+        known = [(place, place * ahead) for place in (-2.0 * _BEHIND, -_BEHIND, 0.0)]
+        return None if go_on(solve, *known) is None else start.of(last[0], None)
+
+    def _state(self, point: OperatingPoint, rest: Standing, before: Sequence[FoundState]) -> FoundState:
+        """The state of a drive at an operating point, found from that before it, or from rest."""
         if self._at_rest:
             return Resting(rest)
-        start = near or (before[-1] if before else None)
-        run = start.run if isinstance(start, Running) else None
-        return Running(steady_state(point.of(rest.drive), force_tolerance=self._tolerance, start=run))
+        run = before[-1].run if before and isinstance(before[-1], Running) else None
+        return Running(steady_from(point.of(rest.drive), run, self._tolerance, bands=self._bands), bands=self._bands)
 
     def derivatives(self, design: Design) -> FloatArray:
         """Derivatives of watched results by the numbers of a design, shape (points, results, numbers).
 
-        Each number is changed a little up and down, and Newton's method follows from the steady states at hand, as for
-        `sensitivity`.  A derivative that is not found counts as zero, and is noted.
+        Each number is changed a little, inwards from its bounds, and Newton's method follows from the steady states at
+        hand.  A derivative that is not found counts as zero, and is noted.
         """
         assert design.given is not None
         assert design.rest is not None
         small = SmallChanges(design.given, design.rest)
         found = np.zeros((*design.values.shape, len(self.numbers)))
         for column, free in enumerate(self.numbers):
-            value, step = design.changes[free.path], CHANGE * (free.largest - free.least)
+            value = design.changes[free.path]
+            step = CHANGE * (free.largest - free.least) * (1.0 if value < free.largest else -1.0)
             try:
-                sides = [small.drive(free.path, value + sense * step) for sense in (1.0, -1.0)]
+                side = small.drive(free.path, value + step)
                 for number, (point, one) in enumerate(zip(self._points, design.states, strict=True)):
-                    up, down = (self._read(one.neighbour(point.of(side)), number) for side in sides)
-                    found[number, :, column] = (up - down) / (2.0 * step)
+                    beside = self._neighbour(one, point.of(side), design.tangents[number], free.path, step)
+                    found[number, :, column] = (self._read(beside, number) - design.values[number]) / step
             except (ConvergenceError, ModelError) as error:
                 self.failed.append(f"no derivative with respect to {free.path}: {error}")
         return np.nan_to_num(found)
+
+    def _neighbour(
+        self, state: FoundState, drive: Drive, tangents: dict[str, FloatArray], path: str, step: float
+    ) -> FoundState:
+        """The state of a drive with a number changed by a step; notes the tangent on the way there."""
+        if not isinstance(state, Running):
+            return state.neighbour(drive)
+        beside = require_found(steady_beside(drive, state.run))
+        tangents[path] = beside.change / step
+        return state.of(beside, state)
 
     def _read(self, state: FoundState, point: int) -> FloatArray:
         """The watched results at an operating point."""

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from beltdyn.errors import ModelError
 from beltdyn.results.atomic import atomic_path, require_replaceable
 from beltdyn.results.dataset import is_result
 
@@ -26,7 +27,7 @@ def found_file(output: Path) -> Path:
     return output.with_suffix(".toml")
 
 
-def require_free(output: Path, overwrite: bool) -> None:
+def require_free(output: Path, overwrite: bool, study: object) -> None:
     """Make sure that a result file and the drive file beside it would replace nothing but such.
 
     Parameters
@@ -35,12 +36,19 @@ def require_free(output: Path, overwrite: bool) -> None:
         The result file.
     overwrite
         Whether any regular files may be replaced.
+    study
+        The study, which stays.
 
     Raises
     ------
     ModelError
         If they would.
     """
+    if isinstance(study, Path | str) and found_file(output).resolve() == Path(study).resolve():
+        raise ModelError(
+            f"the drive that is found would be written to {found_file(output)}, which is the study. Choose another "
+            "result file."
+        )
     require_replaceable(output, is_result, overwrite)
     require_replaceable(found_file(output), _is_found, overwrite)
 

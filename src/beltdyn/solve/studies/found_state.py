@@ -11,7 +11,7 @@ from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.solve.rest.installation import looked_at
 from beltdyn.solve.rest.staying import Standing, stand_like
-from beltdyn.solve.steady import steady_on_mesh
+from beltdyn.solve.steady import Beside, require_found, steady_beside
 from beltdyn.solve.steady_running.operating_points import labels_of
 from beltdyn.solve.studies.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
 from beltdyn.solve.studies.state_modes import FollowedModes, FoundModes, Mode, StateModes
@@ -143,11 +143,13 @@ class Running(FoundState):
         From `steady_state`.
     near
         As for `FoundState`.
+    bands
+        Whether its neighbours are to have the bands in which dry friction holds tensioners, as for `steady_from`.
     """
 
-    def __init__(self, run: Run, near: FoundState | None = None) -> None:
+    def __init__(self, run: Run, near: FoundState | None = None, *, bands: bool = False) -> None:
         super().__init__(near)
-        self.run = run
+        self.run, self._bands = run, bands
 
     @property
     def drive(self) -> Drive:
@@ -166,7 +168,11 @@ class Running(FoundState):
 
     def neighbour(self, drive: Drive) -> FoundState:
         """The steady running of a drive that differs a little, on the same mesh."""
-        return Running(steady_on_mesh(drive, self.run), self)
+        return self.of(require_found(steady_beside(drive, self.run)), self)
+
+    def of(self, found: Beside, near: FoundState | None) -> "Running":
+        """Another state that was found on the same mesh; parameters as for this one."""
+        return Running(found.run(bands=self._bands), near, bands=self._bands)
 
 
 class Resting(FoundState):

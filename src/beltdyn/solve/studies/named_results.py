@@ -1,14 +1,15 @@
 """Results of steady running and at rest by name, such as "pulley_slip[driven]" and "mode_frequency[2]"."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.messages import suggest
-from beltdyn.results import Run, Variable, summarize
+from beltdyn.results import Run, Variable
 from beltdyn.results.static import OWN
+from beltdyn.results.summary import means_of
 from beltdyn.solve.steady_running.operating_points import VARIABLES, labels_of, values_by_name
 from beltdyn.solve.vibration.small_motions import dry_tensioners
 
@@ -53,6 +54,17 @@ def variable_and_label(name: str) -> tuple[str, str]:
     return variable, label
 
 
+def need_bands(names: Iterable[str]) -> bool:
+    """Whether results are among those that dry friction of tensioners makes of its own.
+
+    Parameters
+    ----------
+    names
+        Of results.
+    """
+    return any(name.startswith("tensioner_position_after") for name in names)
+
+
 def listed(text: str) -> list[str]:
     """Names with commas between."""
     return [name.strip() for name in text.split(",") if name.strip()]
@@ -66,9 +78,9 @@ def values_of(run: Run) -> dict[str, float]:
     run
         Steady running.
     """
-    summary, found = summarize(run), dict[str, float]()
+    found = dict[str, float]()
     labels = labels_of(run.drive)
-    for name, values in values_by_name(run, summary).items():
+    for name, values in values_by_name(run, means_of(run)).items():
         dims, numbers = VARIABLES[name].dims, np.asarray(values)
         if numbers.dtype.kind == "f" and len(dims) < 2:
             parts = [name_of(name, label) for label in (labels[dims[0]] if dims else [""])]

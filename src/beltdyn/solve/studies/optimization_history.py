@@ -77,6 +77,8 @@ class History:
         Result file; without one the results stay in memory.
     overwrite
         Replace any regular files.
+    study
+        The study file, if there is one, which stays.
 
     Raises
     ------
@@ -92,11 +94,12 @@ class History:
         aims: Aims,
         output: Path | str | None = None,
         overwrite: bool = False,
+        study: object = None,
     ) -> None:
         self._drive, self._numbers, self._points, self._aims = drive, numbers, points, aims
         self._path, self._overwrite = None if output is None else Path(output), overwrite
         if self._path is not None:
-            require_free(self._path, overwrite)
+            require_free(self._path, overwrite, study)
         self.tried: list[Design] = []
         self._final: Design | None = None
         self._status, self._ended, self._warned = "running", "interrupted", list[str]()
