@@ -69,20 +69,14 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     Returns
     -------
     DataArray
-        J per metre of belt, pulley and element: what each pulley does to each element of the belt. Pulleys
-        at its back wear the other surface.
+        J per metre of belt, pulley and element: what each pulley does to each piece of the belt, on a mesh that stays
+        to that which was in an element at the beginning. Pulleys at its back wear the other surface.
 
     Raises
     ------
     ModelError
-        If there are no two outputs of fields between them, or the work was not recorded, or the mesh stays, on which
-        it is recorded as if all of the belt passed.
+        If there are no two outputs of fields between them, or the work was not recorded.
     """
-    if run.drive.simulation.frame == "staying":
-        raise ModelError(
-            'wear by place on the belt is not known of a run with simulation.frame = "staying". '
-            'Take wear by place on the arc, or set simulation.frame = "travelling".'
-        )
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}
     attributes = {"units": "J/m", "long_name": "Wear intensity on the belt"}

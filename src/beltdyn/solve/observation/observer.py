@@ -9,6 +9,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.results.friction_work import FrictionWork, Touch
+from beltdyn.results.material_work import MaterialWork
 from beltdyn.results.mid_span import mid_span_displacements
 from beltdyn.results.schema import FILTERED
 from beltdyn.results.sliding import sliding_of_pulleys
@@ -59,6 +60,7 @@ class Observer:
         lengths = curve_lengths(system)
         self._shares = lengths / np.sum(lengths)
         self._friction_work = FrictionWork(drive, np.outer(lengths, system.contact.weights).ravel(), len(lengths))
+        self._material_work = MaterialWork(lengths)
         self._energy = EnergyAccount()
         self._flutter = None if isinstance(system.frame, Flowing) else FlutterWatch(system)
 
@@ -82,7 +84,10 @@ class Observer:
         aside = mid_span_displacements(self._drive, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)
         on_arc, on_belt = self._friction_work.take(Touch(states.time, centers, places, touched, lost), shown)
-        if not isinstance(self._system.frame, Travelling):  # all of the belt passes
+        frame = self._system.frame
+        if isinstance(frame, Flowing):
+            on_belt = self._material_work.take(on_belt, states.position[shown, frame.place])
+        elif not isinstance(frame, Travelling):  # all of the belt passes
             on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares
         potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
         stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy[shown]

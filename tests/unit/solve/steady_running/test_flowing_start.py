@@ -11,6 +11,7 @@ from beltdyn.model import Drive, Pulley
 from beltdyn.plot.curve import centerline
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import summarize
+from beltdyn.results.derived import wear_by_arc, wear_by_belt
 from beltdyn.results.mechanics import element_lengths, recorded_kind
 from beltdyn.solve.integrators.standard import StandardIntegrator
 
@@ -156,3 +157,17 @@ def test_what_begins_to_swing_with_the_run_is_told(constant: Drive) -> None:
     )
     said = "steady running with the means of the speed of driver and the load of driven, which swing from then on"
     assert [said in warning for warning in bd.simulate(swinging).warnings].count(True) == 1
+
+
+def test_the_belt_that_passed_a_pulley_is_worn_by_it(constant: Drive) -> None:
+    """Half a turn wears each piece that passed the driver by its power of friction over the way, and no other."""
+    passed = 0.06 * 9.394
+    settings = constant.simulation.replace(duration=0.06, output_interval=1e-4, field_interval=0.06)
+    run = bd.simulate(constant.replace(simulation=settings))
+    wear, arc = wear_by_belt(run).isel(pulley=0), wear_by_arc(run).isel(pulley=0)
+    lengths = element_lengths(run.dataset, run.drive.belt_length)
+    work = float((arc * arc["part_length"]).sum())
+    assert float(wear.values @ lengths) == pytest.approx(work, rel=1e-6)
+    assert float(wear.max()) == pytest.approx(work / passed, rel=1e-3)
+    worn = float(lengths[wear.values > 1e-3 * work / passed].sum())
+    assert passed < worn < passed + run.drive.path.wrap_angles[0] * run.drive.radii[0] + 2.0 * lengths.max()
