@@ -7,6 +7,7 @@ import numpy as np
 
 from beltdyn.contact.friction import LAWS
 from beltdyn.model.drive import Drive
+from beltdyn.model.hand_set import judge_contact
 from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.parts.finding import Finding, listing
@@ -37,12 +38,14 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
     list of str
         Warnings: what is wrong, which numbers it spoils and by how much, and what to do.
     """
+    lost, sunk = _tension(drive, installation), _penetration(drive, installation)
     found = [
         *_strain(drive, installation),
-        *_tension(drive, installation),
+        *lost,
         *_stops(drive, installation),
         *_other_balances(drive, installation),
-        *_penetration(drive, installation),
+        *sunk,
+        *judge_contact(drive, installation, soft=bool(lost or sunk)),
         *_mesh(drive, installation),
     ]
     return [str(finding) for finding in found]

@@ -63,7 +63,7 @@ def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: p
 
 
 def test_steady_running_is_over_no_time(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
-    run.dataset.attrs["steady_at"] = 1.0
+    run.dataset.attrs["belt_parameter"] = 1.0
     show_result(run)
     output = capsys.readouterr().out
     assert "Pulleys (steady running)" in output
