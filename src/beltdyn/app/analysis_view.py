@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import TYPE_CHECKING
@@ -49,7 +50,7 @@ class AnalysisView:
                 ui.button("Cancel", icon="stop", on_click=self.cancel).props("dense no-caps outline").mark("cancel")
             )
         self._options = ui.row().classes("w-full items-start gap-2")
-        self._inputs: dict[Option, ui.input] = {}
+        self._inputs: dict[Option, ui.input | ui.select] = {}
         self._bar = ui.linear_progress(value=0.0, show_value=False).props('instant-feedback aria-label="progress"')
         self._state = ui.label().classes("text-caption").props('role="status"').mark("progress")
         self._box = ui.column().classes("w-full gap-1 bd-tables").mark("watched")
@@ -71,13 +72,18 @@ class AnalysisView:
         """Show the options of the chosen analysis."""
         self._options.clear()
         with self._options:
-            self._inputs = {
-                one: ui.input(label=one.name.strip("_"), placeholder=one.default)
-                .props('dense stack-label autocomplete="off"')
-                .style("width: 9em")
-                .mark(f"option:{one.name}")
-                for one in options_of(str(self._name.value))
-            }
+            self._inputs = {one: self._input(one) for one in options_of(str(self._name.value))}
+
+    def _input(self, one: Option) -> ui.input | ui.select:
+        """A field of an option; of one that is a file a list of those in the folder."""
+        name = one.name.strip("_")
+        if one.suffixes:
+            there = self._session.workspace.folder.files(*one.suffixes)
+            words = name if there else f"{name}: no {' or '.join(one.suffixes)} file in the folder"
+            box = ui.select(there, label=words, clearable=True).style("min-width: 14em")
+            return box.props("dense options-dense stack-label").mark(f"option:{one.name}")
+        typed = ui.input(label=name, placeholder=one.default).style("width: 9em")
+        return typed.props('dense stack-label autocomplete="off"').mark(f"option:{one.name}")
 
     def start(self) -> None:
         """Start the chosen analysis."""
@@ -86,7 +92,9 @@ class AnalysisView:
             return
         try:
             options = {
-                one.name: one.read(typed) for one, box in self._inputs.items() if (typed := (box.value or "").strip())
+                one.name: self._session.workspace.folder.root / typed if one.suffixes else one.read(typed)
+                for one, box in self._inputs.items()
+                if (typed := (box.value or "").strip())
             }
         except ModelError as error:
             self._state.text = str(error)
@@ -159,7 +167,7 @@ class AnalysisView:
         for old in self._cards[_MOST_RESULTS:]:
             old.delete()
         for _, gone in self._session.outcomes[_MOST_RESULTS:]:
-            for file in (gone.result, gone.report):
+            for file in (gone.result, gone.report, gone.best):
                 if file is not None:
                     file.unlink(missing_ok=True)
         del self._cards[_MOST_RESULTS:], self._session.outcomes[_MOST_RESULTS:]
@@ -167,17 +175,17 @@ class AnalysisView:
     def _fill(self, outcome: Outcome) -> None:
         if outcome.error:
             ui.label(outcome.error).classes("bd-message")
-        with ui.row().classes("gap-2"):
-            if outcome.report is not None:
-                address = app.add_static_file(local_file=outcome.report)
-                frame = ui.element("div").classes("w-full")
+        frame = ui.element("div").classes("w-full")
+        with ui.row().classes("gap-2") as buttons:
+            if (report := outcome.report) is not None:
+                address = app.add_static_file(local_file=report)
                 _button("Look at it", "movie", lambda: _open(frame, address)).mark("look")
                 ui.link("in a tab of its own", address, new_tab=True).classes("self-center")
-                report = outcome.report
-                _button("Report", "download", lambda: ui.download.file(report)).mark("report")
-            if outcome.result is not None:
-                result = outcome.result
-                _button("Result file", "download", lambda: ui.download.file(result)).mark("result")
+                _button("Report", "download", partial(ui.download.file, report)).mark("report")
+            for text, file in (("Result file", outcome.result), ("Drive file found", outcome.best)):
+                if file is not None:
+                    _button(text, "download", partial(ui.download.file, file)).mark(text)
+        buttons.move(target_index=0)
         for warning in outcome.warnings:
             ui.label(warning).classes("bd-message bd-warning")
         show_parts(outcome.parts)

@@ -104,7 +104,7 @@ export default {
       return this.pulleys.find((one) => one.number === this.selected);
     },
     snap() {
-      return 10 ** Math.ceil(Math.log10(this.px));
+      return niceStep(this.px);
     },
     grid() {
       const step = niceStep(50 * this.px);

@@ -28,8 +28,12 @@ class Folder:
     def __init__(self, root: Path) -> None:
         self.root = root.resolve()
 
-    def files(self) -> list[str]:
-        """Names of drive files, the nearest first; hidden ones, and links to elsewhere, are left out."""
+    def files(self, *suffixes: str) -> list[str]:
+        """Names of files with one of these suffixes, by default of drive files, the nearest first.
+
+        Hidden ones, and links to elsewhere, are left out.
+        """
+        suffixes = suffixes or (_SUFFIX,)
         found = list[str]()
         for looked, (place, folders, names) in enumerate(os.walk(self.root)):
             here = Path(place).relative_to(self.root)
@@ -39,7 +43,7 @@ class Folder:
             found += [
                 (here / name).as_posix()
                 for name in sorted(names)
-                if name.endswith(_SUFFIX) and not name.startswith(".") and self._holds(here / name)
+                if name.endswith(suffixes) and not name.startswith(".") and self._holds(here / name)
             ]
             if len(found) >= _MOST_FILES:
                 break

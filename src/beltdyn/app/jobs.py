@@ -30,6 +30,8 @@ _GRACE = 5.0
 _OFTEN = 0.1
 """Time between two steps that are told, s."""
 _SHARED = ("output", "progress", "overwrite", "start")
+_SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "compare": (".nc",)}
+"""Option that is a file -> what such files end with; of others files of all these kinds are offered."""
 
 
 class Step(NamedTuple):
@@ -68,6 +70,8 @@ class Outcome(NamedTuple):
         What to know of it.
     result, report : Path or None
         The result file and the report, where there are any.
+    best : Path or None
+        The drive file that the analysis found, as an optimisation does.
     """
 
     status: str
@@ -76,6 +80,7 @@ class Outcome(NamedTuple):
     warnings: tuple[str, ...] = ()
     result: Path | None = None
     report: Path | None = None
+    best: Path | None = None
 
 
 class Option(NamedTuple):
@@ -86,7 +91,7 @@ class Option(NamedTuple):
     name : str
         As its function has it.
     kind : type
-        str, int or float: what is given.
+        str, int or float: what is given; Path of a file in the folder of the page.
     default : str
         What holds where it is left open; empty where it must be given, or is chosen.
     required : bool
@@ -98,15 +103,21 @@ class Option(NamedTuple):
     default: str
     required: bool
 
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """What the names of its files end with, of an option that is a file; nothing of others."""
+        every = tuple(dict.fromkeys(one for suffixes in _SUFFIXES.values() for one in suffixes))
+        return _SUFFIXES.get(self.name, every) if self.kind is Path else ()
+
     def read(self, text: str) -> str | int | float:
-        """Read what was typed.
+        """Read what was typed, or the name of the file that was chosen.
 
         Raises
         ------
         ModelError
             If it is no number, and should be one.
         """
-        if self.kind is str:
+        if self.kind in (str, Path):
             return text
         try:
             number: int | float = self.kind(text)
@@ -118,7 +129,7 @@ class Option(NamedTuple):
 
 @cache
 def offered() -> dict[str, str]:
-    """Analyses that take a drive file and plain options, with what they tell."""
+    """Analyses that take a drive file, plain options and further files, with what they tell."""
     return {
         name: one.purpose
         for name, one in ANALYSES.items()
@@ -128,7 +139,7 @@ def offered() -> dict[str, str]:
 
 @cache
 def options_of(name: str) -> tuple[Option, ...]:
-    """Options of an analysis that are texts or numbers; those that must be given come first."""
+    """Options of an analysis that are texts, numbers or files; those that must be given come first."""
     found = []
     for one in _own(name):
         if kind := _kind(one.annotation):
@@ -144,9 +155,9 @@ def _own(name: str) -> list[Parameter]:
 
 
 def _kind(annotation: Any) -> type | None:
-    """What an option takes as it is typed; None where it is a file, or neither text nor number."""
+    """What an option takes as it is typed or chosen; None where it is neither file, text nor number."""
     kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
-    return None if Path in kinds else next((kind for kind in (str, float, int) if kind in kinds), None)
+    return next((kind for kind in (Path, str, float, int) if kind in kinds), None)
 
 
 class Job:
@@ -247,6 +258,7 @@ class _Teller:
         self._watcher: Any = None
         self._glimpse: Glimpse | None = None
         self._last = -math.inf
+        self._begun: dict[str, tuple[float, float]] = {}
 
     def tell(self, progress: Any) -> None:
         """Tell of progress, and look at a run."""
@@ -257,7 +269,14 @@ class _Teller:
         if progress.phase == "integrating":
             self._look()
         part = progress.time / progress.duration
-        self._told.send(Step(part, progress.phase, progress.remaining, self._glimpse))
+        self._told.send(Step(part, progress.phase, self._remaining(progress, part, now), self._glimpse))
+
+    def _remaining(self, progress: Any, part: float, now: float) -> float:
+        """Time that is left, s, by the pace that the analysis tells, or else by that of this phase until now."""
+        begun, first = self._begun.setdefault(progress.phase, (now, part))
+        if not math.isnan(progress.remaining):
+            return float(progress.remaining)
+        return (1.0 - part) * (now - begun) / (part - first) if part > first else math.nan
 
     def _look(self) -> None:
         from beltdyn.app.watching import Watcher  # loads the library of figures
@@ -275,4 +294,6 @@ def _outcome(found: Any, result: Path) -> Outcome:
     if isinstance(found, Run) and not found.outputs:
         return Outcome(found.status)
     report = write_report(found, result.with_suffix(".html"), overwrite=True)
-    return Outcome(found.status, "", sheet(found).parts, tuple(found.warnings), result, report)
+    best = result.with_suffix(".toml")
+    written = best if best.is_file() else None
+    return Outcome(found.status, "", sheet(found).parts, tuple(found.warnings), result, report, written)

@@ -67,13 +67,15 @@ def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
     return [one if isinstance(one, Mapping) else {} for one in found] if isinstance(found, list) else []
 
 
-def scene(draft: Draft) -> dict[str, Any]:
+def scene(draft: Draft, *, settled: bool = True) -> dict[str, Any]:
     """Say what the canvas draws.
 
     Parameters
     ----------
     draft : Draft
         The drive file.
+    settled : bool
+        Whether to find where springs hold tensioners, which is half of the work; not while something is dragged.
 
     Returns
     -------
@@ -83,7 +85,7 @@ def scene(draft: Draft) -> dict[str, Any]:
     drive, found = draft.drive, circles(draft.data)
     complete = len(found) == len(groups(draft.data, "pulley"))
     path = drive.path if drive is not None else sketched(found) if complete else None
-    rest = _rest(drive) if drive is not None else None
+    rest = _rest(drive) if settled and drive is not None else None
     centers = {} if drive is None else dict(enumerate(drive.centers.tolist()))
     pulleys = [_pulley(one, drive, centers.get(one.number, (one.x, one.y)), draft) for one in found]
     thickness = drive.belt.thickness if drive is not None else 0.0

@@ -43,8 +43,8 @@ class Path:
 
     def __post_init__(self) -> None:
         centers, radii = _circles(self.centers, self.radii, self.ends)
-        distance = np.linalg.norm(np.roll(centers, -1, axis=0) - centers, axis=1)
-        apart = distance <= np.abs(np.roll(radii, -1) - radii)
+        distance = np.linalg.norm(_next(centers, -2) - centers, axis=1)
+        apart = distance <= np.abs(_next(radii, -1) - radii)
         if np.any(_of_belt(apart, self.ends, axis=0)):
             raise ValueError("two successive pulleys have no common tangent")
 
@@ -124,7 +124,7 @@ class Path:
         """
         arcs = np.zeros(self.spans)
         arcs[: self.count] = self.wrap_angles * np.abs(self.radii)
-        pieces = np.stack([self.span_lengths, np.roll(arcs, -1)], axis=1)[self.order].ravel()
+        pieces = np.stack([self.span_lengths, _next(arcs, -1)], axis=1)[self.order].ravel()
         return np.concatenate([[0.0], np.cumsum(pieces)])
 
     def span_start(self, span: int) -> float:
@@ -220,13 +220,14 @@ def span_points(centers: FloatArray, radii: FloatArray, ends: FloatArray | None 
     centers, radii = _circles(centers, radii, ends)
     normals = _left(_directions(centers, radii))
     starts = centers - radii[:, None] * normals
-    stops = np.roll(centers, -1, axis=-2) - np.roll(radii, -1)[:, None] * normals
+    stops = _next(centers, -2) - _next(radii, -1)[:, None] * normals
     return _of_belt(np.stack([starts, stops], axis=-2), ends, axis=-3)
 
 
 def wrap_angles(directions: FloatArray, radii: FloatArray) -> FloatArray:
     """Angles over which belts touch each pulley, shape (..., n), rad, from `span_directions`."""
-    before, after = np.roll(directions, 1, axis=-2)[..., : len(radii), :], directions[..., : len(radii), :]
+    before = np.concatenate([directions[..., -1:, :], directions[..., :-1, :]], axis=-2)[..., : len(radii), :]
+    after = directions[..., : len(radii), :]
     sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]
     turning = np.arctan2(sine, np.sum(before * after, axis=-1)) * np.sign(radii)
     return np.asarray(np.where(turning > -_ROUNDING, np.maximum(turning, 0.0), turning + 2 * np.pi))
@@ -247,11 +248,18 @@ def _of_belt(values: NDArray[Any], ends: FloatArray | None, axis: int) -> NDArra
 
 def _directions(centers: FloatArray, radii: FloatArray) -> FloatArray:
     """Unit vectors from each circle to the next, along the common tangent."""
-    between = np.roll(centers, -1, axis=-2) - centers
+    between = _next(centers, -2) - centers
     distance = np.maximum(np.linalg.norm(between, axis=-1, keepdims=True), np.finfo(float).tiny)
     along = between / distance
-    sine = (np.roll(radii, -1) - radii)[:, None] / distance
+    sine = (_next(radii, -1) - radii)[:, None] / distance
     return np.asarray(np.sqrt(1 - sine**2) * along - sine * _left(along))
+
+
+def _next(values: FloatArray, axis: int) -> FloatArray:
+    """What the next one in the round has, along the last axis or the one before: a quicker numpy.roll."""
+    last = axis == -1
+    first, others = (values[..., :1], values[..., 1:]) if last else (values[..., :1, :], values[..., 1:, :])
+    return np.concatenate([others, first], axis=axis)
 
 
 def _left(vectors: FloatArray) -> FloatArray:

@@ -17,6 +17,8 @@ _NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\
 _UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
+_REMEMBERED = 4096
+"""Numbers with units whose value is remembered: the page reads a file anew with each step of a drag."""
 
 RPM = 30.0 / math.pi
 """Revolutions a minute in 1 rad/s."""
@@ -93,6 +95,7 @@ def written_like(value: float, given: object, unit: str, digits: int = 7) -> flo
     return float(f"{value:.{digits}g}")
 
 
+@lru_cache(maxsize=_REMEMBERED)
 def _convert(number: float, given: str, unit: str) -> float:
     try:
         parsed = _registry().parse_units(given)

@@ -32,6 +32,7 @@ def test_files_are_listed_the_nearest_first(tmp_path: Path) -> None:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("", encoding="utf-8")
     assert Folder(tmp_path).files() == ["z.toml", "sub/a.toml"]
+    assert Folder(tmp_path).files(".txt", ".csv") == ["a.txt"]
 
 
 def test_a_file_is_written_and_replaced_only_as_it_is_known(tmp_path: Path) -> None:

@@ -1,13 +1,15 @@
 """Analyses in processes of their own."""
 
+import math
 import time
 from pathlib import Path
 
 import pytest
 
-from beltdyn.app.jobs import Job, Option, Outcome, offered, options_of
+from beltdyn.app.jobs import Job, Option, Outcome, _Teller, offered, options_of
 from beltdyn.errors import ModelError
 from beltdyn.results import open_result
+from beltdyn.solve.progress import Progress
 
 
 def ended(job: Job) -> Outcome:
@@ -17,10 +19,9 @@ def ended(job: Job) -> Outcome:
     return job.outcome
 
 
-def test_analyses_are_offered_that_need_nothing_else() -> None:
+def test_analyses_are_offered_with_their_options() -> None:
     names = offered()
-    assert {"run", "static", "steady", "traction", "modes", "campbell"} <= names.keys()
-    assert not {"duty", "optimize"} & names.keys()  # which read further files
+    assert {"run", "static", "steady", "traction", "modes", "campbell", "duty", "optimize"} <= names.keys()
     options = {one.name: one for one in options_of("campbell")}
     assert options["speed"].required
     assert options["points"] == Option("points", int, "40", False)
@@ -34,6 +35,30 @@ def test_options_are_read_as_what_they_are() -> None:
     for wrong in ("1.5", "many"):
         with pytest.raises(ModelError, match="must be a whole number"):
             points.read(wrong)
+
+
+def test_options_that_are_files_say_what_they_end_with() -> None:
+    suffixes = {name: {one.name: one.suffixes for one in options_of(name)} for name in ("duty", "optimize", "response")}
+    assert suffixes["duty"]["table"] == (".csv",)
+    assert suffixes["optimize"]["study"] == (".toml",)
+    assert suffixes["response"]["compare"] == (".nc",)
+    assert suffixes["response"]["speed"] == ()
+
+
+def test_a_duty_table_of_the_folder_is_read(drive_text: str, tmp_path: Path) -> None:
+    table = tmp_path / "duty.csv"
+    table.write_text("duration [s],driver speed [rad/s]\n10,6\n20,12\n", encoding="utf-8")
+    outcome = ended(Job("duty", drive_text, tmp_path, tmp_path / "drive-duty.nc", {"table": table}))
+    assert (outcome.status, outcome.error) == ("completed", "")
+    assert outcome.best is None
+
+
+def test_time_that_is_left_is_told_where_an_analysis_does_not_know_its_pace(tmp_path: Path) -> None:
+    """By the share that was done since its beginning: of a quarter in one second, three are left."""
+    teller = _Teller(None, tmp_path)  # type: ignore[arg-type]
+    progress = Progress(0.0, 4.0, 0.0, 0, "operating points")
+    assert math.isnan(teller._remaining(progress, 0.0, 10.0))
+    assert teller._remaining(progress, 0.25, 11.0) == 3.0
 
 
 def test_a_result_and_its_report_are_written(drive_text: str, tmp_path: Path) -> None:
