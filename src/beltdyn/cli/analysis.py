@@ -65,12 +65,18 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         force: Annotated[bool, Option(negative="")] = False,
         **options: Any,
     ) -> int:
-        files, extras = (file, *more), Extras(csv, report)
+        files: tuple[Path, ...] = (file, *more)
+        extras = Extras(csv, report)
         if more:
             return analyse_several(analysis, files, output, jobs, extras, strict=strict, force=force, **options)
         from beltdyn.model import load
+        from beltdyn.results import open_result
+        from beltdyn.results.dataset import is_result
 
-        drive, path = load(file), output or analysis.result_file(file)
+        if options.get("resume") and output is None and is_result(file):
+            drive, path, files = open_result(file).drive, file, ()
+        else:
+            drive, path = load(file), output or analysis.result_file(file)
         require_output(path, files, extras, force)
         result = analyse_to(analysis, drive, path, force, **options)
         write_extras(result, path, extras, force)

@@ -94,7 +94,10 @@ def analyse_to(analysis: Analysis, drive: "Drive", path: Path, force: bool = Fal
         raise
     show_result(result)
     if result.status == "interrupted":
-        show("\nInterrupted: what was computed is kept.")
+        from beltdyn.solve.checkpoint import checkpoint_file
+
+        goes_on = f" Go on with it: beltdyn {analysis.name} --resume {path}" if checkpoint_file(path).exists() else ""
+        show(f"\nInterrupted: what was computed is kept.{goes_on}")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
     show_leftovers(path)
     return result

@@ -34,6 +34,11 @@ def dumps(drive: Drive) -> str:
     return tomli_w.dumps(drive.data, multiline_strings=False)
 
 
+def has_functions(drive: Drive) -> bool:
+    """Tell whether a load of a drive is a function of Python, which no file holds and no other process has."""
+    return any(isinstance(load, FunctionLoad) for pulley in drive.pulleys for load in pulley.load)
+
+
 def refuse_functions(drive: Drive, rule: str, remedy: str) -> None:
     """Make sure that all of a drive can be written as text.
 

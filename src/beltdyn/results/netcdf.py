@@ -22,6 +22,8 @@ from beltdyn.results.size import chunk_rows
 from beltdyn.results.staged_file import RESERVE, StagedFile, identity
 
 _FORMAT = "earliest"
+_COPIED = 512
+"""Outputs that are copied at a time."""
 
 
 class GrowingFile:
@@ -121,6 +123,45 @@ class GrowingFile:
             file.close()
             raise OSError("another file has taken its place")
         return file
+
+
+def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int]) -> GrowingFile:
+    """Copy the first outputs of a file into one that grows.
+
+    Parameters
+    ----------
+    source : Path
+        A file of outputs, whether or not it was finished.
+    path : Path
+        Where to write.
+    layout : Layout
+        Names and reference coordinates of both.
+    counts : mapping
+        Number of instants to copy of each of `schema.TIMES`.
+
+    Returns
+    -------
+    GrowingFile
+        The copy, with the attributes of the source and the status "running".
+
+    Raises
+    ------
+    OSError, KeyError
+        If a file cannot be read or written, or does not hold what it should.
+    ValueError
+        If the source holds fewer outputs.
+    """
+    with h5netcdf.File(source, "r") as attributed:
+        attributes = {**attributed.attrs, "status": "running"}
+    copy = GrowingFile(path, layout, attributes)
+    with h5py.File(source, "r") as file:
+        for name, count in counts.items():
+            if len(file[name]) < count:
+                raise ValueError(f"it holds {len(file[name])} values of {name}, and {count} were written")
+        for first in range(0, max(counts.values(), default=0), _COPIED):
+            rows = {time: slice(min(first, count), min(first + _COPIED, count)) for time, count in counts.items()}
+            copy.append(path, {name: file[name][rows[one.dims[0]]] for name, one in layout.recorded.items()})
+    return copy
 
 
 def _contents(layout: Layout, attributes: Mapping[str, Any]) -> bytes:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from beltdyn.errors import ModelError, OutputError
 from beltdyn.results import netcdf
 from beltdyn.results.atomic import atomic_path, require_replaceable, unwritable
-from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset
+from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset, unreadable
 from beltdyn.results.layout import Layout
 from beltdyn.results.lock import OutputLock
 
@@ -140,6 +140,41 @@ class FileRecorder:
         except BaseException:
             self._lock.release()
             raise
+
+    @classmethod
+    def resumed(cls, path: Path, layout: Layout, counts: Mapping[str, int]) -> Self:
+        """Go on with a file whose writer was interrupted or killed, without what it holds beyond some outputs.
+
+        Parameters
+        ----------
+        path : Path
+            The file.
+        layout : Layout
+            As it was made with.
+        counts : mapping
+            Number of instants to keep of each of `schema.TIMES`.
+
+        Raises
+        ------
+        ModelError
+            If the file cannot be read or written, is being written by another run, or holds fewer outputs.
+        """
+        made = cls.__new__(cls)
+        made.path, made._target, made._layout = path, path.resolve(), layout
+        try:
+            made._lock = OutputLock(made._target)
+        except OSError as error:
+            raise ModelError(unwritable(path, error)) from error
+        try:
+            with atomic_path(path, is_result) as temporary:
+                made._file = netcdf.copied(made._target, temporary, layout, counts)
+        except (OSError, KeyError, ValueError) as error:
+            made._lock.release()
+            raise ModelError(unreadable(path, error)) from error
+        except BaseException:
+            made._lock.release()
+            raise
+        return made
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
         """Begin anew; see `Recorder.revise`."""

@@ -20,8 +20,10 @@ from beltdyn.solve.vibration.eigenvalues import pencil, swinging
 from beltdyn.solve.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.solve.vibration.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
 
-REST, STEADY = "rest", "steady"
-SLIDING, STUCK = "sliding", "stuck"
+REST: str = "rest"
+STEADY: str = "steady"
+SLIDING: str = "sliding"
+STUCK: str = "stuck"
 """Whether tensioners with dry friction move in a mode, without it, or are held by it."""
 _GROWS = 1e-6
 """Growth rate of a mode that grows by itself, over its angular frequency."""

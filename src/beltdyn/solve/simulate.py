@@ -6,9 +6,12 @@ from typing import get_args
 
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
+from beltdyn.model.toml_writer import has_functions
 from beltdyn.results import Run, mesh_error_attribute, require_room
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
-from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.checkpoint import Keeper, checkpoint_file, read_checkpoint
+from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.integrators.generalized_alpha import AlphaIntegration, GeneralizedAlpha
 from beltdyn.solve.integrators.settling import Start
 from beltdyn.solve.integrators.standard import Name, StandardIntegrator
 from beltdyn.solve.integrators.trajectory import Integrator, drive_task
@@ -23,6 +26,9 @@ from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import State, laid
 
+CHECKPOINT = 60.0
+"""Computing time between two checkpoints of a run, s."""
+
 Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
 """``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
 
@@ -35,6 +41,8 @@ def simulate(
     integrator: Integrator | None = None,
     *,
     compare_steady: bool = False,
+    checkpoint: float = CHECKPOINT,
+    resume: bool = False,
 ) -> Run:
     """Simulate a drive over time.
 
@@ -53,6 +61,12 @@ def simulate(
         one by `Stepwise`.
     compare_steady
         Find the steady running under the speeds and loads at the end too, and tell how the run differs from it.
+    checkpoint
+        Computing time between two checkpoints, s: a run into a file that is interrupted or killed goes on from the
+        last one. They are in a file beside it with the ending ``.checkpoint``, which is removed at the end.
+    resume
+        Go on with the run in the result file, with the same steps and results as if it had not been interrupted. On
+        the command line the result file may stand in place of the drive file.
 
     Returns
     -------
@@ -76,7 +90,13 @@ def simulate(
     >>> run.status, run.outputs
     ('completed', 11)
     """
-    return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady)
+    if not checkpoint > 0.0:
+        raise ModelError(f"checkpoint = {checkpoint:g} s must be above zero. Raise it, or leave it away.")
+    if resume:
+        return _resume(drive, output, progress, checkpoint)
+    return record_run(
+        drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=checkpoint
+    )
 
 
 def record_run(
@@ -89,6 +109,7 @@ def record_run(
     begin: Begin | None = None,
     watch: Callable[[Arrays], None] | None = None,
     compare_steady: bool = False,
+    checkpoint: float = CHECKPOINT,
     **attributes: str,
 ) -> Run:
     """Simulate a drive over time, for an analysis that says something of its own about the run.
@@ -101,7 +122,7 @@ def record_run(
         Finds the state to begin with from that at rest.
     watch
         Is given all outputs, and may end the run by an error.
-    compare_steady
+    compare_steady, checkpoint
         As for `simulate`.
     **attributes
         Global attributes of the dataset.
@@ -137,11 +158,47 @@ def record_run(
             errors = flowing.mesh_errors or {"peak pressure": float("nan")}  # not known
             recording.note(**{mesh_error_attribute(name): error for name, error in errors.items()})
         task = drive_task(drive, system, state, recording.statistics)
-        for chunk in integrator(task):
-            recording.take(chunk)
-        recording.check()
-        if compare_steady:
-            recording.note(**_steady_running(given))
+        if isinstance(integrator, GeneralizedAlpha) and not has_functions(given):
+            keeper = Keeper(Path(output) if output is not None else None, checkpoint, given, compare_steady)
+            keeper.remove()  # of an earlier run
+            _integrate(integrator.begin(task), recording, keeper)
+        else:
+            for chunk in integrator(task):
+                recording.take(chunk)
+        _end(recording, given, compare_steady)
+    return recording.run()
+
+
+def _integrate(integration: AlphaIntegration, recording: Recording, keeper: Keeper) -> None:
+    """Record an integration to its end, with checkpoints on the way."""
+    for chunk in integration.chunks():
+        recording.take(chunk)
+        keeper.look(recording, integration)
+    keeper.remove()
+
+
+def _end(recording: Recording, given: Drive, compare_steady: bool) -> None:
+    """What is looked for when a run is complete."""
+    recording.check()
+    if compare_steady:
+        recording.note(**_steady_running(given))
+
+
+def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run:
+    """Go on with a run from its checkpoint."""
+    if output is None:
+        raise ModelError("a run goes on in its result file, and none is named. Name it as output.")
+    path = Path(output)
+    point = read_checkpoint(checkpoint_file(path))
+    if drive not in (point.drive, point.recording["_drive"]):
+        raise ModelError(
+            f"{checkpoint_file(path)} is of another drive than the one that is given. Give that with which the run "
+            "began, or run this one anew, without resume."
+        )
+    with Recording.resumed(point.recording, path, progress) as recording:
+        compile_kernels(point.integration.task.system, point.integration.task.start)
+        _integrate(point.integration, recording, Keeper(path, checkpoint, point.drive, point.compare_steady))
+        _end(recording, point.drive, point.compare_steady)
     return recording.run()
 
 

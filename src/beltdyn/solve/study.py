@@ -27,7 +27,7 @@ from beltdyn.solve.studies.study_table import StudyTable
 from beltdyn.system.build import drive_system
 from beltdyn.system.state import laid
 
-_OWN = ("output", "progress", "overwrite", "start", "integrator")
+_OWN = ("output", "progress", "overwrite", "start", "integrator", "resume")
 """Parameters of analyses that a study fills in, or leaves alone."""
 
 

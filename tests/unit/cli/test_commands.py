@@ -13,8 +13,8 @@ import pytest
 from beltdyn import __version__
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, advise, install, load
-from beltdyn.results import FileRecorder, Layout, Run
-from beltdyn.solve import bring_to_rest, equilibrium
+from beltdyn.results import FileRecorder, Layout, Run, open_run
+from beltdyn.solve import Progress, bring_to_rest, equilibrium, simulate
 
 RunMain = Callable[[list[str]], tuple[int, str, str]]
 
@@ -196,3 +196,19 @@ def test_an_interruption_elsewhere(run_main: RunMain, drive_file: Path, monkeypa
 
     monkeypatch.setattr("beltdyn.model.load", interrupt)
     assert run_main(["check", str(drive_file)]) == (130, "", "error: interrupted\n")
+
+
+def test_a_run_goes_on_by_its_result_file(drive_file: Path, run_main: RunMain) -> None:
+    def stop(progress: Progress) -> None:
+        if progress.phase == "integrating" and progress.time > 0.004:
+            raise KeyboardInterrupt
+
+    text = drive_file.read_text(encoding="utf-8").replace("duration = 1.0", "duration = 0.01")
+    drive_file.write_text(text, encoding="utf-8")
+    path = drive_file.with_suffix(".nc")
+    simulate(load(drive_file), path, stop, checkpoint=1e-9).dataset.close()
+    assert run_main(["run", "--resume", str(path)])[0] == 0
+    assert open_run(path).outputs == 11
+    code, _, error = run_main(["run", "--resume", str(path)])
+    assert code == 2
+    assert "there is no checkpoint" in error

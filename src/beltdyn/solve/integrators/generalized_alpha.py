@@ -57,8 +57,12 @@ class GeneralizedAlpha:
 
     def __call__(self, task: Task) -> Iterator[Chunk]:
         """Integrate; see `Integrator`."""
-        system, start, begin = task.system, task.start, task.instants.begin
-        period = _CROSSINGS * crossing_time(system)
+        return self.begin(task).chunks()
+
+    def begin(self, task: Task) -> "AlphaIntegration":
+        """Begin an integration, which can be kept and gone on with."""
+        begin = task.instants.begin
+        period = _CROSSINGS * crossing_time(task.system)
         settings = Settings(
             spectral_radius=self.spectral_radius,
             velocity_tolerance=self.rtol * task.velocity_scale,
@@ -71,19 +75,52 @@ class GeneralizedAlpha:
             averaging_time=period,
         )
         first_step = min(_FIRST_STEP, settings.max_step)
-        state = new_state(system, begin, first_step, start.position, start.velocity)
+        state = new_state(task.system, begin, first_step, task.start.position, task.start.velocity)
+        return AlphaIntegration(self, task, settings, state)
+
+
+@dataclass
+class AlphaIntegration:
+    """An integration on its way: all that its next step depends on, so that a copy goes on with the same steps.
+
+    Attributes
+    ----------
+    method, task, settings
+        What is integrated, and how.
+    state : IntegratorState
+        Where it is.
+    begun : bool
+        Whether the state at the beginning was handed out.
+    restarted : float
+        Stop up to which the accelerations were last taken from the equations of motion, s.
+    """
+
+    method: GeneralizedAlpha
+    task: Task
+    settings: Settings
+    state: IntegratorState
+    begun: bool = False
+    restarted: float = -np.inf
+
+    def chunks(self) -> Iterator[Chunk]:
+        """Integrate from where it is to the end; see `Integrator`."""
+        task, system, state = self.task, self.task.system, self.state
         equations = new_equations(system)
         budget = max(1, _STEPS_AT_ONCE // system.length.size)
-        yield Chunk.start(system, start, begin)
+        if not self.begun:
+            self.begun = True
+            yield Chunk.start(system, task.start, task.instants.begin)
         for stop in task.stops:
-            restart(system, state, equations)
+            if stop > self.restarted:
+                restart(system, state, equations)
+                self.restarted = stop
             while state.clock.time < stop:
                 steps = empty_steps(system, min(_ROOM, budget))
-                status, filled = advance(system, settings, state, equations, stop, budget, steps)
+                status, filled = advance(system, self.settings, state, equations, stop, budget, steps)
                 _count(task, state)
                 yield _chunk(steps, filled, state)
                 if status != REACHED:
-                    raise ConvergenceError(_message(task, state, self))
+                    raise ConvergenceError(_message(task, state, self.method))
 
 
 def _chunk(steps: Steps, filled: int, state: IntegratorState) -> Chunk:

@@ -71,10 +71,15 @@ class BandLimit:
         before = self._values if len(self._time) else values[:0]
         self._time, self._values = np.append(self._time, time), np.concatenate([before, values])
 
-    @property
-    def known_until(self) -> float:
-        """Instant up to which the states that outputs need have all come, s."""
-        return float(self._time[-1]) - self._reach if len(self._time) > 2 else -np.inf
+    def known_until(self, *, last: bool = True) -> float:
+        """Instant up to which the states that outputs need have all come, s.
+
+        Parameters
+        ----------
+        last : bool
+            Whether no more states come: the one after those in reach changes the slope at the last of them.
+        """
+        return float(self._time[-1 if last else -2]) - self._reach if len(self._time) > 2 else -np.inf
 
     def at(self, instants: FloatArray) -> FloatArray:
         """Filtered values, and forget states that outputs after them do not need.

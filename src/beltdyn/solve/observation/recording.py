@@ -1,7 +1,7 @@
 """From states to results: observe what the integrator hands out, record it, and tell of progress."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import prod
 from pathlib import Path
 from types import TracebackType
@@ -21,7 +21,7 @@ from beltdyn.results import (
     Status,
     provenance,
 )
-from beltdyn.results.schema import FILTER_REACH, FILTERED
+from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.integrators.trajectory import Chunk, Statistics, interpolated
@@ -38,6 +38,26 @@ _MOST_WAITING = 512
 """States that wait to be observed."""
 _BLOCK = 512
 """Outputs that are made at a time."""
+_GROUP = 64
+"""Of these that are filtered together."""
+
+
+_KEPT = (
+    *(
+        "statistics",
+        "watch",
+        "integrator",
+        "_drive",
+        "_system",
+        "_title",
+        "_about",
+        "_instants",
+        "_filter",
+        "_filtered",
+    ),
+    *("_observer", "_findings", "_before", "_done", "_written", "_step", "_channels"),
+)
+"""What a recording that is gone on with takes over."""
 
 
 class Recording:
@@ -100,7 +120,53 @@ class Recording:
         self._pace = Pace()
         self._begun = self._compiled = self._started = self._last_write = time.perf_counter()
         self._ended: float | None = None
+        self._ending = False
         self._cpu_started, self._cpu_ended = time.process_time(), 0.0
+
+    def keep(self) -> dict[str, Any]:
+        """Write what waits, and give all that is needed to go on from there in another process."""
+        self._write()
+        now, cpu = time.perf_counter(), time.process_time()
+        spent = {
+            "compiling": self._compiled - self._begun,
+            "starting": self._started - self._compiled,
+            "wall": now - self._compiled,
+            "cpu": cpu - self._cpu_started,
+        }
+        counts = {"time": self._written, "filtered_time": self._filtered - FILTER_REACH}
+        counts["field_time"] = int(np.count_nonzero(self._instants.has_fields(np.arange(self._written))))
+        return {name: getattr(self, name) for name in _KEPT} | {"spent": spent, "counts": counts}
+
+    @classmethod
+    def resumed(cls, kept: Mapping[str, Any], output: Path, progress: Report | None) -> Self:
+        """Go on with a recording.
+
+        Parameters
+        ----------
+        kept
+            From `keep`.
+        output
+            Its result file.
+        progress
+            Whom to tell.
+
+        Raises
+        ------
+        ModelError
+            If the file does not hold what was recorded by then.
+        """
+        made = cls.__new__(cls)
+        for name in _KEPT:
+            setattr(made, name, kept[name])
+        made._path, made._progress = output, progress
+        layout = result_layout(made._drive, made._system)
+        made._recorder = FileRecorder.resumed(output, layout, {name: kept["counts"][name] for name in TIMES})
+        made._waiting, made._pace, made._ended, made._cpu_ended, made._ending = [], Pace(), None, 0.0, False
+        spent, made._last_write = kept["spent"], time.perf_counter()
+        made._compiled = made._last_write - spent["wall"]
+        made._begun, made._started = made._compiled - spent["compiling"], made._compiled + spent["starting"]
+        made._cpu_started = time.process_time() - spent["cpu"]
+        return made
 
     def __enter__(self) -> Self:
         """Begin; see the class."""
@@ -121,7 +187,7 @@ class Recording:
         with uninterrupted():
             written = False
             try:
-                self._write()
+                self._write(ending=not self._ending)
                 written = True
             finally:
                 self._recorder.close(status if written else "failed", self._attributes() | self._findings)
@@ -179,7 +245,7 @@ class Recording:
 
     def check(self) -> None:
         """Look, when all is done, whether the belt may have fluttered."""
-        self._write()
+        self._write(ending=True)
         self._ended, self._cpu_ended = time.perf_counter(), time.process_time()
         flutter = self._observer.find_flutter()
         self._findings |= flutter.attributes if flutter else {}
@@ -189,11 +255,14 @@ class Recording:
         """The run that was recorded."""
         return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
 
-    def _write(self) -> None:
-        """Record what waits, as a whole even if a signal comes meanwhile."""
+    def _write(self, *, ending: bool = False) -> None:
+        """Record what waits, as a whole even if a signal comes meanwhile; at the end all that can be filtered."""
         with uninterrupted():
             if self._waiting:
                 self._record()
+            if ending and self._before is not None:
+                self._ending = True
+                self._recorder.append(self._outputs(*self._before, np.empty(0, dtype=np.int64)))
         self._last_write = time.perf_counter()
 
     def _record(self) -> None:
@@ -250,15 +319,21 @@ class Recording:
         self._filter.take(states.time, np.hstack(flat))
 
     def _for_spectra(self) -> Arrays:
-        """What is recorded for spectra: the next outputs for which all states that they need have come."""
-        end = min(self._instants.until(self._filter.known_until), self._filtered + _BLOCK)
-        instants = self._instants[np.arange(self._filtered, end)]
-        self._filtered += len(instants)
-        values = self._filter.at(instants)
-        columns = np.split(values, np.cumsum([prod(shape) for shape in self._channels.values()])[:-1], axis=1)
+        """What is recorded for spectra: the next outputs for which all states that they need have come.
+
+        They are filtered in the same groups whenever they come, so that a run that is gone on with is the same.
+        """
+        end, first = self._instants.until(self._filter.known_until(last=self._ending)), self._filtered
+        if not self._ending:
+            end = min(end - (end - first) % _GROUP, first + _BLOCK)
+        starts = range(first, end, _GROUP)
+        values = [self._filter.at(self._instants[np.arange(start, min(start + _GROUP, end))]) for start in starts]
+        self._filtered = max(end, first)
+        filtered = np.concatenate(values) if values else self._filter.at(np.empty(0))
+        columns = np.split(filtered, np.cumsum([prod(shape) for shape in self._channels.values()])[:-1], axis=1)
         parts = zip(self._channels.items(), columns, strict=True)
-        filtered = {f"filtered_{name}": part.reshape(-1, *shape) for (name, shape), part in parts}
-        return {"filtered_time": instants, **filtered}
+        found = {f"filtered_{name}": part.reshape(-1, *shape) for (name, shape), part in parts}
+        return {"filtered_time": self._instants[np.arange(first, self._filtered)], **found}
 
     def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
         """Coordinates and speeds of bodies, from states of shape (k, n N + D)."""

@@ -2,12 +2,12 @@
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from importlib.metadata import version as version_of
 from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from beltdyn import __version__
 from beltdyn.analyses import Analysis
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive
@@ -29,7 +29,7 @@ class PointWork:
     results: tuple[str, ...]
     folder: Path | None
     """Where result files are kept; None if they are not."""
-    version: str = __version__
+    version: str = field(default_factory=lambda: version_of("beltdyn"))
     """That of beltdyn where the study was started."""
 
     def file_of(self, point: int) -> Path:
@@ -104,9 +104,9 @@ def _outcome(work: PointWork, point: int, changes: Mapping[str, Any], units: dic
 
 def _analysed(work: PointWork, point: int, changes: Mapping[str, Any]) -> Result:
     """The result at a point, in memory or in a file."""
-    if work.version != __version__:
+    if work.version != (own := version_of("beltdyn")):
         raise RuntimeError(
-            f"this worker has beltdyn {__version__}, and the study was started by {work.version}. Install the same."
+            f"this worker has beltdyn {own}, and the study was started by {work.version}. Install the same."
         )
     drive = work.drive.with_(changes)
     if work.folder is not None:

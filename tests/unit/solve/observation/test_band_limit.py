@@ -26,7 +26,7 @@ def filtered(values: FloatArray, times: FloatArray, outputs: FloatArray = OUTPUT
     band, found, done = BandLimit(INTERVAL), [], 0
     for first in range(0, len(times), room):
         band.take(times[first : first + room], values[first : first + room])
-        known = int(np.searchsorted(outputs, band.known_until))
+        known = int(np.searchsorted(outputs, band.known_until()))
         found.append(band.at(outputs[done:known]))
         done = known
     assert done == len(outputs)

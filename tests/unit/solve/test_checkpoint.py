@@ -1,0 +1,157 @@
+"""Runs that are interrupted or killed go on to the same results, to the last bit."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, dumps, load
+from beltdyn.results import Run
+from beltdyn.solve import Progress, simulate
+from beltdyn.solve.checkpoint import checkpoint_file, is_checkpoint, read_checkpoint
+
+OFTEN = 1e-9
+"""Computing time between checkpoints, s: one after each chunk of steps."""
+
+
+@pytest.fixture(scope="module")
+def alternator() -> Drive:
+    """On the mesh that stays, with hysteresis, an arm, and a load that comes in the middle."""
+    drive = load(str(files("beltdyn") / "examples" / "alternator_drive.toml"))
+    schedule = {"kind": "cosine_ramp", "start": 0.02, "end": 0.03, "value": 1.0}
+    changed = {"simulation.duration": 0.05, "pulley[alternator].load[1].schedule": schedule, "belt.elements": 30}
+    return drive.with_(changed)
+
+
+@pytest.fixture(scope="module")
+def travelling() -> Drive:
+    """On the mesh that travels, from the belt as it is laid."""
+    drive = load(str(files("beltdyn") / "examples" / "two_pulley.toml"))
+    return drive.with_({"simulation.duration": 0.06})
+
+
+def stopping_after(time_: float) -> Callable[[Progress], None]:
+    def stop(progress: Progress) -> None:
+        if progress.phase == "integrating" and progress.time > time_:
+            raise KeyboardInterrupt
+
+    return stop
+
+
+def require_same(found: Run, whole: Run) -> None:
+    assert found.status == "completed"
+    assert set(found.dataset.variables) == set(whole.dataset.variables)
+    for name, variable in whole.dataset.variables.items():
+        np.testing.assert_array_equal(found.dataset[name].values, variable.values, strict=True, err_msg=str(name))
+    for name in ("steps", "rejected_steps", "newton_iterations", "integrator", "title", "drive"):
+        assert found.dataset.attrs[name] == whole.dataset.attrs[name]
+
+
+@pytest.mark.parametrize("drive", ["alternator", "travelling"])
+def test_an_interrupted_run_goes_on_to_the_bit(drive: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    """Twice, before and after the load comes."""
+    given: Drive = request.getfixturevalue(drive)
+    whole, path = simulate(given, tmp_path / "whole.nc"), tmp_path / "run.nc"
+    assert not checkpoint_file(tmp_path / "whole.nc").exists()
+    stopped = simulate(given, path, stopping_after(0.01), checkpoint=OFTEN)
+    assert stopped.status == "interrupted"
+    assert stopped.outputs < whole.outputs
+    stopped.dataset.close()
+    again = simulate(given, path, stopping_after(0.035), checkpoint=OFTEN, resume=True)
+    assert again.status == "interrupted"
+    again.dataset.close()
+    require_same(simulate(given, path, resume=True), whole)
+    assert not checkpoint_file(path).exists()
+
+
+@pytest.mark.slow
+def test_a_killed_run_goes_on_to_the_bit(alternator: Drive, tmp_path: Path) -> None:
+    (tmp_path / "drive.toml").write_text(dumps(alternator), encoding="utf-8")
+    given, path = load(tmp_path / "drive.toml"), tmp_path / "run.nc"
+    whole = simulate(given, tmp_path / "whole.nc")
+    program = (
+        f"import beltdyn as bd; bd.simulate(bd.load({str(tmp_path / 'drive.toml')!r}), {str(path)!r}, checkpoint=0.05)"
+    )
+    process = subprocess.Popen([sys.executable, "-c", program])
+    while process.poll() is None and not checkpoint_file(path).exists():
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    require_same(simulate(given, path, resume=True), whole)
+
+
+@pytest.fixture
+def stopped(travelling: Drive, tmp_path: Path) -> Path:
+    """The result file of a run that was interrupted."""
+    path = tmp_path / "run.nc"
+    simulate(travelling, path, stopping_after(0.005), checkpoint=OFTEN).dataset.close()
+    return path
+
+
+def test_checkpoints_are_told_from_other_files(stopped: Path) -> None:
+    assert is_checkpoint(checkpoint_file(stopped))
+    assert not is_checkpoint(stopped)
+    assert read_checkpoint(checkpoint_file(stopped)).drive.simulation.duration == 0.06
+
+
+def test_a_new_run_forgets_the_checkpoint_of_an_earlier_one(travelling: Drive, stopped: Path) -> None:
+    simulate(travelling.with_({"simulation.duration": 0.002}), stopped).dataset.close()
+    assert not checkpoint_file(stopped).exists()
+
+
+def test_a_run_without_a_checkpoint_cannot_go_on(travelling: Drive, tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="there is no checkpoint"):
+        simulate(travelling, tmp_path / "run.nc", resume=True)
+    with pytest.raises(ModelError, match="none is named"):
+        simulate(travelling, resume=True)
+    with pytest.raises(ModelError, match=r"checkpoint = 0 s must be above zero"):
+        simulate(travelling, tmp_path / "run.nc", checkpoint=0.0)
+
+
+def test_another_drive_does_not_go_on(travelling: Drive, stopped: Path) -> None:
+    with pytest.raises(ModelError, match="another drive"):
+        simulate(travelling.with_({"belt.width": 0.011}), stopped, resume=True)
+
+
+class Evil:
+    """What a pickle of others may hold."""
+
+    def __reduce__(self) -> tuple[object, tuple[str]]:
+        return os.system, ("echo taken",)
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (lambda head, content: head + content[:200], "is damaged"),
+        (lambda head, content: b"beltdyn checkpoint 0.0.1 0\n" + content, "not written by this version"),
+        (lambda head, content: head + pickle.dumps(Evil()), "has no place in a checkpoint"),
+        (lambda head, content: head + pickle.dumps([1.0]), "is no checkpoint of a run"),
+    ],
+)
+def test_what_is_no_checkpoint_is_refused(
+    damage: Callable[[bytes, bytes], bytes], said: str, stopped: Path, travelling: Drive
+) -> None:
+    file = checkpoint_file(stopped)
+    head, _, content = file.read_bytes().partition(b"\n")
+    file.write_bytes(damage(head + b"\n", content))
+    kept = stopped.read_bytes()
+    with pytest.raises(ModelError, match=said):
+        simulate(travelling, stopped, resume=True)
+    assert stopped.read_bytes() == kept
+
+
+def test_a_file_that_lost_outputs_is_refused(stopped: Path, travelling: Drive) -> None:
+    simulate(travelling.with_({"simulation.duration": 0.001}), stopped.with_name("short.nc")).dataset.close()
+    stopped.with_name("short.nc").replace(stopped)
+    with pytest.raises(ModelError, match="were written"):
+        simulate(travelling, stopped, resume=True)
