@@ -17,6 +17,7 @@ from beltdyn.solve.rest.installation import Rest, bring_to_rest
 from beltdyn.solve.rest.static import Equilibrium, find_equilibrium
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.simulate import simulate
+from beltdyn.solve.simulator import Simulator
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.study import study
 from beltdyn.solve.sweep import sweep
@@ -33,6 +34,7 @@ __all__ = [
     "GeneralizedAlpha",
     "Progress",
     "Rest",
+    "Simulator",
     "StandardIntegrator",
     "StepError",
     "Stepwise",

@@ -210,6 +210,32 @@ def _steady_running(drive: Drive) -> dict[str, object]:
         return {FAILURE: str(error)}
 
 
+def beginning_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
+    """Where a run of a drive begins, as its file says.
+
+    Parameters
+    ----------
+    drive, integrator, progress
+        As for `simulate`.
+
+    Raises
+    ------
+    ModelError, ConvergenceError
+        As `simulate`.
+    """
+    staying, steady = drive.simulation.frame == "staying", drive.simulation.start == "steady"
+    if steady:
+        require_steady_start(drive)
+    if staying:
+        _require_flowing(integrator)
+        return begin_flowing(drive, progress)
+    found = _begin_travelling(drive, drive_system(drive), progress)
+    if not steady:
+        return found
+    system, state, _ = Held()(found.drive, found.system, found.state, integrator, progress)
+    return found._replace(system=system, state=state)
+
+
 def _begin_travelling(drive: Drive, system: System, progress: Report | None) -> Beginning:
     """The state in which a run on the mesh that travels begins."""
     start = drive.simulation.start

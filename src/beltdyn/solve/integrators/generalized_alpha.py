@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from beltdyn.solve.integrators.integrator_state import (
     new_state,
 )
 from beltdyn.solve.integrators.trajectory import Chunk, Task
-from beltdyn.system.arrays import BodyForces
+from beltdyn.system.arrays import BodyForces, Equations, System
 from beltdyn.system.motion import new_equations
 from beltdyn.system.state import crossing_time
 
@@ -76,7 +77,7 @@ class GeneralizedAlpha:
         )
         first_step = min(_FIRST_STEP, settings.max_step)
         state = new_state(task.system, begin, first_step, task.start.position, task.start.velocity)
-        return AlphaIntegration(self, task, settings, state)
+        return AlphaIntegration(self, task, settings, task.system, state)
 
 
 @dataclass
@@ -87,6 +88,8 @@ class AlphaIntegration:
     ----------
     method, task, settings
         What is integrated, and how.
+    system : System
+        Its arrays; profiles may be exchanged between two stops.
     state : IntegratorState
         Where it is.
     begun : bool
@@ -98,29 +101,51 @@ class AlphaIntegration:
     method: GeneralizedAlpha
     task: Task
     settings: Settings
+    system: System
     state: IntegratorState
     begun: bool = False
     restarted: float = -np.inf
 
+    @cached_property
+    def _equations(self) -> Equations:
+        """Arrays to work in."""
+        return new_equations(self.system)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in vars(self).items() if name != "_equations"}
+
     def chunks(self) -> Iterator[Chunk]:
         """Integrate from where it is to the end; see `Integrator`."""
-        task, system, state = self.task, self.task.system, self.state
-        equations = new_equations(system)
-        budget = max(1, _STEPS_AT_ONCE // system.length.size)
+        task = self.task
         if not self.begun:
             self.begun = True
-            yield Chunk.start(system, task.start, task.instants.begin)
+            yield Chunk.start(self.system, task.start, task.instants.begin)
         for stop in task.stops:
             if stop > self.restarted:
-                restart(system, state, equations)
+                self.restart()
                 self.restarted = stop
-            while state.clock.time < stop:
-                steps = empty_steps(system, min(_ROOM, budget))
-                status, filled = advance(system, self.settings, state, equations, stop, budget, steps)
-                _count(task, state)
-                yield _chunk(steps, filled, state)
-                if status != REACHED:
-                    raise ConvergenceError(_message(task, state, self.method))
+            yield from self.until(stop)
+
+    def restart(self) -> None:
+        """Take accelerations from the equations of motion: at the beginning, and where what drives has a kink."""
+        restart(self.system, self.state, self._equations)
+
+    def until(self, stop: float) -> Iterator[Chunk]:
+        """Integrate up to an instant (s), on which the last step ends.
+
+        Raises
+        ------
+        ConvergenceError
+            If it cannot go on.
+        """
+        budget = max(1, _STEPS_AT_ONCE // self.system.length.size)
+        while self.state.clock.time < stop:
+            steps = empty_steps(self.system, min(_ROOM, budget))
+            status, filled = advance(self.system, self.settings, self.state, self._equations, stop, budget, steps)
+            _count(self.task, self.state)
+            yield _chunk(steps, filled, self.state)
+            if status != REACHED:
+                raise ConvergenceError(_message(self.task, self.state, self.method))
 
 
 def _chunk(steps: Steps, filled: int, state: IntegratorState) -> Chunk:

@@ -1,0 +1,239 @@
+"""A drive that is simulated step by step, with inputs set and outputs read between: for control, coupling, teaching."""
+
+from collections.abc import Sequence
+from copy import deepcopy
+from dataclasses import dataclass
+from math import isfinite
+
+import numpy as np
+
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ModelError
+from beltdyn.kernel import interpreted
+from beltdyn.machines.profiles.functions import Profiles, go_on, profile_integral, profile_value
+from beltdyn.model import Drive, Pulley
+from beltdyn.parts.quantity import to_si
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.integrator_state import IntegratorState
+from beltdyn.solve.integrators.trajectory import Statistics, drive_task
+from beltdyn.solve.progress import Report
+from beltdyn.solve.simulate import beginning_of, choose_integrator
+from beltdyn.system.build_machines import profile_arrays
+from beltdyn.system.observe import observe_motion
+from beltdyn.system.state_forces import body_forces_at
+
+
+@dataclass(frozen=True)
+class SimulatorState:
+    """Where a simulator was, from `Simulator.save`."""
+
+    integrator: IntegratorState
+    pulleys: tuple[Pulley, ...]
+    profiles: Profiles
+    anew: bool
+
+
+class Simulator:
+    """A drive that is simulated step by step, by the same integrator and from the same beginning as by `simulate`.
+
+    Speeds and torques are those of the drive file until they are set. Means of installation, as the length that gives
+    the installed tension, are found when it is made.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive; its `simulation.duration` is no limit here.
+    progress : callable, optional
+        Called with a `Progress` while the beginning is found.
+
+    Raises
+    ------
+    ModelError
+        If the drive asks for another integrator than "generalized_alpha".
+    ConvergenceError
+        If there is no state to begin with.
+
+    Examples
+    --------
+    >>> simulator = bd.Simulator(drive)
+    >>> simulator.step(0.01)
+    >>> simulator.set_torque("driven", -0.5)
+    >>> simulator.step(0.02)
+    >>> round(simulator.time, 3)
+    0.02
+    """
+
+    def __init__(self, drive: Drive, progress: Report | None = None) -> None:
+        integrator = choose_integrator(drive)
+        if not isinstance(integrator, GeneralizedAlpha):
+            raise ModelError(
+                f'a simulator steps by generalized_alpha, not by "{integrator.name}". Leave simulation.integrator out.'
+            )
+        begin = beginning_of(drive, integrator, progress)
+        self.drive = begin.drive
+        """With the length, or the take-up, that gives the installed tension."""
+        self._integration = integrator.begin(drive_task(begin.drive, begin.system, begin.state, Statistics()))
+        self._pulleys: tuple[Pulley, ...] = tuple(begin.drive.pulleys)
+        self._wanted: dict[int, float] = {}
+        self._anew = True
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return float(self._integration.state.clock.time)
+
+    def set_speed(self, pulley: str, speed: float | str) -> None:
+        """Let the speed of a pulley change linearly over the next step, and stay so.
+
+        Parameters
+        ----------
+        pulley : str
+            Name of a pulley whose speed is prescribed.
+        speed : float or str
+            At the end of the next step, rad/s, or text with a unit.
+
+        Raises
+        ------
+        ModelError
+            If there is no such pulley, or its speed is not prescribed.
+        """
+        number = self.drive.number_of(pulley)
+        if not self._pulleys[number].prescribed:
+            raise ModelError(f"pulley = {pulley!r} turns freely: it has no speed that could be set. Set its torque.")
+        self._wanted[number] = _number("speed", speed, "rad/s")
+
+    def set_torque(self, pulley: str, torque: float | str) -> None:
+        """Let a torque act on a pulley from now on, beside its loads, in place of the one of the drive file.
+
+        Parameters
+        ----------
+        pulley : str
+            Name of a pulley that turns freely.
+        torque : float or str
+            Counter-clockwise positive, N m, or text with a unit.
+
+        Raises
+        ------
+        ModelError
+            If there is no such pulley, or its speed is prescribed.
+        """
+        number = self.drive.number_of(pulley)
+        if self._pulleys[number].prescribed:
+            raise ModelError(f"pulley = {pulley!r} has a prescribed speed, whatever its torque. Set its speed.")
+        self._wanted[number] = _number("torque", torque, "N*m")
+
+    def step(self, until: float) -> None:
+        """Simulate up to an instant.
+
+        Parameters
+        ----------
+        until : float
+            s, after the present time.
+
+        Raises
+        ------
+        ModelError
+            If it is not later.
+        ConvergenceError
+            If the simulation cannot go on.
+        """
+        if not (isfinite(until) and until > self.time):
+            raise ModelError(f"until = {until:g} s is not after the present time, {self.time:g} s. Give a later one.")
+        if self._wanted:
+            self._take_inputs(until)
+        kinks = sorted({kink for kink in self._kinks() if self.time < kink < until})
+        for stop in (*kinks, until):
+            if self._anew:
+                self._integration.restart()
+            for _ in self._integration.until(stop):
+                pass
+            self._anew = stop in self._kinks()
+
+    def _kinks(self) -> set[float]:
+        """Instants of kinks and jumps of what is prescribed, s."""
+        profiles = [profile for pulley in self._pulleys for profile in pulley.profiles]
+        return {float(kink) for profile in profiles for kink in profile.breakpoints()}
+
+    def _take_inputs(self, until: float) -> None:
+        """Prescribe what was set: speeds that rise linearly until an instant (s), and torques that jump."""
+        now, before = self.time, self._integration.system.profiles
+        pulleys = list(self._pulleys)
+        for number, value in self._wanted.items():
+            if pulleys[number].prescribed:
+                start = interpreted(profile_value)(before, number, now)[0]
+                ramp = {"kind": "table", "times": [now, until], "values": [start, value]}
+                pulleys[number] = pulleys[number].replace(speed=ramp)
+            else:
+                pulleys[number] = pulleys[number].replace(torque={"kind": "constant", "value": value})
+        self._pulleys = tuple(pulleys)
+        self._wanted.clear()
+        after = profile_arrays(pulleys)
+        prescribed = [number for number, pulley in enumerate(pulleys) if pulley.prescribed]
+        angles = [interpreted(profile_integral)(before, number, now) for number in prescribed]
+        go_on(after, prescribed, now, angles)
+        self._integration.system = self._integration.system._replace(profiles=after)
+        self._anew = True
+
+    def outputs(self) -> dict[str, float]:
+        """Outputs at the present time by their names, in SI units.
+
+        Returns
+        -------
+        dict
+            ``pulley_speed[NAME]``, ``pulley_angle[NAME]``, ``shaft_torque[NAME]`` (from outside),
+            ``pulley_torque[NAME]`` (of the belt), ``hub_load[NAME]``, ``wrap_angle[NAME]``,
+            ``span_tension[NAME-NAME]``, and of tensioners ``tensioner_position[NAME]``.
+        """
+        system, state = self._integration.system, self._integration.state
+        position, velocity = state.position[None].copy(), state.velocity[None].copy()
+        forces = body_forces_at(system, np.array([self.time]), position, velocity)
+        seen = observe_motion(system, position, velocity, forces, np.ones(1, dtype=bool))
+        first, count = system.first_body, len(system.pulleys)
+        of_pulleys = {
+            "pulley_speed": velocity[0, first : first + count],
+            "pulley_angle": position[0, first : first + count],
+            "shaft_torque": seen.shaft_torque[0],
+            "pulley_torque": seen.pulley_torque[0],
+            "hub_load": np.hypot(*seen.hub_force[0].T),
+            "wrap_angle": seen.wrap_angle[0],
+        }
+        names = [pulley.name for pulley in self.drive.pulleys]
+        spans = [f"{a}-{b}" for a, b in self.drive.spans]
+        carried = [names[pulley] for pulley in system.tensioners.pulley]
+        found = {f"{key}[{name}]": value for key, row in of_pulleys.items() for name, value in _named(names, row)}
+        found |= {f"span_tension[{name}]": value for name, value in _named(spans, seen.span_tension[0])}
+        places = position[0, position.shape[1] - len(carried) :]
+        return found | {f"tensioner_position[{name}]": value for name, value in _named(carried, places)}
+
+    def save(self) -> SimulatorState:
+        """Keep where it is, to which `restore` goes back; inputs that wait for the next step are not kept."""
+        profiles = deepcopy(self._integration.system.profiles)
+        return SimulatorState(deepcopy(self._integration.state), self._pulleys, profiles, self._anew)
+
+    def restore(self, saved: SimulatorState) -> None:
+        """Go back to where it was; what follows is the same to the last bit.
+
+        Parameters
+        ----------
+        saved : SimulatorState
+            From `save` of this simulator.
+        """
+        self._integration.state = deepcopy(saved.integrator)
+        self._integration.system = self._integration.system._replace(profiles=deepcopy(saved.profiles))
+        self._pulleys, self._anew = saved.pulleys, saved.anew
+        self._wanted.clear()
+
+
+def _named(names: Sequence[str], values: FloatArray) -> list[tuple[str, float]]:
+    return [(name, float(value)) for name, value in zip(names, values, strict=True)]
+
+
+def _number(name: str, value: float | str, unit: str) -> float:
+    """A quantity in SI units, with or without its unit."""
+    try:
+        number = to_si(value, unit) if isinstance(value, str) else float(value)
+        if not isfinite(number):
+            raise ValueError("must be a finite number")
+    except ValueError as error:
+        raise ModelError(f"{name} = {value!r} {error}.") from error
+    return number
