@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 # A number, then a unit made of names with one-digit exponents, so that no text makes the unit parser compute.
 _NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<unit>.*?)\s*", re.DOTALL)
 _UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
+_TOLERANCE = re.compile(r"\s*(?:±|\+/?-)\s*(?P<size>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<percent>%?)\s*")
+_MARKS = re.compile(r"±|\+/?-")
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
 _REMEMBERED = 4096
@@ -40,7 +42,7 @@ def to_si(text: str, unit: str) -> float:
     Parameters
     ----------
     text : str
-        A number and a unit.
+        A number and a unit, maybe with a tolerance, which `tolerance_in` gives.
     unit : str
         The SI unit to convert into; the empty string for a dimensionless number.
 
@@ -54,10 +56,13 @@ def to_si(text: str, unit: str) -> float:
     ValueError
         If the text has no number, no unit, an unknown unit, or a unit of another dimension.
     """
-    match = _NUMBER.fullmatch(text) if len(text) <= _LONGEST_TEXT else None
+    nominal, tolerance = _without_tolerance(text, unit)
+    match = _NUMBER.fullmatch(nominal) if len(text) <= _LONGEST_TEXT else None
     if match is None:
         raise ValueError(f"must be a number{f' in {unit}' if unit else ''}")
     number, given = float(match["number"]), match["unit"]
+    if not unit and tolerance is not None and not given:
+        return number
     if not unit:
         raise ValueError("is a plain number without a unit: leave the quotation marks away")
     if not given:
@@ -65,6 +70,51 @@ def to_si(text: str, unit: str) -> float:
     if not _UNIT.fullmatch(given):
         raise ValueError(f'has a unit that cannot be read. Write for example "{number:g} {unit}"')
     return _convert(number, given, unit)
+
+
+def tolerance_in(text: str, unit: str) -> float | None:
+    """The tolerance of a text such as ``"12.5 ± 0.1 mm"``, ``"12.5 +- 0.1 mm"`` or ``"12.5 mm ± 1 %"``, in `unit`.
+
+    Parameters
+    ----------
+    text : str
+        As for `to_si`.
+    unit : str
+        The SI unit.
+
+    Returns
+    -------
+    float or None
+        None where the text has no tolerance.
+
+    Raises
+    ------
+    ValueError
+        If the text cannot be read.
+    """
+    _, match = _without_tolerance(text, unit)
+    if match is None:
+        return None
+    value, size = to_si(text, unit), float(match["size"])
+    if match["percent"]:
+        return abs(value) * size / 100.0
+    there = _NUMBER.fullmatch(_without_tolerance(text, unit)[0])
+    assert there is not None
+    return to_si(f"{size} {there['unit']}", unit) if unit else size
+
+
+def _without_tolerance(text: str, unit: str) -> tuple[str, re.Match[str] | None]:
+    """A text without its tolerance, and the tolerance if there is one."""
+    if len(text) > _LONGEST_TEXT or not _MARKS.search(text):
+        return text, None
+    match = _TOLERANCE.search(text)
+    rest = "" if match is None else f"{text[: match.start()]} {text[match.end() :]}".strip()
+    if match is None or _MARKS.search(rest) or not float(match["size"]) > 0.0:
+        raise ValueError(
+            f'has a tolerance that cannot be read. Write for example "{f"12.5 ± 0.1 {unit}".strip()}", or '
+            f'"{f"12.5 {unit}".strip()} ± 1 %"'
+        )
+    return rest, match
 
 
 def written_like(value: float, given: object, unit: str, digits: int = 7) -> float | str:
@@ -86,13 +136,25 @@ def written_like(value: float, given: object, unit: str, digits: int = 7) -> flo
     float or str
         A number in SI where `given` is no text with a unit.
     """
-    match = _NUMBER.fullmatch(given) if isinstance(given, str) and len(given) <= _LONGEST_TEXT else None
-    if match is not None and match["unit"]:
+    if isinstance(given, str) and len(given) <= _LONGEST_TEXT:
         try:
-            return f"{value / to_si('1 ' + match['unit'], unit):.{digits}g} {match['unit']}"
+            nominal, tolerance = _without_tolerance(given, unit)
+            match = _NUMBER.fullmatch(nominal)
+            if match is not None and (match["unit"] or tolerance):
+                scaled = value / to_si("1 " + match["unit"], unit) if match["unit"] else value
+                return _written(f"{scaled:.{digits}g}", match["unit"], tolerance)
         except ValueError:
             pass  # an unknown unit is no use
     return float(f"{value:.{digits}g}")
+
+
+def _written(number: str, unit: str, tolerance: re.Match[str] | None) -> str:
+    """A number with its unit and a tolerance."""
+    if tolerance is None:
+        return f"{number} {unit}"
+    if tolerance["percent"]:
+        return f"{number} {unit}".strip() + f" ± {tolerance['size']} %"
+    return f"{number} ± {tolerance['size']} {unit}".strip()
 
 
 @lru_cache(maxsize=_REMEMBERED)
@@ -157,13 +219,17 @@ def _read_count(value: object) -> object:
     return value
 
 
+_Toleranced = Annotated[str, StringConstraints(pattern=r"±|\+/?-")]
+"""A plain number with a tolerance: ``"0.31 ± 0.02"``."""
+
+
 def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
     """Let a field take a number in `unit`, or text with any unit of the same dimension.
 
     Parameters
     ----------
     unit : str
-        The SI unit; the empty string for a dimensionless number, which takes no text.
+        The SI unit; the empty string for a dimensionless number, which takes text only with a tolerance.
     smallest : float
         The smallest magnitude beside zero.
 
@@ -172,7 +238,7 @@ def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
     BeforeValidator
         What goes into the annotation of the field.
     """
-    return BeforeValidator(_Reader(unit, smallest), json_schema_input_type=float | str if unit else float)
+    return BeforeValidator(_Reader(unit, smallest), json_schema_input_type=float | (str if unit else _Toleranced))
 
 
 Coordinate = Annotated[float, quantity("m", smallest=0)]

@@ -28,6 +28,7 @@ from beltdyn.plot.pulleys import slip as slip
 from beltdyn.plot.registry import FIGURES as FIGURES
 from beltdyn.plot.response import response as response
 from beltdyn.plot.sensitivity import sensitivity as sensitivity
+from beltdyn.plot.sensitivity import tolerances as tolerances
 from beltdyn.plot.spans import mid_spans as mid_spans
 from beltdyn.plot.spans import tension_spectrum as tension_spectrum
 from beltdyn.plot.spans import tensioners as tensioners

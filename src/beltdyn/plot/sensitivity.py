@@ -49,20 +49,68 @@ def sensitivity(result: Result, of: str | None = None, *, ax: Axes | None = None
     ModelError
         If there is no such result.
     """
+    return _tornado(result, of, "effect", "change with 1 % or 1 mm more", axes_or_new(ax))
+
+
+def _has_tolerances(result: Result) -> bool:
+    """Draw a figure where the drive file has tolerances."""
+    return "contribution" in result.dataset
+
+
+@figure(_has_tolerances, _all_panels, of=("sensitivity",))
+def tolerances(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
+    """Draw the tolerances of a drive to which the spread of a result owes most, the largest on top.
+
+    Bars are changes of the result with the tolerance of a number. The lowest is the spread of all, which are
+    independent: the root of the sum of squares.
+
+    Parameters
+    ----------
+    result : Result
+        Of `sensitivity`, of a drive file with tolerances.
+    of : str, optional
+        Name of one of its results; by default the first.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+
+    Returns
+    -------
+    Axes
+        The axes.
+
+    Raises
+    ------
+    ModelError
+        If there is no such result, or the drive file has no tolerances.
+    """
+    if not _has_tolerances(result):
+        raise ModelError('the drive file has no tolerances. Write for example width = "12.5 ± 0.1 mm".')
+    return _tornado(result, of, "contribution", "change with the tolerance", axes_or_new(ax))
+
+
+def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes) -> Axes:
+    """Draw bars of a variable over numbers, the largest on top; below them the spread of tolerances."""
     names = [str(name) for name in result.dataset["result"].values]
     name = names[0] if of is None else of
     if name not in names:
         raise ModelError(f"of = {name!r} is none of the results. {suggest(name, names)}")
-    chosen, ax = result.dataset.sel(result=name), axes_or_new(ax)
-    effects = np.nan_to_num(chosen["effect"].values)
-    largest = np.argsort(-np.abs(effects), kind="stable")[:_BARS][::-1]
+    chosen = result.dataset.sel(result=name)
+    effects = np.nan_to_num(chosen[variable].values)
+    labels = [str(path) for path in chosen["number"].values]
+    largest = [int(k) for k in np.argsort(-np.abs(effects), kind="stable")[:_BARS][::-1]]
+    if variable == "contribution":
+        largest = [k for k in largest if effects[k] != 0.0]
     unit, value = str(chosen["unit"].values), float(chosen["value"])
     percent = not unit and name.partition("[")[0] in ("efficiency", "pulley_slip")
     factor, shown = (100.0, "%") if percent else (1.0, unit)
-    bars = ax.barh(range(largest.size), factor * effects[largest], color=[color(int(effects[k] < 0)) for k in largest])
-    ax.bar_label(bars, fmt="%.2g", padding=2, fontsize=7)
-    ax.set_yticks(range(largest.size), [str(chosen["number"].values[k]) for k in largest], fontsize=7)
+    bars = [(labels[k], float(factor * effects[k]), color(int(effects[k] < 0))) for k in largest]
+    if variable == "contribution":
+        bars.insert(0, ("all, independent", factor * float(chosen["spread"]), color(2)))
+    ticks = range(len(bars))
+    drawn = ax.barh(ticks, [length for _, length, _ in bars], color=[shade for _, _, shade in bars])
+    ax.bar_label(drawn, fmt="%.2g", padding=2, fontsize=7)
+    ax.set_yticks(ticks, [label for label, _, _ in bars], fontsize=7)
     ax.margins(x=0.2)
     found = f"{name} = {factor * value:.4g} {shown}".rstrip()
-    ax.set_xlabel(f"{found}: its change\nwith 1 % or 1 mm more{f' [{shown}]' if shown else ''}", fontsize=9)
+    ax.set_xlabel(f"{found}\n{words}{f' [{shown}]' if shown else ''}", fontsize=9)
     return ax

@@ -6,7 +6,7 @@ the rest.  Where a tension at rest is asked for, the length of the belt, or the 
 their shapes, with right and left eigenvectors (`state_modes`).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,8 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
+from beltdyn.model.tolerances import tolerances_of
+from beltdyn.parts.change import value_at
 from beltdyn.parts.error_location import entry_name
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.part import Part
@@ -27,6 +29,8 @@ from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
 from beltdyn.solve.studies.named_results import listed, names_in, names_of, need_bands, unit_of
 from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
+from beltdyn.solve.studies.spread import with_spread
+from beltdyn.solve.studies.tolerance_points import require_points, results_at_points
 from beltdyn.solve.sweep import without_schedules
 
 _USUAL = {STEADY: "efficiency, least_slip_safety, largest_tension", REST: "tension, hub_load"}
@@ -61,6 +65,7 @@ def sensitivity(
     about: str = STEADY,
     at: float | None = None,
     force_tolerance: float | None = None,
+    sobol: int = 0,
     progress: Report | None = None,
 ) -> Result:
     """Find how results of steady running, or at rest, change with the numbers of the drive file.
@@ -88,6 +93,9 @@ def sensitivity(
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.
+    sobol
+        Number of Sobol points at which tolerances are tried, as a check of the spread by derivatives: a power of two.
+        By default none.
     progress
         Called now and then with a `Progress`.
 
@@ -96,7 +104,9 @@ def sensitivity(
     Result
         Along ``result`` and ``number`` ``derivative``, in SI units, and ``effect``, the change of the result with 1 %
         or 1 mm more; along ``number``, of which those of largest effect come first, ``relative_NAME`` of each result,
-        its change in per cent; along ``result`` its ``value``.
+        its change in per cent; along ``result`` its ``value``. Where the drive file has tolerances, along ``number``
+        ``tolerance``, along both ``contribution``, and along ``result`` ``spread`` and ``worst_case``; with `sobol`
+        ``spread_of_points`` and ``mean_of_points``.
 
     Raises
     ------
@@ -114,7 +124,17 @@ def sensitivity(
     if about not in _USUAL:
         raise ModelError(f'about = {about!r} is no state. Give "{STEADY}" or "{REST}".')
     given = without_schedules(drive, drive.simulation.end if at is None else at)[0]
-    chosen, wanted = _chosen(given, numbers), names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about])
+    require_points(sobol)
+    tolerances = {path: size for path, size in tolerances_of(drive).items() if _stands(given, path)}
+    if sobol and not tolerances:
+        raise ModelError(
+            f"sobol = {sobol} scatters numbers within tolerances, and the drive file has none. Write for example "
+            'width = "12.5 ± 0.1 mm".'
+        )
+    chosen, wanted = (
+        _chosen(given, numbers, tolerances),
+        names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about]),
+    )
     rest = bring_to_stand(given)
     bands = need_bands(wanted)
     state = (
@@ -132,7 +152,37 @@ def sensitivity(
             derivatives[:, place] = _derivatives(changes, state, number, list(values))
         except (ConvergenceError, ModelError) as error:
             warnings.append(f"no derivative with respect to {number.path}: {error}")
-    return _result(drive, values, chosen, derivatives, warnings)
+    result = _result(drive, values, chosen, derivatives, warnings)
+    if not tolerances:
+        return result
+
+    def tell(done: int) -> None:
+        if progress is not None:
+            progress(Progress(done, float(sobol), 0.0, done, "operating points"))
+
+    points = None
+    if sobol:
+        points, failures = results_at_points(
+            given,
+            tolerances,
+            list(values),
+            sobol,
+            at_rest=about == REST,
+            force_tolerance=force_tolerance,
+            tell=tell,
+        )
+        if failures:
+            warnings.append(f"{len(failures)} of {sobol} points do not run. The last one: {failures[-1]}")
+            result = _result(drive, values, chosen, derivatives, warnings)
+    return with_spread(result, tolerances, points)
+
+
+def _stands(drive: Drive, path: str) -> bool:
+    """Whether there is a number at a path at the instant that is looked at."""
+    try:
+        return isinstance(value_at(drive, path), float)
+    except ModelError:
+        return False
 
 
 def _values(state: FoundState, names: Sequence[str]) -> dict[str, float]:
@@ -186,9 +236,12 @@ def _numbers_in(value: object, path: str) -> Iterator[Number]:
             yield from _numbers_in(one, f"{path}[{entry_name(one) or number}]")
 
 
-def _chosen(drive: Drive, numbers: str | None) -> list[Number]:
-    """The numbers that are asked for."""
+def _chosen(drive: Drive, numbers: str | None, tolerances: Mapping[str, float]) -> list[Number]:
+    """The numbers that are asked for; those with tolerances are numbers of the drive whatever they stand for."""
     known = {one.path: one for one in numbers_of(drive)}
+    for path, size in tolerances.items():
+        value = float(value_at(drive, path))
+        known.setdefault(path, Number(path, value, _PART * value or size))
     if numbers is None:
         return list(known.values())
     wanted = listed(numbers)

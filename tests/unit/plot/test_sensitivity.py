@@ -12,6 +12,7 @@ from beltdyn import plot
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.solve.studies.spread import with_spread
 
 
 @pytest.fixture
@@ -38,7 +39,7 @@ def test_the_largest_effect_is_on_top_in_percent(result: Result) -> None:
     ax = plot.sensitivity(result)
     assert [text.get_text() for text in ax.get_yticklabels()] == ["three", "one", "two"]
     assert widths(ax) == pytest.approx([0.0, 0.1, -0.4])
-    assert ax.get_xlabel() == "efficiency = 90 %: its change\nwith 1 % or 1 mm more [%]"
+    assert ax.get_xlabel() == "efficiency = 90 %\nchange with 1 % or 1 mm more [%]"
 
 
 def test_a_result_by_name(result: Result) -> None:
@@ -54,3 +55,18 @@ def test_an_unknown_result_is_refused(result: Result) -> None:
 
 def test_all_panels_are_saved(result: Result, tmp_path: Path) -> None:
     assert [path.stem for path in plot.save_all(result, tmp_path)] == ["sensitivity"]
+
+
+def test_tolerances_stand_above_their_spread(result: Result) -> None:
+    """Numbers without tolerance are left out."""
+    spread = with_spread(
+        Result(result.dataset.assign(derivative=result.dataset.effect), result.drive), {"one": 3.0, "two": 1.0}, None
+    )
+    ax = plot.tolerances(spread)
+    assert [text.get_text() for text in ax.get_yticklabels()] == ["all, independent", "one", "two"]
+    assert widths(ax) == pytest.approx([0.5, 0.3, -0.4])
+
+
+def test_no_tolerances_no_figure(result: Result) -> None:
+    with pytest.raises(ModelError, match="has no tolerances"):
+        plot.tolerances(result)
