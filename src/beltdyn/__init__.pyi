@@ -62,7 +62,7 @@ from .model import (
     read_catalogue,
     tensioner_balances,
 )
-from .report import write_report
+from .report import InteractiveFigures, interactive, write_report
 from .results import (
     VARIABLES,
     Balance,
@@ -155,6 +155,7 @@ __all__ = [
     "Harmonic",
     "InductionMotor",
     "Installation",
+    "InteractiveFigures",
     "Isolator",
     "Limits",
     "LoadTable",
@@ -208,6 +209,7 @@ __all__ = [
     "errors",
     "find_equilibrium",
     "install",
+    "interactive",
     "json_schema",
     "layer_lengths",
     "load",

@@ -1,5 +1,6 @@
 """Results as one page: a file to mail, to open in any browser, and to print."""
 
 from beltdyn.report.build import report_file, require_report, write_report
+from beltdyn.report.interactive import InteractiveFigures, interactive
 
-__all__ = ["report_file", "require_report", "write_report"]
+__all__ = ["InteractiveFigures", "interactive", "report_file", "require_report", "write_report"]

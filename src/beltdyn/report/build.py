@@ -108,15 +108,20 @@ def _is_report(path: Path) -> bool:
     return is_marked(path, _SAYS_WHO_MADE_IT)
 
 
-def _page(results: Sequence[Result]) -> str:
-    environment = Environment(
-        loader=ChoiceLoader([FunctionLoader(_read), PackageLoader("beltdyn")]),
+def environment() -> Environment:
+    """What fills the templates of this package."""
+    made = Environment(
+        loader=ChoiceLoader([FunctionLoader(read), PackageLoader("beltdyn")]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"in_unit": in_unit, "limit_of": limit_in_words}
+    made.filters |= {"in_unit": in_unit, "limit_of": limit_in_words}
+    return made
+
+
+def _page(results: Sequence[Result]) -> str:
     names = names_of_results(results) if len(results) > 1 else [name_of(results[0]) or results[0].drive.title]
     drawn, charts = charted(results)
     moving = {
@@ -124,23 +129,29 @@ def _page(results: Sequence[Result]) -> str:
         for number, one in enumerate(results)
         if isinstance(one, Run) and _moves(one)
     }
-    return environment.get_template("page.html.jinja").render(
-        title=" and ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} more",
-        mark=_SAYS_WHO_MADE_IT,
-        compares=len(results) > 1,
-        kinds={analysis_of(one) for one in results},
-        verdict=verdict(results),
-        parts=[_part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))],
-        numbers=compared(results),
-        differences=differing_keys(results),
-        names=names,
-        figures=drawn,
-        motions=embedded(moving),
-        colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _SHADES))]),
-        charts=embedded(charts),
-        library=library() if charts else "",
-        style=_read("page.css"),
-        script=_read("page.js") if charts or moving else "",
+    return (
+        environment()
+        .get_template("page.html.jinja")
+        .render(
+            title=" and ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} more",
+            mark=_SAYS_WHO_MADE_IT,
+            compares=len(results) > 1,
+            kinds={analysis_of(one) for one in results},
+            verdict=verdict(results),
+            parts=[
+                _part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))
+            ],
+            numbers=compared(results),
+            differences=differing_keys(results),
+            names=names,
+            figures=drawn,
+            motions=embedded(moving),
+            colors=json.dumps([to_hex(shade) for shade in tension_colors()(np.linspace(0.0, 1.0, _SHADES))]),
+            charts=embedded(charts),
+            library=library() if charts else "",
+            style=read("page.css"),
+            script=read("page.js") if charts or moving else "",
+        )
     )
 
 
@@ -171,7 +182,7 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
     }
 
 
-def _read(name: str) -> str | None:
+def read(name: str) -> str | None:
     """Read a file of this package; None where there is none of this name."""
     file = files("beltdyn.report").joinpath(name)
     return file.read_text(encoding="utf-8") if file.is_file() else None

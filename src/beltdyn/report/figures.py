@@ -47,13 +47,15 @@ class Shown(NamedTuple):
 
 
 @styled
-def charted(results: Sequence[Result]) -> tuple[list[Shown], dict[str, Any]]:
-    """Draw the figures that these results have by default.
+def charted(results: Sequence[Result], names: Sequence[str] | None = None) -> tuple[list[Shown], dict[str, Any]]:
+    """Draw figures of results.
 
     Parameters
     ----------
     results : sequence of Result
         One or more, which are compared.
+    names : sequence of str, optional
+        Names of the figures; by default those that these results have by default.
 
     Returns
     -------
@@ -61,10 +63,17 @@ def charted(results: Sequence[Result]) -> tuple[list[Shown], dict[str, Any]]:
         The figures.
     charts : dict
         Place on the page -> chart of Bokeh.
+
+    Raises
+    ------
+    ModelError
+        If there is no figure of such a name.
     """
     shown: list[Shown] = []
     models: dict[str, Any] = {}
-    for name in chosen_by_default(results):
+    if unknown := [name for name in names or () if name not in FIGURES]:
+        raise ModelError(f"there is no figure {unknown[0]!r}. Choose one of {', '.join(FIGURES)}.")
+    for name in chosen_by_default(results) if names is None else names:
         title = name.replace("_", " ").capitalize()
         try:
             drawn = FIGURES[name].arrange(results, Choice())

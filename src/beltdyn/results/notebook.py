@@ -2,6 +2,7 @@
 
 from beltdyn.model.notebook import templates
 from beltdyn.model.picture import picture
+from beltdyn.results.recorded import runs_steadily
 from beltdyn.results.result import Result
 from beltdyn.results.sheet import sheet
 
@@ -25,7 +26,7 @@ def result_html(result: Result) -> str:
         .render(
             drive=result.drive,
             picture=picture(result.drive),
-            kind=result.kind,
+            kind="steady running" if runs_steadily(result.dataset) else result.kind,
             status=result.status,
             sheet=sheet(result).parts,
             warnings=result.warnings,
