@@ -39,8 +39,9 @@ def _document(charts: Mapping[str, Any]) -> dict[str, Any]:
     from bokeh.document import Document
 
     document = Document()
-    for chart in charts.values():
-        document.add_root(chart)
+    with document.models.freeze():  # else all charts are gone through once more with each
+        for chart in charts.values():
+            document.add_root(chart)
     roots = {chart.id: place for place, chart in charts.items()}
     return {
         "documents": {_NAME: json.loads(serialize_json(document.to_json(deferred=False)))},

@@ -17,6 +17,8 @@ _POINTS = 480
 _FRAMES = 120
 """Pictures of all runs of a page, at most."""
 _FEWEST = 30
+_ALONG = ("nodal_coordinates", "belt_tension", "belt_coordinate", "normal_force")
+"""What pictures are made of."""
 _SMOOTH = 8
 """Points drawn on an element."""
 
@@ -43,7 +45,8 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
     times = run.dataset["field_time"].values
     count = min(len(times), max(_FRAMES // runs, _FEWEST))
     chosen = times[np.unique(np.linspace(0, len(times) - 1, count).round().astype(int))]
-    pictures = [along_belt(run, run.fields_at(time)) for time in chosen]
+    along = run.fields[list(_ALONG)].sel(time=chosen).load()
+    pictures = [along_belt(run, along.isel(time=number)) for number in range(len(chosen))]
     place, tension, pressure = (np.stack(one) for one in zip(*pictures, strict=True))
     fields = run.dataset[["pulley_angle", "pulley_speed", "pulley_center"]].sel(time=chosen)
     extent = extent_of(run.drive, run.drive.path)
