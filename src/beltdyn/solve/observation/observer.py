@@ -83,12 +83,7 @@ class Observer:
         touched, centers, places = seen.contact_pulley, seen.pulley_center, seen.contact_position
         aside = mid_span_displacements(self._drive, centers, places, touched)
         lost = np.abs(seen.friction_force * seen.slip_velocity)
-        on_arc, on_belt = self._friction_work.take(Touch(states.time, centers, places, touched, lost), shown)
-        frame = self._system.frame
-        if isinstance(frame, Flowing):
-            on_belt = self._material_work.take(on_belt, states.position[shown, frame.place])
-        elif not isinstance(frame, Travelling):  # all of the belt passes
-            on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares
+        on_arc, on_belt = self._works(Touch(states.time, centers, places, touched, lost), states, shown)
         potential = np.stack([seen.spring_energy, seen.potential_energy], axis=1)
         stored = seen.kinetic_energy + seen.strain_energy + seen.penalty_energy[shown]
         closure = self._energy.closure(stored, potential, states.work, shown)
@@ -113,6 +108,20 @@ class Observer:
             "energy_closure": closure,
         }
         return Seen(at_outputs, {name: values for name, values in every.items() if name in FILTERED})
+
+    def _works(self, touch: Touch, states: Chunk, shown: BoolArray) -> tuple[FloatArray, FloatArray]:
+        """Work of friction since the beginning by arc and by belt, in the states that are shown.
+
+        Where the belt flows through the mesh, it is spread on what passes in each step, whichever states are shown.
+        """
+        frame = self._system.frame
+        if isinstance(frame, Flowing):
+            on_arc, on_mesh = self._friction_work.take(touch, np.ones_like(shown))
+            return on_arc[shown], self._material_work.take(on_mesh, states.position[:, frame.place])[shown]
+        on_arc, on_belt = self._friction_work.take(touch, shown)
+        if not isinstance(frame, Travelling):  # all of the belt passes
+            on_belt = np.sum(on_belt, axis=-1, keepdims=True) * self._shares
+        return on_arc, on_belt
 
     def find_flutter(self) -> Flutter | None:
         """The largest growth of vibrations while the belt slid; None where none grows, or the mesh does not travel."""
