@@ -1,7 +1,7 @@
 """What makes a drive or its results doubtful, in three sentences: what is wrong, what it spoils, what to do."""
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,6 +16,8 @@ class Finding:
         Which numbers it spoils, and by how much.
     remedy : str
         What to do.
+    kind : str
+        Name of the check that found it, if one did.
 
     Raises
     ------
@@ -26,14 +28,15 @@ class Finding:
     fault: str
     spoils: str
     remedy: str
+    kind: str = ""
 
     def __post_init__(self) -> None:
-        for part in astuple(self):
+        for part in (self.fault, self.spoils, self.remedy):
             if not part.endswith("."):
                 raise ValueError(f"{part!r} is a part of a finding and must be a sentence. End it with a full stop.")
 
     def __str__(self) -> str:
-        return " ".join(astuple(self))
+        return f"{self.fault} {self.spoils} {self.remedy}"
 
 
 def listing(words: Sequence[str]) -> str:

@@ -130,7 +130,7 @@ def _power(summary: Summary) -> list[tuple[str, str]]:
     efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
     flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out"
     return [
-        ("power", f"{flows}, {_watts(balance.stored, 3)} being stored"),
+        ("power", f"{flows}, {_watts(balance.stored, 3)} being stored" if summary.steps else flows),
         ("efficiency", efficiency),
         ("losses", f"{_watts(balance.lost, 3)}: {losses}" if losses else "none"),
     ]
@@ -162,7 +162,8 @@ def _solver(summary: Summary) -> list[tuple[str, str]]:
         ("energy balance", f"closes within {abs(summary.energy_closure):.1e} of the energy put in"),
         ("time steps", f"{steps}; {summary.outputs} outputs"),
     ]
-    took = f"{summary.wall_time:.3g} s{_pace(summary)}, and {summary.compile_time:.3g} s to prepare"
+    prepared = f", and {summary.compile_time:.3g} s to prepare" if summary.steps else ""
+    took = f"{summary.wall_time:.3g} s{_pace(summary)}{prepared}"
     known = not math.isnan(summary.wall_time)
     moves = not math.isnan(summary.resolution.errors["slip"])
     return [*(facts if summary.steps else facts[:moves]), *([("computing time", took)] if known else [])]

@@ -14,6 +14,7 @@ from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Run, Variable, summarize
+from beltdyn.results.checks.sliding import gross_slip, near_gross_slip
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of, with_pulley
@@ -37,6 +38,9 @@ _ABOUT = 0.7
 _FEWEST = 3
 _ALL = 0.99
 """Part of an arc that slides as a whole."""
+
+_EXPECTED = frozenset({gross_slip.__name__, near_gross_slip.__name__})
+"""Findings that a traction curve leads to."""
 
 _VARIABLES = {
     "torque": Variable(("slip",), "N m", "Torque"),
@@ -134,6 +138,7 @@ def traction(
     axes = {"slip": (Variable(("slip",), "1", f"Slip of {one.name}"), slips)}
     with OperatingPoints("traction", slipping(0.0), axes, output, progress, overwrite) as table:
         table.derive = partial(_curve, number=number, sense=float(np.sign(fastest)))
+        table.expected = _EXPECTED
         table.attributes = {"drive_as_given": drive.text, "pulley": one.name}
         before = 0.0
         for index, part in enumerate(slips.tolist()):

@@ -4,6 +4,8 @@ A check takes the `Evidence` of a run and gives `Finding` objects, none when all
 them; to add one, write it there and enter it in `CHECKS`.
 """
 
+from dataclasses import replace
+
 from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.contact import deep_penetration, large_strain, leaves_pulley, slack_spans
@@ -72,4 +74,4 @@ def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> lis
     evidence = Evidence(recorded, drive, resolution)
     if "slips_through" in recorded.attrs:
         return list(ended_by_slip(evidence))  # the other checks would tell of the same in other words
-    return [finding for check in CHECKS for finding in check(evidence)]
+    return [replace(finding, kind=check.__name__) for check in CHECKS for finding in check(evidence)]

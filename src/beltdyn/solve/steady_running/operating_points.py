@@ -139,6 +139,8 @@ class OperatingPoints:
         """Global attributes that it adds."""
         self.notes = list[str]()
         """Warnings that it adds."""
+        self.expected = frozenset[str]()
+        """Checks whose findings belong to what it looks for, and are no warnings."""
 
     def __enter__(self) -> Self:
         """Begin."""
@@ -203,7 +205,8 @@ class OperatingPoints:
     def fail(self, index: tuple[int, ...], what: str, reason: str) -> None:
         """Mark a point by the reason why something is not found there, and warn of it."""
         self.arrays["failure"][index] = reason
-        self._warn(index, f"{what}: {reason}")
+        text = f"{what}: {reason}"
+        self._warn(index, re.sub(r"[\d.,e+\-−–%]+", "#", text), text)
 
     def result(self) -> Result:
         """The table as it is now.
@@ -267,12 +270,13 @@ class OperatingPoints:
                 self.arrays[name][index] = values
         if "mesh_error" in self.arrays:
             self.arrays["mesh_error"][index] = run.resolution.errors["peak pressure"]
-        for warning in run.warnings:
-            self._warn(index, warning)
+        for finding in run.findings:
+            if finding.kind not in self.expected:
+                self._warn(index, finding.kind, str(finding))
 
-    def _warn(self, index: tuple[int, ...], text: str) -> None:
-        """Note a warning of a point, beside those of other points that differ in numbers alone."""
-        self._warned.setdefault(re.sub(r"[\d.,e+\-−–%]+", "#", text), []).append((self._place(index), text))
+    def _warn(self, index: tuple[int, ...], kind: str, text: str) -> None:
+        """Note a warning of a point, beside those of the same kind of other points."""
+        self._warned.setdefault(kind, []).append((self._place(index), text))
 
     def _warnings(self) -> Iterator[str]:
         """The warnings of points, each but once."""

@@ -44,6 +44,11 @@ def slips_through(drive: Drive, system: System, state: State, load: float) -> st
             f"the search ends at {load:.1%} of the loads, where {name} uses {used[worst]:.0%} of its friction. Look at "
             "a run over time with `beltdyn run`."
         )
+    if system.bodies.unknown[system.pulleys.shaft[worst]] < 0:
+        return (
+            f"the search ends where the belt slides on the whole arc of {name}, with {torque:.4g} N m at {speed:.4g} "
+            "rpm. Its speed is prescribed: let it slip less, or raise the tension, the friction or the wrap angle."
+        )
     return (
         f"the belt slips through on {name}, which transmits at most {torque:.4g} N m at {speed:.4g} rpm; "
         f"{torque / load:.4g} N m is asked for. Raise the tension, the friction or the wrap angle, or reduce the load."
