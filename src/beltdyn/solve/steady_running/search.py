@@ -273,7 +273,8 @@ class SteadySearch:
     def _follow(self, target: Setting) -> None:
         """Go on to another setting, or say why that is not possible."""
         if not self._reach(target):
-            seen = slips_through(self.drive, self.constant, self.state, self.setting.load)
+            asked = self._at(Setting())
+            seen = slips_through(self.drive, self.constant, self.state, self.setting.load, asked)
             raise ConvergenceError(f"no steady running at t = {self._time:g} s: {seen}")
 
     def _reach(self, target: Setting) -> bool:

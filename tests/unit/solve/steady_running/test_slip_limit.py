@@ -1,0 +1,42 @@
+"""Why there is no steady running: what a pulley transmits at most is below what is asked for, and is told with it."""
+
+import re
+from typing import Any
+
+import pytest
+
+from beltdyn.errors import ConvergenceError
+from beltdyn.model import Drive
+from beltdyn.solve.steady import steady_state
+from beltdyn.solve.traction import traction
+
+NUMBERS = re.compile(r"slips through on (\w+), which transmits at most (\S+) N m at \S+ rpm; (\S+) N m is asked for")
+
+
+def drive(**driven: Any) -> Drive:
+    """Two equal pulleys that transmit about 12 N m."""
+    belt = {"profile": "PK", "ribs": 4, "installed_tension": 200.0}
+    first = {"name": "motor", "center": (0.0, 0.0), "radius": 0.05, "speed": {"kind": "constant", "value": 100.0}}
+    second = {"name": "driven", "center": (0.3, 0.0), "radius": 0.05, "inertia": 0.01} | driven
+    return Drive(belt=belt, pulley=[first, second], simulation={"duration": 1.0, "output_interval": 1e-2})
+
+
+@pytest.mark.parametrize(
+    ("load", "asked"),
+    [
+        ({"torque": {"kind": "constant", "value": -40.0}}, 40.0),
+        ({"load": [{"kind": "resistance", "constant": 40.0}]}, 40.0),
+        ({"load": [{"kind": "fan", "rated_power": "6 kW", "rated_speed": "955 rpm"}]}, 60.0),
+    ],
+)
+def test_what_is_transmitted_and_what_is_asked_for(load: dict[str, Any], asked: float) -> None:
+    """Asked for is the torque of the load, that of a fan at the speed which the pulley still has."""
+    with pytest.raises(ConvergenceError) as caught:
+        steady_state(drive(**load))
+    found = NUMBERS.search(str(caught.value))
+    assert found, str(caught.value)
+    most, wanted = map(float, found.groups()[1:])
+    assert found[1] == "driven"
+    assert wanted == pytest.approx(asked, rel=0.02)
+    limit = float(traction(drive(torque={"kind": "constant", "value": -1.0}), points=8).dataset.limit_torque)
+    assert 0.9 * limit < most < 1.02 * limit
