@@ -56,7 +56,6 @@ ELSEWHERE = {
     "solve/steady_running/neighbour.py": "unit/solve/test_steady.py",
     "solve/steady_running/refinement.py": "unit/solve/test_steady.py",
     "solve/steady_running/search.py": "unit/solve/test_steady.py",
-    "solve/steady_running/slip_limit.py": "unit/solve/test_steady.py",
     "solve/studies/point_work.py": "unit/solve/test_study.py",
     "solve/studies/study_rows.py": "unit/solve/test_study.py",
     "solve/studies/study_table.py": "unit/solve/test_study.py",
