@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
-from beltdyn.results.balance import power_balance
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.closure import largest_closure, largest_numerical_share
 
@@ -61,7 +60,7 @@ def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
     Torques of prescribed shafts ripple as elements pass. Outputs that meet each of them at the same place give a mean
     torque and power that are off.
     """
-    balance = power_balance(evidence.recorded, evidence.window)
+    balance = evidence.balance
     missing = balance.power_in - balance.power_out - balance.lost - balance.stored
     closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT
     if evidence.window.turns and closes and abs(missing) > POWER_LIMIT * balance.power_in > 0.0:

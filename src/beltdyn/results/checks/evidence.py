@@ -9,6 +9,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
+from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.means import PulleySummary, pulley_means
 from beltdyn.results.recorded import Recorded
@@ -48,6 +49,11 @@ class Evidence:
     def pulleys(self) -> tuple[PulleySummary, ...]:
         """Means of the pulleys over the end of the run."""
         return pulley_means(self.recorded, self.drive, self.window)
+
+    @cached_property
+    def balance(self) -> Balance:
+        """Powers over the end of the run."""
+        return power_balance(self.recorded, self.window)
 
 
 Check = Callable[[Evidence], Iterator[Finding]]

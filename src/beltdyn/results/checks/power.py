@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.parts.quantity import RPM
-from beltdyn.results.balance import Balance, power_balance
+from beltdyn.results.balance import Balance
 from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.recorded import attribute
 
@@ -26,7 +26,7 @@ _GIVES = 0.01
 
 def negative_losses(evidence: Evidence) -> Iterator[Finding]:
     """Losses that give power in the mean, against the second law."""
-    balance = power_balance(evidence.recorded, evidence.window)
+    balance = evidence.balance
     giving = {cause: power for cause, power in balance.losses.items() if -power > GAIN_LIMIT * balance.power_in}
     if giving and balance.power_in > 0.0:
         point = evidence.drive.contact.moment_arm == "point" and "friction" in giving
@@ -42,7 +42,7 @@ def negative_losses(evidence: Evidence) -> Iterator[Finding]:
 
 def damping_share(evidence: Evidence) -> float:
     """Part of the power put in that contact damping takes; zero of a drive that takes no power out."""
-    balance = power_balance(evidence.recorded, evidence.window)
+    balance = evidence.balance
     loaded = min(balance.power_in, balance.power_out) > 0.0
     return balance.losses["contact damping"] / balance.power_in if loaded else 0.0
 
@@ -62,7 +62,7 @@ def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
 
     Where vibrations grow it is they that take it: see `beltdyn.results.checks.flutter`.
     """
-    balance, share = power_balance(evidence.recorded, evidence.window), damping_share(evidence)
+    balance, share = evidence.balance, damping_share(evidence)
     power, drive = balance.losses["contact damping"], evidence.drive
     if share > DAMPING_LIMIT and not may_flutter(evidence):
         # beyond critical damping the loss no longer grows with the damping
