@@ -129,7 +129,7 @@ def mode_shape(result: Result, mode: int = 1, *, ax: Axes | None = None) -> Axes
     numbers = result.dataset["mode"].values
     if mode not in numbers:
         raise ModelError(
-            f"mode = {mode} is none of this result, which has modes 1 to {numbers[-1]}. Give one of these."
+            f"mode = {mode} is none of this result, which has modes {', '.join(map(str, numbers))}. Give one of these."
         )
     ax = axes_or_new(ax, size_of(result.drive))
     ModePicture(result, mode, ax).show(0.0)

@@ -1,6 +1,7 @@
 """What is written of a result for a reader: tables and facts, as the screen, notebooks and reports show them."""
 
 import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from beltdyn.analyses import STUDY
@@ -42,15 +43,30 @@ def sheet(result: Result) -> Sheet:
     variables = dataset.data_vars.values()
     numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]
     axes = tuple(str(dataset.attrs.get("axes", "")).split())
-    tables = []
+    tables, left_out = list[Table](), _AMONG_WARNINGS | {dataset.attrs.get("tables_by")}
     for dims in dict.fromkeys([axes, *((str(dimension),) for dimension in dataset.dims)]):
-        columns = [one for one in variables if dims and one.dims == dims and one.name not in _AMONG_WARNINGS]
+        columns = [one for one in variables if dims and one.dims == dims and one.name not in left_out]
         if columns and all(dimension in dataset.coords for dimension in dims):
             labels = [one for one in dataset.coords.values() if one.dims and set(one.dims) <= set(dims)]
             shown = [*(one.broadcast_like(columns[0]) for one in labels), *columns]
-            rows = zip(*map(_column, shown), strict=True)
-            tables.append(Table("", tuple(map(_heading, shown)), tuple(rows)))
+            tables += _tables(shown, dataset.get(dataset.attrs.get("tables_by")))
     return Sheet(str(dataset.attrs["title"]), (*([Facts(tuple(numbers))] if numbers else []), *tables))
+
+
+def _tables(shown: "Sequence[xr.DataArray]", group: "xr.DataArray | None") -> list[Table]:
+    """A table of columns; or one for each word of a variable along their rows, below that word."""
+    headings, rows = tuple(map(_heading, shown)), list(zip(*map(_column, shown), strict=True))
+    if group is None or group.dims != shown[0].dims:
+        return [Table("", headings, tuple(rows))]
+    words = [str(one) for one in group.values]
+    return [
+        Table(
+            word[:1].upper() + word[1:],
+            headings,
+            tuple(row for row, own in zip(rows, words, strict=True) if own == word),
+        )
+        for word in dict.fromkeys(words)
+    ]
 
 
 def _single(variable: "xr.DataArray") -> str:

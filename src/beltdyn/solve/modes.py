@@ -1,11 +1,12 @@
 """An analysis: the modes of a drive, with frequency, damping and shape, about rest or about steady running."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beltdyn.arrays import ComplexArray
+from beltdyn.arrays import BoolArray, ComplexArray, IntArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
@@ -16,7 +17,7 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of
-from beltdyn.solve.vibration.eigenvalues import pencil, swinging
+from beltdyn.solve.vibration.eigenvalues import MOST_SWINGING, pencil, swinging, swings
 from beltdyn.solve.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
 from beltdyn.solve.vibration.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
 
@@ -25,6 +26,12 @@ STEADY: str = "steady"
 SLIDING: str = "sliding"
 STUCK: str = "stuck"
 """Whether tensioners with dry friction move in a mode, without it, or are held by it."""
+LIGHT = 0.5
+"""Damping ratio below which a mode counts as lightly damped: at resonance a force moves one damped so by 15 % more than
+the same force does if it stays, 1 / (2 z sqrt(1 - z^2)), and one damped more by less."""
+FIRST_STUCK = MOST_SWINGING + 2
+"""Number of the first mode with stuck tensioners, however many there are with sliding ones."""
+_GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: hardly resonates)")
 _GROWS = 1e-6
 """Growth rate of a mode that grows by itself, over its angular frequency."""
 _MODE = ("mode",)
@@ -32,6 +39,7 @@ _MODE = ("mode",)
 VARIABLES = {
     "frequency": Variable(_MODE, "Hz", "Frequency"),
     "damping_ratio": Variable(_MODE, "1", "Damping ratio"),
+    "damping": Variable(_MODE, "1", "Whether it is lightly or heavily damped", "str"),
     "growth_rate": Variable(_MODE, "1/s", "Growth rate, below zero where the mode decays"),
     "kind": Variable(_MODE, "1", "Kind, by the shares of kinetic energy", "str"),
     "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
@@ -87,6 +95,10 @@ def modes(
     Where tensioners have dry friction, modes are given twice: with tensioners that slide without it, and with stuck
     ones.
 
+    Modes are numbered from the lowest frequency on, those with stuck tensioners from 101 on. Those with a damping ratio
+    below 0.5 come first, then those that hardly resonate, such as motions of a tensioner that the creep of the belt
+    damps.
+
     Parameters
     ----------
     drive
@@ -100,7 +112,8 @@ def modes(
     at
         At which instant loads and schedules are taken, s; by default at the end of the simulation.
     count
-        How many modes to give, from the lowest frequency on.
+        How many lightly damped modes to give, from the lowest frequency on, up to 99. Heavily damped ones between them
+        are given, too, 99 modes in all at most.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh of steady running is refined; by
         default that of the drive, 0.01.
@@ -148,7 +161,7 @@ def modes_about(motions: SmallMotions, count: int) -> Result:
     motions
         The drive about the state.
     count
-        How many modes to give, from the lowest frequency on.
+        How many lightly damped modes to give, from the lowest frequency on.
     """
     points, dry = belt_points(motions), dry_tensioners(motions.drive)
     found = [_find(motions, points, count, SLIDING if dry.size else "")]
@@ -161,6 +174,8 @@ def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: 
     """Make sure that the options make sense."""
     if count < 1:
         raise ModelError(f"count = {count} modes are none. Give 1 or more.")
+    if count > MOST_SWINGING:
+        raise ModelError(f"count = {count} is more than the {MOST_SWINGING} modes that are found. Give fewer.")
     if isinstance(about, Run):
         if not runs_steadily(about.dataset):
             raise ModelError(
@@ -192,7 +207,14 @@ def _running(run: Run) -> str:
     return f"in steady running with {name} at {RPM * speed:.4g} rpm"
 
 
-def eigenmodes(motions: SmallMotions, count: int) -> tuple[ComplexArray, ComplexArray]:
+def lightly_damped(values: ComplexArray) -> BoolArray:
+    """Which eigenvalues (1/s) have a damping ratio below `LIGHT`."""
+    return np.asarray(-values.real < LIGHT * np.abs(values))
+
+
+def eigenmodes(
+    motions: SmallMotions, count: int, *, counted: Callable[[ComplexArray], BoolArray] = swings
+) -> tuple[ComplexArray, ComplexArray]:
     """Modes of a drive about a state, from the lowest frequency on.
 
     Parameters
@@ -200,7 +222,9 @@ def eigenmodes(motions: SmallMotions, count: int) -> tuple[ComplexArray, Complex
     motions
         The drive about the state.
     count
-        How many, at most.
+        How many of those that are counted, at most.
+    counted
+        As for `swinging`.
 
     Returns
     -------
@@ -215,7 +239,7 @@ def eigenmodes(motions: SmallMotions, count: int) -> tuple[ComplexArray, Complex
         If nothing swings.
     """
     given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
-    values, vectors = swinging(given, count)
+    values, vectors = swinging(given, count, counted=counted)
     if not values.size:
         raise ConvergenceError("the drive has no mode that swings. Check its masses, stiffnesses and damping.")
     return values, given.coordinates(values, vectors)
@@ -223,21 +247,25 @@ def eigenmodes(motions: SmallMotions, count: int) -> tuple[ComplexArray, Complex
 
 def _find(motions: SmallMotions, points: Points, count: int, dry: str) -> _Found:
     """Modes of a drive about a state."""
-    values, coordinates = eigenmodes(motions, count)
+    values, coordinates = eigenmodes(motions, count, counted=lightly_damped)
     shapes = shapes_of(motions, points, coordinates)
     return _Found(values, shapes, shares_of(motions, points, values, coordinates), dry)
 
 
 def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Result:
-    """Modes as a result, sliding tensioners before stuck ones."""
+    """Modes as a result: lightly damped ones first, of these those with sliding tensioners."""
     drive, values = motions.drive, np.concatenate([one.values for one in found])
     shapes = Shapes(*(np.concatenate(parts) for parts in zip(*(one.shapes for one in found), strict=True)))
     shares = Shares(*(np.concatenate(parts) for parts in zip(*(one.shares for one in found), strict=True)))
     each, names = [shares.of(number) for number in range(values.size)], part_names(drive)
+    light = lightly_damped(values)
+    firsts = (1, FIRST_STUCK)[: len(found)]
+    numbers = np.concatenate([first + np.arange(one.values.size) for first, one in zip(firsts, found, strict=True)])
     tensioners = [one.pulley for one in drive.moving_tensioners]
     arrays: dict[str, ArrayLike] = {
         "frequency": values.imag / (2.0 * np.pi),
         "damping_ratio": -values.real / np.abs(values),
+        "damping": [_GROUPS[0 if one else 1] for one in light],
         "growth_rate": values.real,
         "kind": [one.kind for one in each],
         "moving_parts": [one.parts(names) for one in each],
@@ -254,7 +282,7 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         "point_span": points.span,
     }
     labels: dict[str, ArrayLike] = {
-        "mode": np.arange(1, values.size + 1),
+        "mode": numbers,
         "part": ["real", "imaginary"],
         "axis": list(AXIS_NAMES),
         "pulley": [one.name for one in drive.pulleys],
@@ -263,13 +291,15 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         "point_coordinate": points.along,
     }
     absent = {*(() if tensioners else ("tensioner",)), *(() if found[0].dry else ("dry_tensioners",))}
-    return build_result(
+    made = build_result(
         "modes",
         drive,
         {name: (one, arrays[name]) for name, one in VARIABLES.items() if absent.isdisjoint((name, *one.dims))},
         {name: (one, labels[name]) for name, one in _COORDINATES.items() if name not in absent},
-        list(_warnings(values)),
+        list(_warnings(numbers, values)),
     )
+    ordered = made.dataset.isel(mode=np.argsort(~light, kind="stable")).assign_attrs(tables_by="damping")
+    return Result(ordered, drive)
 
 
 def _parts(shape: ComplexArray) -> ArrayLike:
@@ -277,12 +307,12 @@ def _parts(shape: ComplexArray) -> ArrayLike:
     return np.stack([shape.real, shape.imag], axis=1)
 
 
-def _warnings(values: ComplexArray) -> list[str]:
+def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
     """What grows by itself."""
-    growing = [number for number, one in enumerate(values, 1) if one.real > _GROWS * one.imag]
+    growing = [(number, one.real) for number, one in zip(numbers, values, strict=True) if one.real > _GROWS * one.imag]
     if not growing:
         return []
-    named = ", ".join(f"{number} ({values[number - 1].real:.3g} 1/s)" for number in growing)
+    named = ", ".join(f"{number} ({rate:.3g} 1/s)" for number, rate in growing)
     return [
         f"modes grow by themselves: {named}. The drive does not stay in this state. Add damping, or look at a run over "
         "time with `beltdyn run`."

@@ -28,7 +28,7 @@ def test_a_shape(found: bd.Result) -> None:
 
 
 def test_an_unknown_mode(found: bd.Result) -> None:
-    with pytest.raises(ModelError, match="mode = 9 is none of this result, which has modes 1 to 3"):
+    with pytest.raises(ModelError, match="mode = 9 is none of this result, which has modes 1, 2, 3"):
         plot.mode_shape(found, 9)
 
 

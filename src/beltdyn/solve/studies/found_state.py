@@ -110,8 +110,8 @@ class FoundState(ABC):
         """The mode of which a variable of `OF_MODES` is."""
         if OF_MODES[variable].dims == ("span",):
             return self._mode_of_span(label)
-        found, number = self._first(MODES), int(label)
-        return found[number - 1] if number <= len(found) else None
+        number = int(label)
+        return next((mode for mode in self._first(MODES) if mode.number == number), None)
 
     def _mode_of_span(self, span: str) -> Mode | None:
         """The lowest mode in which a span swings most."""

@@ -10,6 +10,7 @@ from beltdyn.parts.messages import suggest
 from beltdyn.results import Run, Variable
 from beltdyn.results.static import OWN
 from beltdyn.results.summary import means_of
+from beltdyn.solve.modes import FIRST_STUCK
 from beltdyn.solve.steady_running.operating_points import VARIABLES, labels_of, values_by_name
 from beltdyn.solve.vibration.small_motions import dry_tensioners
 
@@ -107,7 +108,8 @@ def names_of(drive: Drive, *, at_rest: bool = False) -> list[str]:
 
 def _numbers_of_modes(drive: Drive) -> list[str]:
     """Numbers of modes, as `beltdyn modes` gives them."""
-    return [str(one + 1) for one in range(MODES * (2 if dry_tensioners(drive).size else 1))]
+    firsts = (1, FIRST_STUCK) if dry_tensioners(drive).size else (1,)
+    return [str(first + one) for first in firsts for one in range(MODES)]
 
 
 def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of") -> list[str]:

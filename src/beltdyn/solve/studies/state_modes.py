@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.solve.modes import eigenmodes
+from beltdyn.solve.modes import FIRST_STUCK, eigenmodes
 from beltdyn.solve.vibration.mode_shapes import belt_points, shares_of
 from beltdyn.solve.vibration.small_motions import SmallMotions, dry_tensioners
 
@@ -32,6 +32,8 @@ _ITERATIONS = 3
 class Mode(NamedTuple):
     """A mode of a drive."""
 
+    number: int
+    """As in the results of `modes`."""
     value: complex
     """Growth rate and angular frequency, 1/s."""
     kind: str
@@ -101,7 +103,9 @@ class FoundModes:
             How many, at most.
         """
         if count not in self._known:
-            self._known[count] = [_Lowest(motions, count) for motions in self._motions]
+            self._known[count] = [
+                _Lowest(motions, count, first) for first, motions in zip((1, FIRST_STUCK), self._motions, strict=False)
+            ]
         return self._known[count]
 
 
@@ -145,7 +149,7 @@ class _Group(NamedTuple):
 class _Lowest:
     """The lowest modes about a state, and what follows them."""
 
-    def __init__(self, motions: SmallMotions, count: int) -> None:
+    def __init__(self, motions: SmallMotions, count: int, first: int) -> None:
         self._motions = motions
         self._values, self._vectors = eigenmodes(motions, count)
         shares = shares_of(motions, belt_points(motions), self._values, self._vectors)
@@ -153,7 +157,7 @@ class _Lowest:
         self._alike = _alike(self._values)
         counts = {number: len(members) for members in self._alike for number in members}
         self.modes = [
-            Mode(complex(value), one.kind, one.span, counts[number])
+            Mode(first + number, complex(value), one.kind, one.span, counts[number])
             for number, (value, one) in enumerate(zip(self._values, each, strict=True))
         ]
 

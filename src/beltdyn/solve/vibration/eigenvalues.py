@@ -4,6 +4,7 @@ A motion that meets no force, such as that of a free pulley that turns, gives a 
 anywhere, and turn on.  Its rate takes its place as the unknown, which leaves no such pair.
 """
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,6 +31,8 @@ _SLOWEST = 1e-6
 _RATE = 1000.0
 """w, rad/s."""
 _MOST_SHIFTS = 400
+MOST_SWINGING = 99
+"""Eigenvalues that swing, counted or not, with which a search ends, unless more are asked for."""
 _INFINITE = 1e10
 """Magnitude from which on an eigenvalue is that of a constraint or of a coordinate without mass, 1/s."""
 
@@ -179,7 +182,14 @@ def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, Co
     )
 
 
-def swinging(given: Pencil, count: int, first: float = 10.0) -> tuple[ComplexArray, ComplexArray]:
+def swings(values: ComplexArray) -> BoolArray:
+    """Which eigenvalues swing: those with a positive imaginary part, but for rounding."""
+    return np.asarray((values.imag > _SWINGS * np.abs(values)) & (np.abs(values) > _SLOWEST))
+
+
+def swinging(
+    given: Pencil, count: int, first: float = 10.0, *, counted: Callable[[ComplexArray], BoolArray] = swings
+) -> tuple[ComplexArray, ComplexArray]:
     """Eigenvalues that swing, from the slowest on, with their eigenvectors in columns.
 
     Parameters
@@ -187,15 +197,17 @@ def swinging(given: Pencil, count: int, first: float = 10.0) -> tuple[ComplexArr
     given
         The pencil.
     count
-        How many.
+        How many of those that are counted.
     first
         Where to begin to look, rad/s.
+    counted
+        Which of those that swing are counted; all by default. Those between them are given, too.
 
     Returns
     -------
     values : ndarray, shape (k,)
         Growth rate and angular frequency above zero, 1/s; of each conjugate pair one. Fewer than `count` where the
-        pencil has no more.
+        pencil has no more, and at most `MOST_SWINGING` or `count`, whichever is more.
     vectors : ndarray, shape (size, k)
 
     Raises
@@ -206,28 +218,29 @@ def swinging(given: Pencil, count: int, first: float = 10.0) -> tuple[ComplexArr
     if given.size <= _SMALL:
         found, shapes = all_eigenvalues(given)
     else:
-        found, shapes = _band_by_band(given, count, first)
+        found, shapes = _band_by_band(given, count, first, counted)
     chosen = np.flatnonzero(swings(found))
-    chosen = chosen[np.argsort(found[chosen].imag)][:count]
+    chosen = chosen[np.argsort(found[chosen].imag)][: max(count, MOST_SWINGING)]
+    enough = int(np.searchsorted(np.cumsum(counted(found[chosen])), count))
+    chosen = chosen[: enough + 1]
     return found[chosen], shapes[:, chosen]
 
 
-def swings(values: ComplexArray) -> BoolArray:
-    """Which eigenvalues swing: those with a positive imaginary part, but for rounding."""
-    return np.asarray((values.imag > _SWINGS * np.abs(values)) & (np.abs(values) > _SLOWEST))
-
-
-def _band_by_band(given: Pencil, count: int, first: float) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues in neighbouring bands of frequencies, until enough of them swing."""
+def _band_by_band(
+    given: Pencil, count: int, first: float, counted: Callable[[ComplexArray], BoolArray]
+) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues in neighbouring bands of frequencies, until enough of them swing and are counted."""
     values, shapes = list[ComplexArray](), list[ComplexArray]()
-    low, ahead, number = 0.0, first, 0
+    low, ahead, number, every = 0.0, first, 0, 0
     for _ in range(_MOST_SHIFTS):
         found, vectors, high = _band(given, low, ahead)
         inside = (found.imag > low) & (found.imag <= high) & (np.abs(found) < _INFINITE)
         values.append(found[inside])
         shapes.append(vectors[:, inside])
-        number += int(np.count_nonzero(swings(found[inside])))
-        if number >= count or not np.isfinite(high):
+        swing = swings(found[inside])
+        every += int(np.count_nonzero(swing))
+        number += int(np.count_nonzero(swing & counted(found[inside])))
+        if number >= count or every >= max(count, MOST_SWINGING) or not np.isfinite(high):
             break
         low, ahead = high, 0.5 * (high - low)
     return np.concatenate(values), np.concatenate(shapes, axis=1)
