@@ -13,7 +13,7 @@ from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
-    from beltdyn.results import Result
+    from beltdyn.results import Result, Run
 
 DOUBTFUL = 4
 
@@ -78,7 +78,7 @@ def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> N
         show(f"Report: {write_report(open_result(path), report_file([path]), force)}")
 
 
-def analyse_to(analysis: Analysis, drive: "Drive", path: Path, force: bool = False, **options: Any) -> "Result":
+def analyse_to(analysis: Analysis, drive: "Drive | Run", path: Path, force: bool = False, **options: Any) -> "Result":
     """Analyse a drive into a file with a progress bar, and show the result.
 
     Raises

@@ -1,4 +1,4 @@
-"""An analysis: the modes of a drive, with frequency, damping and shape, about rest or about steady running."""
+"""An analysis: the modes of a drive, with frequency, damping and shape, about rest, steady running or a run's state."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -17,18 +17,16 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of
-from beltdyn.solve.vibration.eigenvalues import MOST_SWINGING, pencil, swinging, swings
+from beltdyn.solve.vibration.eigenvalues import LIGHT, MOST_SWINGING, lightly_damped, pencil, swinging, swings
 from beltdyn.solve.vibration.mode_shapes import Points, Shapes, Shares, belt_points, part_names, shapes_of, shares_of
-from beltdyn.solve.vibration.small_motions import SmallMotions, about_rest, about_steady, dry_tensioners
+from beltdyn.solve.vibration.run_state import instant_of
+from beltdyn.solve.vibration.small_motions import SmallMotions, about_instant, about_rest, about_steady, dry_tensioners
 
 REST: str = "rest"
 STEADY: str = "steady"
 SLIDING: str = "sliding"
 STUCK: str = "stuck"
 """Whether tensioners with dry friction move in a mode, without it, or are held by it."""
-LIGHT = 0.5
-"""Damping ratio below which a mode counts as lightly damped: at resonance a force moves one damped so by 15 % more than
-the same force does if it stays, 1 / (2 z sqrt(1 - z^2)), and one damped more by less."""
 FIRST_STUCK = MOST_SWINGING + 2
 """Number of the first mode with stuck tensioners, however many there are with sliding ones."""
 _GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: hardly resonates)")
@@ -78,7 +76,7 @@ class _Found(NamedTuple):
 
 
 def modes(
-    drive: Drive,
+    drive: Drive | Run,
     *,
     about: str | Run = STEADY,
     speed: str | None = None,
@@ -102,15 +100,17 @@ def modes(
     Parameters
     ----------
     drive
-        The drive.
+        The drive. In its place a run stands for its drive and for `about`.
     about
-        "steady" or "rest"; or the results of `steady_state`, whose drive counts then.
+        "steady" or "rest"; or the results of `steady_state`, or of a run over time on a mesh that stays, whose drive
+        counts then. The state of a run at an instant is taken as if it stayed.
     speed
         Speed of the pulley that drives, such as "800 rpm", in place of its motor; by default it turns as its file says.
     pulley
         The pulley whose speed is prescribed by `speed`; by default the one that drives.
     at
-        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+        At which instant loads and schedules are taken, s; by default at the end of the simulation. Of a run over time
+        an instant at which its belt was recorded, by default the last.
     count
         How many lightly damped modes to give, from the lowest frequency on, up to 99. Heavily damped ones between them
         are given, too, 99 modes in all at most.
@@ -140,8 +140,15 @@ def modes(
     >>> found.dataset.kind.values.tolist()
     ['rotational', 'span', 'span']
     """
+    if isinstance(drive, Run):
+        if about != STEADY:
+            raise ModelError("about does not go with a run in place of the drive, which is the state. Leave it out.")
+        about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
-    if isinstance(about, Run):
+    if isinstance(about, Run) and not runs_steadily(about.dataset):
+        drive, instant = about.drive, instant_of(about, at)
+        motions, state = about_instant(about, instant), f"in its run at t = {instant:.6g} s"
+    elif isinstance(about, Run):
         motions, state = about_steady(about), _running(about)
     elif about == REST:
         motions, state = about_rest(drive), "at rest"
@@ -176,16 +183,15 @@ def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: 
         raise ModelError(f"count = {count} modes are none. Give 1 or more.")
     if count > MOST_SWINGING:
         raise ModelError(f"count = {count} is more than the {MOST_SWINGING} modes that are found. Give fewer.")
-    if isinstance(about, Run):
-        if not runs_steadily(about.dataset):
-            raise ModelError(
-                "about holds no steady running, but a run over time. Give what `steady_state` has returned."
-            )
-    elif about not in (REST, STEADY):
+    if not isinstance(about, Run) and about not in (REST, STEADY):
         raise ModelError(
-            f'about = {about!r} is no state. Give "{REST}", "{STEADY}", or what `steady_state` has returned.'
+            f'about = {about!r} is no state. Give "{REST}", "{STEADY}", or what `steady_state` or `simulate` has '
+            "returned."
         )
-    if about != STEADY and any(one is not None for one in (speed, pulley, at)):
+    if isinstance(about, Run) and not runs_steadily(about.dataset):
+        if speed is not None or pulley is not None:
+            raise ModelError("speed and pulley do not go with a run over time, which has its speeds. Leave them out.")
+    elif about != STEADY and any(one is not None for one in (speed, pulley, at)):
         raise ModelError(f'speed, pulley and at go with about = "{STEADY}" alone. Leave them out.')
     if pulley is not None and speed is None:
         raise ModelError(f"pulley = {pulley!r} names whose speed to prescribe, and there is no speed. Give speed.")
@@ -205,11 +211,6 @@ def _running(run: Run) -> str:
     """The state of steady running in words."""
     name, speed = run.drive.pulleys[0].name, float(run.dataset["pulley_speed"][-1, 0])
     return f"in steady running with {name} at {RPM * speed:.4g} rpm"
-
-
-def lightly_damped(values: ComplexArray) -> BoolArray:
-    """Which eigenvalues (1/s) have a damping ratio below `LIGHT`."""
-    return np.asarray(-values.real < LIGHT * np.abs(values))
 
 
 def eigenmodes(

@@ -32,7 +32,7 @@ def found(loaded: Drive) -> bd.Result:
 def test_modes_are_those_of_each_speed(found: bd.Result, loaded: Drive) -> None:
     """Within the error of their meshes, which are others: up to 1 % of contact forces."""
     for speed in (60.0, 120.0):
-        alone = modes(loaded, speed=f"{speed} rad/s", count=3).dataset
+        alone = modes(loaded, speed=f"{speed} rad/s", count=3).dataset.sel(mode=[1, 2, 3])
         there = found.dataset.sel(speed=speed)
         known = np.argsort(there.frequency.values)[:3]
         np.testing.assert_allclose(there.frequency.values[known], alone.frequency, rtol=5e-3)

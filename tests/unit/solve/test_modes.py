@@ -13,8 +13,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.results.sheet import sheet
 from beltdyn.results.sheet_parts import Table
-from beltdyn.solve.modes import LIGHT, lightly_damped, modes
-from beltdyn.solve.vibration.eigenvalues import pencil, swinging
+from beltdyn.solve.modes import modes
+from beltdyn.solve.vibration.eigenvalues import LIGHT, lightly_damped, pencil, swinging
 
 
 @pytest.fixture(scope="module")

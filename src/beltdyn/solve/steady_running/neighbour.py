@@ -81,7 +81,7 @@ def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
         state.position[-system.tensioners.size :] += found.tensioner_position.values
     bodies = state.velocity[system.first_body :]
     bodies[: found.pulley_speed.size] = found.pulley_speed.values
-    _take_along(system, bodies, found.shaft_speed.values)
+    take_along(system, bodies, found.shaft_speed.values)
     search = SteadySearch(drive, system, state, time)
     faster = _faster(search.constant, bodies)
     bodies *= faster
@@ -89,7 +89,7 @@ def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
     return search
 
 
-def _take_along(system: System, bodies: FloatArray, shafts: FloatArray) -> None:
+def take_along(system: System, bodies: FloatArray, shafts: FloatArray) -> None:
     """Give the bodies of hub chains their speeds, from those of the rims, which are in place, and of the shafts."""
     for link in system.links:
         bodies[link.back] = bodies[link.front]

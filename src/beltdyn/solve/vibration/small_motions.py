@@ -17,6 +17,7 @@ from beltdyn.solve.rest.static import standing
 from beltdyn.solve.rest.staying import Standing, anchor_at, bring_to_stand
 from beltdyn.solve.steady_running.flowing_start import with_passage
 from beltdyn.solve.steady_running.neighbour import search_from
+from beltdyn.solve.vibration.run_state import state_of
 from beltdyn.solve.vibration.vibrations import Vibrations
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
@@ -167,7 +168,24 @@ def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
     """
     search = search_from(run.drive, run, float(run.dataset.attrs["steady_at"]))
     search.resume()
-    system, state = search.constant, search.state
+    return _in_motion(run.drive, search.constant, search.state, search.belt_parameter, all_shafts=all_shafts)
+
+
+def about_instant(run: Run, time: float) -> SmallMotions:
+    """A drive at an instant of a run over time, as if it stayed in that state.
+
+    Parameters
+    ----------
+    run
+        On a mesh that stays.
+    time
+        From `instant_of`, s.
+    """
+    return _in_motion(run.drive, *state_of(run, time))
+
+
+def _in_motion(drive: Drive, system: System, state: State, speed: float, *, all_shafts: bool = False) -> SmallMotions:
+    """A drive whose belt passes at a speed, m/s, with hub chains that transmit the moments of the belt."""
     rims = slice(system.first_body, state.position.size - system.tensioners.size)
     seen = body_forces_at(system, np.zeros(1), state.position[None].copy(), state.velocity[None].copy())
     state.position[rims] = twists(system, seen.moment[0])
@@ -175,7 +193,7 @@ def about_steady(run: Run, *, all_shafts: bool = False) -> SmallMotions:
         bodies = system.bodies.copy()
         bodies["unknown"] = np.arange(bodies.size)
         system = system._replace(bodies=bodies)
-    return _linearised(run.drive, system, state, search.belt_parameter)
+    return _linearised(drive, system, state, speed)
 
 
 def _linearised(drive: Drive, held: System, state: State, speed: float) -> SmallMotions:
