@@ -14,6 +14,7 @@ from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error
 from beltdyn.cli.demo import demo
+from beltdyn.cli.export import export
 from beltdyn.cli.new import new
 from beltdyn.cli.page import app as page
 from beltdyn.cli.paper import paper
@@ -37,7 +38,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, check),
     *ANALYSES.values(),
-    *(study, plot, report, page, demo, paper, catalogue, schema),
+    *(study, plot, report, export, page, demo, paper, catalogue, schema),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

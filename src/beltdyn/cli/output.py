@@ -46,7 +46,7 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
     """
     from beltdyn.results.atomic import require_replaceable
     from beltdyn.results.dataset import is_result
-    from beltdyn.results.tables import require_tables
+    from beltdyn.results.tables import require_tables, tables_folder
 
     if path.resolve() in {file.resolve() for file in files}:
         raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
@@ -59,14 +59,10 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
         require_report(report_file([path]), force)
 
 
-def tables_folder(path: Path) -> Path:
-    """Where the tables of a result file are written."""
-    return path.with_name(f"{path.stem}-tables")
-
-
 def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
     """Write what is asked for beside a result file, and name it; nothing of a run without outputs."""
-    from beltdyn.results import Run, open_result, write_csv
+    from beltdyn.results import Run, open_result
+    from beltdyn.results.tables import tables_folder, write_csv
 
     if isinstance(result, Run) and not result.outputs:
         return

@@ -15,10 +15,10 @@ from numpy.typing import ArrayLike
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive, Path, Pulley
-from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, label, tension_colors
 from beltdyn.plot.tensioner import TensionerPicture
 from beltdyn.results import Run, StaticResult
+from beltdyn.results.curve import centerline
 from beltdyn.results.mechanics import element_lengths, recorded_kind
 
 _ARROW_RADIUS = 0.62

@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from beltdyn.arrays import FloatArray
-from beltdyn.plot.curve import centerline
 from beltdyn.plot.drive import extent_of
 from beltdyn.results import Run
+from beltdyn.results.curve import centerline
 from beltdyn.results.mechanics import element_lengths, recorded_kind
 
 _POINTS = 480

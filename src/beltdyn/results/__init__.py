@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.checks import Finding
+from beltdyn.results.export import export
 from beltdyn.results.layout import Layout
 from beltdyn.results.limits import KeyNumber, key_numbers
 from beltdyn.results.means import PulleySummary, SpanSummary, TensionerSummary
@@ -49,6 +50,7 @@ __all__ = [
     "derived",
     "describe_size",
     "expected_bytes",
+    "export",
     "key_numbers",
     "mesh_error_attribute",
     "open_result",

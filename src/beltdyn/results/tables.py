@@ -69,19 +69,24 @@ _SPAN_SUMMARY = ("span", "tension [N]", "least tension [N]", "largest tension [N
 _LOSS_SUMMARY = ("cause", "power [W]", "share of the power put in [1]", "energy since the start [J]")
 
 _FIRST_HEADINGS = {
-    **dict.fromkeys(("pulleys.csv", "spans.csv", "energy.csv", "tensioners.csv"), "time [s]"),
-    "contact.csv": "belt_coordinate [m]",
-    "pulley_summary.csv": _PULLEY_SUMMARY[0],
-    "span_summary.csv": _SPAN_SUMMARY[0],
-    "losses.csv": _LOSS_SUMMARY[0],
+    **dict.fromkeys(("pulleys", "spans", "energy", "tensioners"), "time [s]"),
+    "contact": "belt_coordinate [m]",
+    "pulley_summary": _PULLEY_SUMMARY[0],
+    "span_summary": _SPAN_SUMMARY[0],
+    "losses": _LOSS_SUMMARY[0],
 }
 """Every table of a run -> how it starts."""
 
-_OF_NAMES = ("point.csv", "pulley.csv", "span.csv", "tensioner.csv", "state.csv")
+_OF_NAMES = ("point", "pulley", "span", "tensioner", "state")
 """Tables of other results; they start with their name."""
 
+NAMES = (*_FIRST_HEADINGS, *_OF_NAMES)
+"""Names of tables."""
+
 Column = tuple[str, NDArray[Any]]
-Table = tuple[Sequence[str], Iterable[Sequence[Any]]]
+"""Its heading and its values."""
+
+Table = Sequence[Column]
 
 
 def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[Path]:
@@ -114,12 +119,50 @@ def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[
     ModelError
         If the run holds no output, a file cannot be written, or would replace one that is no such table.
     """
-    if isinstance(run, Run):
-        run.require_output()
     require_tables(folder, overwrite)
+    tables = tables_of(run)
     folder = make_folder(Path(folder))
-    tables = _tables_of_run(run) if isinstance(run, Run) else _tables_of_names(run.dataset)
-    return [_write(folder / name, overwrite, *table) for name, table in tables.items()]
+    return [_write(folder / f"{name}.csv", overwrite, table) for name, table in tables.items()]
+
+
+def tables_folder(path: Path) -> Path:
+    """Where the tables of a result file are written.
+
+    Parameters
+    ----------
+    path : Path
+        The result file.
+
+    Returns
+    -------
+    Path
+        A folder beside it, named after it.
+    """
+    return path.with_name(f"{path.stem}-tables")
+
+
+def tables_of(result: Result) -> dict[str, Table]:
+    """Tables of a result, each a list of columns: what `write_csv` writes.
+
+    Parameters
+    ----------
+    result : Result
+        A run, or another result.
+
+    Returns
+    -------
+    dict
+        Name such as "pulleys" -> headings and values, shape (rows,): numbers or names.
+
+    Raises
+    ------
+    ModelError
+        If it is a run without an output.
+    """
+    if not isinstance(result, Run):
+        return _tables_of_names(result.dataset)
+    result.require_output()
+    return _tables_of_run(result)
 
 
 def _tables_of_run(run: Run) -> dict[str, Table]:
@@ -131,29 +174,29 @@ def _tables_of_run(run: Run) -> dict[str, Table]:
         "energy": _ENERGY,
         "tensioners": _with_others(_TENSIONERS, "tensioner"),
     }
-    tables = {
-        f"{name}.csv": _table(_columns(dataset, ("time", *variables)))
+    tables: dict[str, Table] = {
+        name: list(_columns(dataset, ("time", *variables)))
         for name, variables in over_time.items()
         if variables[0] in dataset
     }
-    tables["contact.csv"] = _table(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT)))
+    tables["contact"] = list(_columns(run.fields_at(), ("belt_coordinate", *_CONTACT)))
     return tables | _summaries(summarize(run), run)
 
 
 def _tables_of_names(dataset: "xr.Dataset") -> dict[str, Table]:
     """A table of operating points, and one for each other dimension that has names."""
     axes = str(dataset.attrs.get("axes", "")).split()
-    found = {}
+    found: dict[str, Table] = {}
     if axes:
         points = dataset.stack(point=axes, create_index=False)
         numbers = np.arange(1, points.sizes["point"] + 1)
         names = [*axes, *(name for name in (*points.coords, *points.data_vars) if name not in axes)]
         along = [str(name) for name in names if "point" in points[name].dims]
-        found["point.csv"] = _table([("point", numbers), *_columns(points.transpose("point", ...), along)])
+        found["point"] = [("point", numbers), *_columns(points.transpose("point", ...), along)]
     for dim in (str(dim) for dim in dataset.dims if dim in dataset.coords and dim not in axes):
         columns = [str(name) for name, one in dataset.data_vars.items() if one.dims[:1] == (dim,)]
         if columns:
-            found[f"{dim}.csv"] = _table([(dim, dataset[dim].values), *_columns(dataset, columns)])
+            found[dim] = [(dim, dataset[dim].values), *_columns(dataset, columns)]
     return found
 
 
@@ -172,13 +215,13 @@ def require_tables(folder: Path | str, overwrite: bool = False) -> None:
     ModelError
         If there is another file.
     """
-    for name in (*_FIRST_HEADINGS, *_OF_NAMES):
-        require_replaceable(Path(folder) / name, _is_table, overwrite)
+    for name in NAMES:
+        require_replaceable(Path(folder) / f"{name}.csv", _is_table, overwrite)
 
 
 def _is_table(path: Path) -> bool:
     """Tell whether a file starts with the heading that its namesake of ours has."""
-    heading = f"{_FIRST_HEADINGS.get(path.name, path.stem)},".encode()
+    heading = f"{_FIRST_HEADINGS.get(path.stem, path.stem)},".encode()
     with suppress(OSError), path.open("rb") as file:
         return file.read(len(heading)) == heading
     return False
@@ -192,9 +235,9 @@ def _summaries(summary: Summary, run: Run) -> dict[str, Table]:
         for (name, cause), power in zip(losses_of(run.dataset).items(), balance.losses.values(), strict=True)
     ]
     return {
-        "pulley_summary.csv": (_PULLEY_SUMMARY, map(astuple, summary.pulleys)),
-        "span_summary.csv": (_SPAN_SUMMARY, map(astuple, summary.spans)),
-        "losses.csv": (_LOSS_SUMMARY, losses),
+        "pulley_summary": _table(_PULLEY_SUMMARY, map(astuple, summary.pulleys)),
+        "span_summary": _table(_SPAN_SUMMARY, map(astuple, summary.spans)),
+        "losses": _table(_LOSS_SUMMARY, losses),
     }
 
 
@@ -228,17 +271,19 @@ def _columns(dataset: "xr.Dataset", names: Iterable[str]) -> Iterable[Column]:
             yield f"{' '.join(words)}{unit}", variable.values[(slice(None), *index)]
 
 
-def _table(columns: Iterable[Column]) -> Table:
-    headings, values = zip(*columns, strict=True)
-    return headings, zip(*values, strict=True)
+def _table(headings: Sequence[str], rows: Iterable[Sequence[Any]]) -> Table:
+    """Turn rows into columns."""
+    return list(zip(headings, map(np.array, zip(*rows, strict=True)), strict=True))
 
 
-def _write(path: Path, overwrite: bool, headings: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
+def _write(path: Path, overwrite: bool, table: Table) -> Path:
+    headings, values = zip(*table, strict=True)
     with (
         atomic_path(path, _is_table, overwrite) as temporary,
         temporary.open("w", newline="", encoding="utf-8") as file,
     ):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(headings)
+        rows = zip(*values, strict=True)
         writer.writerows([value if isinstance(value, str) else f"{value:.10g}" for value in row] for row in rows)
     return path

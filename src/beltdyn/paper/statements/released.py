@@ -13,10 +13,10 @@ from beltdyn.model import Drive, install
 from beltdyn.paper.picture import picture
 from beltdyn.paper.runs import Runs
 from beltdyn.paper.statement import Finding, Number, Section, Statement, Verdict, verdict
-from beltdyn.plot.curve import centerline
 from beltdyn.plot.style import INK, PALE, color, new_figure
 from beltdyn.published import two_pulley
 from beltdyn.published.released_belt import closed, on_pulleys, release, released_belt
+from beltdyn.results.curve import centerline
 from beltdyn.solve.rest.static import Equilibrium
 
 _PAPER_ITERATIONS = 55

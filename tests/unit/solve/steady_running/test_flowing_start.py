@@ -8,9 +8,9 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Pulley
-from beltdyn.plot.curve import centerline
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import summarize
+from beltdyn.results.curve import centerline
 from beltdyn.results.derived import wear_by_arc, wear_by_belt
 from beltdyn.results.mechanics import element_lengths, recorded_kind
 from beltdyn.solve.integrators.standard import StandardIntegrator

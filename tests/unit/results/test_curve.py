@@ -3,7 +3,7 @@ import pytest
 
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.truss import TRUSS
-from beltdyn.plot.curve import centerline
+from beltdyn.results.curve import centerline
 
 
 def test_circle_is_missed_by_no_more_than_the_cubic_must() -> None:
