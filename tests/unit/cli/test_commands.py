@@ -3,6 +3,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import wraps
 from math import hypot
 from pathlib import Path
 from typing import Any
@@ -151,6 +152,11 @@ def test_schema_is_json(run_main: RunMain) -> None:
     assert "belt" in json.loads(output)["properties"]
 
 
+def put_in_place_of_simulate(monkeypatch: pytest.MonkeyPatch, stand_in: Callable[..., Run]) -> None:
+    """Let `beltdyn run` call something else; its options, which are made of the signature once, stay as they are."""
+    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", wraps(simulate)(stand_in))
+
+
 @pytest.mark.parametrize("outputs", [None, 0, 3])
 def test_a_simulation_that_cannot_go_on(
     run_main: RunMain,
@@ -163,7 +169,7 @@ def test_a_simulation_that_cannot_go_on(
 ) -> None:
     """It says where its outputs are; of an equilibrium that was not found there are none, nor in a lost file."""
 
-    def simulate(drive: Drive, output: Path) -> Run:
+    def fail(drive: Drive, output: Path, **options: Any) -> Run:
         if outputs is not None:
             recorder = FileRecorder(output, layout, attributes)
             if outputs:
@@ -171,7 +177,7 @@ def test_a_simulation_that_cannot_go_on(
             recorder.close("failed", {})
         raise ConvergenceError("no convergence at t = 0.1 s. Lower simulation.max_step.")
 
-    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", simulate)
+    put_in_place_of_simulate(monkeypatch, fail)
     code, output, message = run_main(["run", str(drive_file)])
     assert code == 3
     assert (f"What was computed is in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
@@ -183,7 +189,7 @@ def test_an_interrupted_simulation(
     run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch, make_run: Callable[..., Run]
 ) -> None:
     run = make_run(status="interrupted")
-    monkeypatch.setattr(sys.modules["beltdyn.solve.simulate"], "simulate", lambda drive, output: run)
+    put_in_place_of_simulate(monkeypatch, lambda drive, **options: run)
     code, output, _ = run_main(["run", str(drive_file), "-o", "out.nc"])
     assert code == 130
     assert "Interrupted: what was computed is kept." in output
