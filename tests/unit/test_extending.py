@@ -15,6 +15,9 @@ ROOT = Path(__file__).parents[2]
 INDEX = ROOT / "docs" / "extending.md"
 PAGES = sorted((ROOT / "docs" / "extending").glob("*.md"))
 
+COSTLY = {"surface", "normal_law", "stretch_law"}
+"""Pages whose examples compile as much as that of the friction law does, half a minute each."""
+
 BLOCK = re.compile(r"^```\{code-block\} (\w+)\n:caption: ([^\n]+)\n\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 ROW = re.compile(r"^\| .*\(extending/(\w+)\.md\).* \| (\d+) \| (\d+) \|$", re.MULTILINE)
 
@@ -109,7 +112,11 @@ def test_the_code_of_the_pages_keeps_the_rules(extended: Path) -> None:
         run(command, extended)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(page, marks=[pytest.mark.slow] if page.stem in COSTLY else []) for page in PAGES],
+    ids=lambda page: page.stem,
+)
 def test_the_example_works(page: Path, extended: Path, tmp_path: Path) -> None:
     (check,) = (block.text for block in blocks(page) if block.is_check)
     (tmp_path / "check.py").write_text(check, encoding="utf-8")
