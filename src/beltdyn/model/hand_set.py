@@ -37,19 +37,20 @@ def judge_contact(drive: Drive, installation: Installation, *, soft: bool = Fals
     soft : bool
         Whether it is told already that contact is soft.
     """
-    if not installation.tension > 0:
+    without = _without_numbers(drive.contact)
+    if without == drive.contact or not installation.tension > 0:
         return
-    chosen = _without_numbers(drive)
+    chosen = drive.replace(contact=without)
     yield from () if soft else _stiffness(drive, chosen, installation)
     yield from _damping(drive)
     yield from _friction(drive, chosen, installation)
     yield from _moment_arm(drive, installation)
 
 
-def _without_numbers(drive: Drive) -> Drive:
-    """The same drive with contact of which it chooses all numbers."""
-    kept = {key: getattr(drive.contact, key) for key in ("friction", "sampling", "integration", "quadrature_points")}
-    return drive.replace(contact=Contact(**kept))
+def _without_numbers(contact: Contact) -> Contact:
+    """The same contact with all numbers left open that a drive chooses."""
+    kept = {key: getattr(contact, key) for key in ("friction", "sampling", "integration", "quadrature_points")}
+    return Contact(**kept)
 
 
 def _stiffness(drive: Drive, chosen: Drive, installation: Installation) -> Iterator[Finding]:
