@@ -24,7 +24,7 @@ from beltdyn.model.defaults import (
 )
 from beltdyn.model.end import PathEnd, pulling
 from beltdyn.model.path import Path
-from beltdyn.model.pulley import Pulley, friction_on
+from beltdyn.model.pulley import Pulley, fastest_rim, friction_on
 from beltdyn.model.routing import lay_path
 from beltdyn.model.static_estimate import StaticEstimate
 from beltdyn.model.tensioner_balance import balance_tensioners
@@ -193,8 +193,7 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
 
 def _largest_speed(given: Given, path: Path, strain: float) -> float:
     """Speed of the fastest driven rim, or where none is known what the strain can cause, m/s."""
-    rims = np.array([pulley.driven_speed() for pulley in given.pulleys]) * np.abs(path.radii)
-    return float(np.max(rims, initial=0.0)) or strain * given.belt.wave_speed
+    return fastest_rim(given.pulleys, path.radii) or strain * given.belt.wave_speed
 
 
 def _chosen(choices: Sequence[Choice], group: str) -> dict[str, float]:

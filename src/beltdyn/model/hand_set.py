@@ -9,6 +9,7 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import CREEP_LENGTHS, DAMPING_RATIO
 from beltdyn.model.drive import Drive
 from beltdyn.model.installation import Installation
+from beltdyn.model.pulley import fastest_rim
 from beltdyn.parts.finding import Finding
 
 _SOFT, _HARD = 10.0, 30.0
@@ -102,7 +103,7 @@ def _friction(drive: Drive, chosen: Drive, installation: Installation) -> Iterat
     """Judge at which slip, over the speed, friction is fully used, next to what is chosen."""
     law = LAWS[drive.contact.friction_law]
     keys = [one.name for one in law.parameters if getattr(drive.contact, one.name) is not None]
-    speed, rough = _speed(drive), drive.frictions > 0.0
+    speed, rough = fastest_rim(drive.pulleys, drive.radii), drive.frictions > 0.0
     if not keys or not speed or not rough.any():
         return
     pressures = installation.tension / drive.radii[rough]
@@ -142,9 +143,3 @@ def _moment_arm(drive: Drive, installation: Installation) -> Iterator[Finding]:
             f"{share:.1%} of the power.",
             'Set contact.moment_arm = "rim", or raise contact.stiffness.',
         )
-
-
-def _speed(drive: Drive) -> float:
-    """Speed of the fastest rim of given speed, m/s."""
-    rims = np.array([pulley.driven_speed() for pulley in drive.pulleys]) * drive.radii
-    return float(np.max(np.abs(rims), initial=0.0))

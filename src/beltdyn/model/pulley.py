@@ -5,9 +5,11 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, Self
 
+import numpy as np
 from pydantic import ConfigDict, Field, field_validator, model_validator
 from pydantic.fields import FieldInfo
 
+from beltdyn.arrays import FloatArray
 from beltdyn.machines.links.registry import AnyHubLink
 from beltdyn.machines.loads.registry import AnyLoad
 from beltdyn.machines.profiles.crank import SpeedHarmonics
@@ -181,6 +183,22 @@ class Pulley(Part):
         """Factor and command of each load, then the factors of the links of the hub chain; None where there is none."""
         of_loads = (profile for item in self.load for profile in (item.factor, item.command))
         return (*of_loads, *(link.factor for link in self.hub))
+
+
+def fastest_rim(pulleys: Sequence[Pulley], radii: FloatArray, duration: float = math.inf) -> float:
+    """Speed of the fastest rim that is driven within a time (s), m/s; zero where none is.
+
+    Parameters
+    ----------
+    pulleys : sequence of Pulley
+        The pulleys of a drive.
+    radii : ndarray, shape (pulleys,)
+        On which the belt's middle lies, m; of either sign.
+    duration : float, default inf
+        As of `Pulley.driven_speed`, s.
+    """
+    speeds = np.array([pulley.driven_speed(duration) for pulley in pulleys])
+    return float(np.max(np.abs(speeds * radii), initial=0.0))
 
 
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:

@@ -1,6 +1,7 @@
-"""Ranges of numbers that a user writes as text: "700..6000 rpm", or a few numbers "700, 1500, 3000 rpm"."""
+"""Numbers with a unit as a user writes them: one, a range "700..6000 rpm", or a few "700, 1500, 3000 rpm"."""
 
 import re
+from math import isfinite
 
 import numpy as np
 
@@ -12,6 +13,37 @@ _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*(.*?)\s*")
 _LIST = re.compile(rf"\s*({_NUMBER}(?:\s*,\s*{_NUMBER})*)\s*(.*?)\s*")
 _MOST = 10_000
+
+
+def number_in(name: str, value: float | str, unit: str) -> float:
+    """Read a number with or without its unit.
+
+    Parameters
+    ----------
+    name : str
+        What it is, for messages.
+    value : float or str
+        In SI units, or a text such as ``"800 rpm"``.
+    unit : str
+        The SI unit.
+
+    Returns
+    -------
+    float
+        In SI units.
+
+    Raises
+    ------
+    ModelError
+        If the text is no such quantity, or the number is not finite.
+    """
+    try:
+        number = to_si(value, unit) if isinstance(value, str) else float(value)
+        if not isfinite(number):
+            raise ValueError("must be a finite number")
+    except ValueError as error:
+        raise ModelError(f"{name} = {value!r} {error}.") from error
+    return number
 
 
 def numbers_in(name: str, text: str, unit: str, count: int) -> FloatArray:

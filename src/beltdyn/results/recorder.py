@@ -21,6 +21,13 @@ Outputs = Mapping[str, NDArray[Any]]
 Status = Literal["running", "completed", "interrupted", "failed"]
 
 
+def status_after(error: type[BaseException] | None) -> Status:
+    """Tell how work ended that an error of this type, or none, has left."""
+    if error is None:
+        return "completed"
+    return "interrupted" if issubclass(error, KeyboardInterrupt) else "failed"
+
+
 class Recorder(Protocol):
     """Takes outputs as a simulation goes."""
 

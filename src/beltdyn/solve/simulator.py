@@ -12,7 +12,7 @@ from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import Profiles, go_on, profile_integral, profile_value
 from beltdyn.model import Drive, Pulley
-from beltdyn.parts.quantity import to_si
+from beltdyn.parts.number_range import number_in
 from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrators.integrator_state import IntegratorState
 from beltdyn.solve.integrators.trajectory import Statistics, drive_task
@@ -100,7 +100,7 @@ class Simulator:
         number = self.drive.number_of(pulley)
         if not self._pulleys[number].prescribed:
             raise ModelError(f"pulley = {pulley!r} turns freely: it has no speed that could be set. Set its torque.")
-        self._wanted[number] = _number("speed", speed, "rad/s")
+        self._wanted[number] = number_in("speed", speed, "rad/s")
 
     def set_torque(self, pulley: str, torque: float | str) -> None:
         """Let a torque act on a pulley from now on, beside its loads, in place of the one of the drive file.
@@ -120,7 +120,7 @@ class Simulator:
         number = self.drive.number_of(pulley)
         if self._pulleys[number].prescribed:
             raise ModelError(f"pulley = {pulley!r} has a prescribed speed, whatever its torque. Set its speed.")
-        self._wanted[number] = _number("torque", torque, "N*m")
+        self._wanted[number] = number_in("torque", torque, "N*m")
 
     def step(self, until: float) -> None:
         """Simulate up to an instant.
@@ -226,14 +226,3 @@ class Simulator:
 
 def _named(names: Sequence[str], values: FloatArray) -> list[tuple[str, float]]:
     return [(name, float(value)) for name, value in zip(names, values, strict=True)]
-
-
-def _number(name: str, value: float | str, unit: str) -> float:
-    """A quantity in SI units, with or without its unit."""
-    try:
-        number = to_si(value, unit) if isinstance(value, str) else float(value)
-        if not isfinite(number):
-            raise ValueError("must be a finite number")
-    except ValueError as error:
-        raise ModelError(f"{name} = {value!r} {error}.") from error
-    return number

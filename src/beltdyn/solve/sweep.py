@@ -1,15 +1,14 @@
 """An analysis: a run-up, in which the speed of a pulley rises linearly."""
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
 from beltdyn.errors import ModelError
 from beltdyn.machines import Constant, FunctionLoad, Load, Profile
 from beltdyn.model import Drive
+from beltdyn.parts.number_range import number_in
 from beltdyn.parts.part import Part
-from beltdyn.parts.quantity import to_si
 from beltdyn.results import Run
 from beltdyn.solve.integrators.settling import Settling
 from beltdyn.solve.observation.slip_through import SlipThrough
@@ -85,9 +84,9 @@ def sweep(
     >>> run.dataset.pulley_speed.sel(pulley="driver")[-1].round(4).item()  # rad/s
     2.0944
     """
-    start, end = _number("from", from_, "rad/s"), _number("to", to, "rad/s")
-    length = _number("duration", duration, "s")
-    longest = length if settling is None else _number("settling", settling, "s")
+    start, end = number_in("from", from_, "rad/s"), number_in("to", to, "rad/s")
+    length = number_in("duration", duration, "s")
+    longest = length if settling is None else number_in("settling", settling, "s")
     steady, held = without_schedules(drive)
     raised = run_up(steady, pulley, start, end, length)
     if not longest > 0.0:
@@ -194,14 +193,3 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     settings = drive.simulation
     begun = "equilibrium" if settings.start == "steady" else settings.start
     return drive.replace(pulley=pulleys, simulation=settings.replace(duration=duration, start=begun, start_at=0.0))
-
-
-def _number(name: str, value: float | str, unit: str) -> float:
-    """A quantity in SI units, with or without its unit."""
-    try:
-        number = to_si(value, unit) if isinstance(value, str) else float(value)
-        if not isfinite(number):
-            raise ValueError("must be a finite number")
-    except ValueError as error:
-        raise ModelError(f"{name} = {value!r} {error}.") from error
-    return number

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.model import Drive, install
 from beltdyn.model.instants import SAME, Instants
+from beltdyn.model.pulley import fastest_rim
 from beltdyn.system.arrays import ENERGY_WORKS, BodyForces, System
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
@@ -270,6 +271,5 @@ def velocity_scale(drive: Drive) -> float:
         m/s; rims are driven by a prescribed speed, or by a motor up to its synchronous speed.  The second is strain at
         rest times the speed of axial waves, the velocity of a belt end that is let go.
     """
-    end = drive.simulation.end
-    rims = [radius * pulley.driven_speed(end) for pulley, radius in zip(drive.pulleys, drive.radii, strict=True)]
-    return float(max(*rims, install(drive).strain * drive.belt.wave_speed, 0.0))
+    rim = fastest_rim(drive.pulleys, drive.radii, drive.simulation.end)
+    return max(rim, install(drive).strain * drive.belt.wave_speed)

@@ -21,6 +21,7 @@ from beltdyn.results import (
     Status,
     provenance,
 )
+from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.compilation import compile_kernels
@@ -176,11 +177,11 @@ class Recording:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool:
         """Write what waits and close the results with their status."""
-        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
         if isinstance(error, SlipError):
             self._findings["slips_through"] = error.fault
-        self.end("interrupted" if interrupted else "completed" if kind is None else "failed")
-        return interrupted
+        status = status_after(kind)
+        self.end(status)
+        return status == "interrupted"
 
     def end(self, status: Status) -> None:
         """Write what waits, and close the results with their status; "failed" if what waits cannot be written."""

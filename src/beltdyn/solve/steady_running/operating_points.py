@@ -18,6 +18,7 @@ from beltdyn.results import Result, Run, Variable, build_result
 from beltdyn.results.atomic import require_replaceable
 from beltdyn.results.balance import LOSSES
 from beltdyn.results.dataset import is_result
+from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.signals import uninterrupted
@@ -151,10 +152,9 @@ class OperatingPoints:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool:
         """Close the table with its status."""
-        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
-        self._status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        self._status = status_after(kind)
         self._save()
-        return interrupted
+        return self._status == "interrupted"
 
     @property
     def found(self) -> bool:

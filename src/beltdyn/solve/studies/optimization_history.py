@@ -13,6 +13,7 @@ from beltdyn.model import Drive
 from beltdyn.model.toml_editor import edited
 from beltdyn.model.toml_reader import loads
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.recorder import status_after
 from beltdyn.results.shown import VARIOUS
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.studies.designs import Design, Free
@@ -112,10 +113,9 @@ class History:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool:
         """End with a status, and write what there is."""
-        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
-        self._status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        self._status = status_after(kind)
         self._save()
-        return interrupted
+        return self._status == "interrupted"
 
     def note(self, design: Design) -> None:
         """Keep a design that was tried."""

@@ -20,6 +20,7 @@ from beltdyn.results import Result, Variable, build_result
 from beltdyn.results.atomic import require_replaceable, unwritable
 from beltdyn.results.dataset import is_result, read_dataset
 from beltdyn.results.lock import OutputLock
+from beltdyn.results.recorder import status_after
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.studies.point_work import Outcome
 from beltdyn.solve.studies.study_plan import Plan
@@ -139,8 +140,7 @@ class StudyTable:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> bool:
         """Close the files with a status."""
-        interrupted = kind is not None and issubclass(kind, KeyboardInterrupt)
-        self._status = "interrupted" if interrupted else "completed" if kind is None else "failed"
+        self._status = status_after(kind)
         try:
             with uninterrupted():
                 self._append(self._early)  # those of a study of which no point has results
@@ -149,7 +149,7 @@ class StudyTable:
         finally:
             if self._lock is not None:
                 self._lock.release()
-        return interrupted
+        return self._status == "interrupted"
 
     def take(self, outcomes: list[Outcome], units: Mapping[str, str]) -> None:
         """Take what became of points, and write it.
