@@ -21,19 +21,19 @@ export default {
          @wheel.prevent="wheel" @dblclick="add">
       <path class="bd-grid" :d="grid" />
       <path class="bd-axis" :d="axes" />
-      <path v-if="scene.rest" class="bd-rest" :d="scene.rest" />
-      <circle v-for="(one, i) in scene.ghosts || []" :key="'g' + i" class="bd-ghost" :cx="one.x" :cy="one.y" :r="one.r" />
-      <path v-if="scene.belt" :class="scene.valid ? 'bd-belt' : 'bd-belt bd-sketch'" :d="scene.belt"
-            :stroke-width="Math.max(scene.thickness || 0, 3 * px)" />
+      <path v-if="shown.rest" class="bd-rest" :d="shown.rest" />
+      <circle v-for="(one, i) in shown.ghosts || []" :key="'g' + i" class="bd-ghost" :cx="one.x" :cy="one.y" :r="one.r" />
+      <path v-if="shown.belt" :class="shown.valid ? 'bd-belt' : 'bd-belt bd-sketch'" :d="shown.belt"
+            :stroke-width="Math.max(shown.thickness || 0, 3 * px)" />
       <g v-if="live" class="bd-live">
         <g v-for="(one, i) in live.pulleys" :key="'lp' + i">
           <circle class="bd-rim" :cx="one.x" :cy="one.y" :r="one.r" />
           <path class="bd-spoke" :d="spokes(one)" />
         </g>
         <path v-for="(one, i) in live.belt" :key="'lb' + i" :d="one.d" :stroke="one.color" fill="none" stroke-linecap="round"
-              :stroke-width="Math.max(scene.thickness || 0, 4 * px)" />
+              :stroke-width="Math.max(shown.thickness || 0, 4 * px)" />
       </g>
-      <g v-for="one in scene.tensioners || []" :key="'t' + one.number" class="bd-tensioner">
+      <g v-for="one in shown.tensioners || []" :key="'t' + one.number" class="bd-tensioner">
         <template v-if="one.pivot">
           <path class="bd-arm" :d="'M' + at('pivot', one).join(' ') + 'L' + one.x + ' ' + one.y" />
           <circle class="bd-handle" :cx="at('pivot', one)[0]" :cy="at('pivot', one)[1]" :r="6 * px" tabindex="0" role="button"
@@ -60,10 +60,10 @@ export default {
         <text class="bd-small" :x="one.x" :y="one.y + Math.min(0.35 * one.r, 12 * px) + 9 * px" :font-size="11 * px"
               text-anchor="middle">{{ one.wrap }}</text>
       </g>
-      <text v-for="(one, i) in scene.spans || []" :key="'s' + i" class="bd-small bd-span"
+      <text v-for="(one, i) in shown.spans || []" :key="'s' + i" class="bd-small bd-span"
             :x="one.x + one.right * away(one)" :y="one.y + one.down * away(one) + 4 * px"
             :font-size="11 * px" text-anchor="middle">{{ one.label }}</text>
-      <rect v-for="(end, i) in scene.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
+      <rect v-for="(end, i) in shown.ends || []" :key="'e' + i" class="bd-end" :x="end[0] - 5 * px" :y="end[1] - 5 * px"
             :width="10 * px" :height="10 * px" />
       <circle v-if="chosen" class="bd-handle bd-size" :cx="chosen.x + 0.7071 * chosen.r" :cy="chosen.y + 0.7071 * chosen.r"
               :r="6 * px" @pointerdown.stop="down($event, { kind: 'size', number: chosen.number, from: null })">
@@ -78,11 +78,15 @@ export default {
     view: { x: -250, y: -150, w: 500, h: 300 },
     size: { w: 800, h: 450 },
     drag: null, // what is dragged, and where it is
+    followed: null, // the scene while something is dragged
     waiting: false, // Python has been asked, and has not answered yet
     fitted: true,
     lost: false, // the server does not answer any more
   }),
   computed: {
+    shown() {
+      return this.followed || this.scene;
+    },
     kept() {
       return "data:text/plain;charset=utf-8," + encodeURIComponent(this.text || "");
     },
@@ -93,7 +97,7 @@ export default {
       return [this.view.x, this.view.y, this.view.w, this.view.h].join(" ");
     },
     pulleys() {
-      return (this.scene.pulleys || []).map((one) => {
+      return (this.shown.pulleys || []).map((one) => {
         if (!this.drag || this.drag.number !== one.number || !this.drag.to) return one;
         if (this.drag.kind === "move") return { ...one, x: this.drag.to[0], y: this.drag.to[1] };
         if (this.drag.kind === "size") return { ...one, r: this.drag.radius };
@@ -121,9 +125,7 @@ export default {
   },
   watch: {
     scene() {
-      this.waiting = false;
       if (this.fitted && !this.drag && !this.fits()) this.fit();
-      this.ask();
     },
   },
   mounted() {
@@ -145,8 +147,13 @@ export default {
     clearInterval(this.asking);
   },
   methods: {
+    follow(scene) { // Python calls it while something is dragged, which spares Vue the rest of the page; null ends it
+      this.followed = scene;
+      this.waiting = false;
+      this.ask();
+    },
     fit() {
-      const [left, top, right, bottom] = this.scene.extent || [-250, -150, 250, 150];
+      const [left, top, right, bottom] = this.shown.extent || [-250, -150, 250, 150];
       const aspect = this.size.w / this.size.h;
       const width = Math.max(right - left, (bottom - top) * aspect) * 1.25;
       const height = width / aspect;
@@ -154,7 +161,7 @@ export default {
       this.fitted = true;
     },
     fits() {
-      const [left, top, right, bottom] = this.scene.extent;
+      const [left, top, right, bottom] = this.shown.extent;
       const { x, y, w, h } = this.view;
       const inside = left >= x && top >= y && right <= x + w && bottom <= y + h;
       return inside && Math.max((right - left) / w, (bottom - top) / h) > 0.5;
@@ -232,7 +239,7 @@ export default {
       drag.moved = true;
       drag.to = this.snapped([here[0] + drag.offset[0], here[1] + drag.offset[1]]);
       if (drag.kind === "size") {
-        const one = this.scene.pulleys.find((each) => each.number === drag.number);
+        const one = this.shown.pulleys.find((each) => each.number === drag.number);
         const away = Math.hypot(here[0] - one.x, here[1] - one.y);
         drag.radius = Math.max(Math.round(away / this.snap) * this.snap, this.snap);
       }

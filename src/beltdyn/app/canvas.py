@@ -39,6 +39,11 @@ class Canvas(Element, component="canvas.js"):
         self._props["scene"] = dict(scene)
         self._props["selected"] = -1 if selected is None else selected
         self.update()
+        self.run_method("follow", None)
+
+    def follow(self, scene: Mapping[str, Any]) -> None:
+        """Show a scene while something is dragged, until the next call of `show`."""
+        self.run_method("follow", scene)
 
     def watch(self, seen: "Glimpse | None") -> None:
         """Show a run at one instant in place of the belt at rest, or the drive again with None."""

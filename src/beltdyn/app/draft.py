@@ -41,7 +41,7 @@ class Draft(NamedTuple):
         return [one.sentence for one in self.told if one.location[: len(location)] == location]
 
 
-def draft(data: Mapping[str, Any], folder: Path) -> Draft:
+def draft(data: Mapping[str, Any], folder: Path, *, only_laid_out: bool = False) -> Draft:
     """Find out what is wrong with a drive file.
 
     Parameters
@@ -50,6 +50,9 @@ def draft(data: Mapping[str, Any], folder: Path) -> Draft:
         What it holds.
     folder : Path
         Where relative paths in it start; files outside are not read.
+    only_laid_out : bool
+        Whether the path of the belt is all that is wanted, as while a pulley is dragged: a tenth of the work. What is
+        wrong with the state of the belt on it is not found then.
 
     Returns
     -------
@@ -67,7 +70,8 @@ def draft(data: Mapping[str, Any], folder: Path) -> Draft:
     if outside:
         return Draft(data, None, outside)
     try:
-        return Draft(data, Drive.model_validate(data, context={"base": folder}), [])
+        context = {"base": folder, "only_laid_out": only_laid_out}
+        return Draft(data, Drive.model_validate(data, context=context), [])
     except ValidationError as error:
         return Draft(data, None, told_apart(error, Drive, data))
     except ModelError as error:

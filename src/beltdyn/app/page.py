@@ -216,7 +216,7 @@ class Page:
                 self._tabs.value = "pulley"
             self.update()
         else:
-            self._canvas.show(scene(self.session.preview(edits), settled=False), self.session.selected)
+            self._canvas.follow(scene(self.session.preview(edits), settled=False))
 
     def choose(self, number: object) -> None:
         """Choose a pulley, and open its form."""

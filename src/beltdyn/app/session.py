@@ -70,8 +70,8 @@ class Session:
         return f"{self.name or 'not saved yet'}{' *' if self.document.changed else ''}"
 
     def preview(self, edits: Sequence[Edit]) -> Draft:
-        """What the drive file would say with some edits."""
-        return draft(self.document.preview(edits), self.workspace.folder.root)
+        """What the drive file would say with some edits, as far as the layout goes."""
+        return draft(self.document.preview(edits), self.workspace.folder.root, only_laid_out=True)
 
     def apply(self, edits: Sequence[Edit]) -> None:
         """Change the drive file."""

@@ -1,4 +1,4 @@
-"""What follows from a drive as it is given: the length of the belt, the take-up, the numbers of computation."""
+"""What follows from a drive whose belt is laid out: the length of the belt, the numbers of computation."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,10 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
-from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
-from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
+from beltdyn.machines import Tensioner
 from beltdyn.model.belt import Belt
-from beltdyn.model.carrier import carriers_of, check_tensioners
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import (
     Choice,
@@ -19,64 +17,22 @@ from beltdyn.model.defaults import (
     choose_elements,
     choose_graded_elements,
     choose_standstill_creep,
-    choose_stiffness,
-    stiffness_for_tension,
 )
-from beltdyn.model.end import PathEnd, pulling
+from beltdyn.model.layout import (
+    LARGEST_STRAIN,
+    Given,
+    Layout,
+    check_length,
+    fixed_tensioner,
+    leverage,
+    with_chosen_stiffness,
+    with_take_up,
+)
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, fastest_rim, friction_on
-from beltdyn.model.routing import lay_path
 from beltdyn.model.static_estimate import StaticEstimate
-from beltdyn.model.tensioner_balance import balance_tensioners
 
-_LARGEST_STRAIN = 0.5
 _SMALLEST_STRAIN = 1e-10
-_MOST_STEPS = 60
-
-
-class Given(NamedTuple):
-    """Parts of a drive, as a user gives them."""
-
-    belt: Belt
-    pulleys: tuple[Pulley, ...]
-    contact: Contact
-    tensioners: tuple[Tensioner, ...]
-    ends: tuple[PathEnd, ...] = ()
-    staying: bool = False
-    """Whether the mesh is to stay in place while the belt flows through it."""
-
-    def path_around(self, pulleys: Sequence[Pulley]) -> Path:
-        """The path of the belt around pulleys, checked."""
-        return lay_path(pulleys, self.belt, self.ends)
-
-    def estimate(self, path: Path) -> StaticEstimate:
-        """The belt at rest, with spring-loaded tensioners in balance."""
-        carriers = carriers_of(self.tensioners, self.names, path)
-        return balance_tensioners(path, loaded(self.belt, self.ends), self.contact, carriers)[0]
-
-    @property
-    def names(self) -> list[str]:
-        """Names of the pulleys."""
-        return [pulley.name for pulley in self.pulleys]
-
-    @property
-    def is_settled(self) -> bool:
-        """Whether the belt's length and the place of all pulleys are given."""
-        return loaded(self.belt, self.ends).installed_tension is None and not self.has_springs
-
-    @property
-    def has_springs(self) -> bool:
-        """Whether a spring-loaded tensioner moves a pulley."""
-        return any(isinstance(tensioner, MovingTensioner) for tensioner in self.tensioners)
-
-    @property
-    def pulleys_in_place(self) -> tuple[Pulley, ...]:
-        """The pulleys, moved by the take-up of fixed tensioners."""
-        pulleys = self.pulleys
-        for tensioner in self.tensioners:
-            if isinstance(tensioner, FixedTensioner) and tensioner.take_up != 0:
-                pulleys = _moved(pulleys, tensioner)
-        return pulleys
 
 
 class Completed(NamedTuple):
@@ -96,22 +52,15 @@ class Completed(NamedTuple):
     """Numbers of computation that were left open, as they are chosen, with their reasons."""
 
 
-def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
-    """The belt with the tension that a pulled end gives it at rest, or itself without such an end."""
-    tension = pulling(ends)
-    return belt if tension is None else belt.replace(length=belt.length, installed_tension=tension)
-
-
-def complete(given: Given) -> Completed:
+def complete(layout: Layout) -> Completed:
     """Find what a drive leaves open.
 
-    Fixed tensioners move their pulleys; a belt with an installed tension gets its length, or, if it has one, the
-    fixed tensioner its take-up; an allowed penetration becomes a stiffness of contact. The numbers of computation that
-    are not given are chosen by `beltdyn.model.defaults`.
+    A belt with an installed tension gets its length, if its layout has not settled that; an allowed penetration becomes
+    a stiffness of contact. The numbers of computation that are not given are chosen by `beltdyn.model.defaults`.
 
     Parameters
     ----------
-    given : Given
+    layout : Layout
 
     Returns
     -------
@@ -120,21 +69,12 @@ def complete(given: Given) -> Completed:
     Raises
     ------
     ValueError
-        If a belt cannot run around the pulleys, would be slack or overstretched, a tensioner does not fit the pulleys,
-        none can bring the belt to its tension, or they find no balance.
+        If the belt would be slack or overstretched, or the tensioners find no balance.
     """
-    pulleys = given.pulleys_in_place
-    path = given.path_around(pulleys)
-    check_tensioners(given.tensioners, pulleys, path)
-    if given.is_settled:
-        _check_length(given.belt.given_length, path.length)
-    given, choices = _with_chosen_stiffness(given, path)
+    pulleys, path = layout.pulleys, layout.path
+    given, choices = with_chosen_stiffness(layout.given, path)
+    choices = layout.choices + choices
     belt, contact = given.belt, given.contact
-    if belt.length is not None and belt.installed_tension is not None:
-        _check_take_up_is_open(given.tensioners)
-        given = _tightened(given, path)
-        pulleys = given.pulleys_in_place
-        path = given.path_around(pulleys)
     if given.is_settled and not contact.open_keys and belt.elements is not None:
         return Completed(belt, pulleys, contact, given.tensioners, path)
     estimate = given.estimate(path)
@@ -152,19 +92,6 @@ def complete(given: Given) -> Completed:
         path=path,
         choices=choices,
     )
-
-
-def _with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice, ...]]:
-    """The same with a stiffness of contact, if neither this nor a penetration is given."""
-    belt, contact = loaded(given.belt, given.ends), given.contact
-    if contact.stiffness is not None or contact.allowed_penetration is not None:
-        return given, ()
-    tension = belt.installed_tension
-    if tension is None:
-        first = given._replace(contact=contact.replace(stiffness=stiffness_for_tension(path, belt)))
-        tension = first.estimate(path).tension
-    choice = choose_stiffness(path, belt, tension)
-    return given._replace(contact=contact.replace(stiffness=choice.value)), (choice,)
 
 
 def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
@@ -225,95 +152,18 @@ def take_up(completed: Completed, distance: float) -> tuple[Tensioner, ...]:
     -------
     tuple of Tensioner
     """
-    fixed = _fixed(completed.tensioners)
+    fixed = fixed_tensioner(completed.tensioners)
     number = [pulley.name for pulley in completed.pulleys].index(fixed.pulley)
-    return _set(completed.tensioners, fixed.take_up + distance / _leverage(completed.path, number, fixed))
-
-
-def _set(tensioners: tuple[Tensioner, ...], distance: float) -> tuple[Tensioner, ...]:
-    """The same with another take-up of the one fixed tensioner, m."""
-    fixed = _fixed(tensioners)
-    return tuple(one.replace(take_up=distance) if one is fixed else one for one in tensioners)
-
-
-def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner) -> tuple[Pulley, ...]:
-    """Pulleys with that of a fixed tensioner moved by its take-up."""
-    x, y = (tensioner.take_up * part for part in tensioner.direction)
-    return tuple(
-        pulley.replace(center=(pulley.center[0] + x, pulley.center[1] + y))
-        if pulley.name == tensioner.pulley
-        else pulley
-        for pulley in pulleys
-    )
-
-
-def _fixed(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
-    """The first fixed tensioner."""
-    return next(tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner))
-
-
-def _leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
-    """How much longer the path becomes by a metre of take-up, m."""
-    return float(path.gradient(pulley) @ np.array(tensioner.direction))
-
-
-def _check_take_up_is_open(tensioners: tuple[Tensioner, ...]) -> None:
-    """Refuse a belt of given length and tension without the one fixed tensioner whose take-up is to be computed."""
-    fixed = [tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner)]
-    if len(fixed) != 1:
-        raise ValueError(
-            f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners: one of them "
-            'takes up what is missing. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
-        )
-    if fixed[0].take_up != 0:
-        raise ValueError(
-            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, which belt.length and '
-            "belt.installed_tension determine. Remove one of the three"
-        )
-
-
-def _tightened(given: Given, path: Path) -> Given:
-    """The same with the take-up of the one fixed tensioner that gives a belt of given length its tension."""
-    from scipy.optimize import brentq
-
-    fixed, length = _fixed(given.tensioners), given.belt.given_length
-
-    def taken_up(distance: float) -> Given:
-        return given._replace(tensioners=_set(given.tensioners, distance))
-
-    def excess(distance: float) -> float:
-        there = taken_up(distance)
-        return there.estimate(there.path_around(there.pulleys_in_place)).length - length
-
-    leverage = _leverage(path, given.names.index(fixed.pulley), fixed)
-    if abs(leverage) < LEAST_LEVERAGE:
-        raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
-    here, first = 0.0, excess(0.0)
-    step = -float(np.sign(leverage * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
-    for _ in range(_MOST_STEPS):
-        try:
-            if excess(here + step) * first <= 0:
-                return taken_up(float(brentq(excess, here, here + step, xtol=1e-15)))
-        except ValueError as error:
-            raise _no_take_up(given, fixed, str(error)) from error
-        here, step = here + step, 1.3 * step
-    raise _no_take_up(given, fixed, f"not within {abs(here):.3g} m")
-
-
-def _no_take_up(given: Given, tensioner: FixedTensioner, reason: str) -> ValueError:
-    return ValueError(
-        f'no take-up of "{tensioner.pulley}" brings a belt of {given.belt.length:.5g} m to '
-        f"{given.belt.installed_tension:.5g} N: {reason}. Change belt.length, or the direction of the tensioner"
-    )
+    return with_take_up(completed.tensioners, fixed.take_up + distance / leverage(completed.path, number, fixed))
 
 
 def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticEstimate) -> None:
     """Refuse a belt at rest that is slack, or stretched beyond what its law describes."""
     wanted, length, path = given.belt.installed_tension, estimate.length, estimate.path.length
-    if wanted is not None and not 0 < path <= (1 + _LARGEST_STRAIN) * length:
+    if wanted is not None and not 0 < path <= (1 + LARGEST_STRAIN) * length:
         raise ValueError(
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
-            f"than {_LARGEST_STRAIN:.0%} of its length. Lower it, or give a belt of more axial stiffness than "
+            f"than {LARGEST_STRAIN:.0%} of its length. Lower it, or give a belt of more axial stiffness than "
             f"{given.belt.axial_stiffness:.3g} N"
         )
     least = _SMALLEST_STRAIN * given.belt.axial_stiffness
@@ -322,7 +172,7 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of "
             f"its length, which is lost in rounding. Give at least {least:.1g} N"
         )
-    _check_length(length, path, tensioned=given.has_springs)
+    check_length(length, path, tensioned=given.has_springs)
     if given.has_springs:
         _check_place(given, pulleys, estimate.path)
     if not estimate.tension > 0:
@@ -344,19 +194,3 @@ def _check_place(given: Given, pulleys: tuple[Pulley, ...], path: Path) -> None:
             f"the tensioners balance the belt only where no belt can run: {error}. Change the preload or the belt's "
             "length, or give stops"
         ) from error
-
-
-def _check_length(length: float, path: float, tensioned: bool = False) -> None:
-    """Refuse a belt that is too long or too short for its path, with moving tensioners where they stand."""
-    where = "the path around the pulleys" + ", where its tensioners put them" * tensioned
-    if length >= path:
-        raise ValueError(
-            f"belt.length = {length:.5g} m is longer than {where} ({path:.5g} m): the belt would hang slack. "
-            f"Shorten it, or {'raise the preload' if tensioned else 'move the pulleys apart'}."
-        )
-    if path / length - 1 > _LARGEST_STRAIN:
-        raise ValueError(
-            f"belt.length = {length:.5g} m is too short for {where} ({path:.5g} m): "
-            f"it would be stretched by {path / length - 1:.0%}, and {_LARGEST_STRAIN:.0%} is the limit. "
-            f"Lengthen it, or {'lower the preload' if tensioned else 'move the pulleys together'}."
-        )

@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 import tomli_w
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
@@ -15,10 +15,11 @@ from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of
-from beltdyn.model.completion import Completed, Given, complete, loaded, take_up
+from beltdyn.model.completion import Completed, complete, take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
+from beltdyn.model.layout import Given, Layout, lay_out, loaded
 from beltdyn.model.limits import Limits
 from beltdyn.model.path import Path
 from beltdyn.model.pulley import Pulley, friction_on
@@ -82,8 +83,8 @@ class Drive(Part):
         return self
 
     @model_validator(mode="after")
-    def _leaves_nothing_open(self) -> Self:
-        _ = self.completed
+    def _leaves_nothing_open(self, info: ValidationInfo) -> Self:
+        _ = self.layout if (info.context or {}).get("only_laid_out") else self.completed
         return self
 
     @model_validator(mode="after")
@@ -145,10 +146,15 @@ class Drive(Part):
         return loaded(self.completed.belt, self.path_ends)
 
     @cached_property
+    def layout(self) -> Layout:
+        """The belt laid around its pulleys, before anything is computed of its state."""
+        staying = (self.simulation.frame, self.simulation.mesh) == ("staying", "auto")
+        return lay_out(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends, staying))
+
+    @cached_property
     def completed(self) -> Completed:
         """The parts with nothing left open, as an analysis takes them."""
-        staying = (self.simulation.frame, self.simulation.mesh) == ("staying", "auto")
-        return complete(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends, staying))
+        return complete(self.layout)
 
     @property
     def belt_length(self) -> float:
@@ -186,7 +192,7 @@ class Drive(Part):
     @property
     def path(self) -> Path:
         """The path of the line that carries the belt's tension, with spring-loaded tensioners at zero."""
-        return self.completed.path
+        return self.layout.path
 
     @cached_property
     def radii(self) -> FloatArray:

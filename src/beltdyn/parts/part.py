@@ -1,6 +1,7 @@
 """The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
 
 from collections.abc import Mapping
+from functools import cache
 from types import MappingProxyType
 from typing import Any, ClassVar, Self
 
@@ -47,9 +48,14 @@ class Part(BaseModel):
         """Take None for an argument that is left open."""
         if not isinstance(data, Mapping):
             return data
+        return {name: value for name, value in data.items() if value is not None or name not in cls._optional()}
+
+    @classmethod
+    @cache
+    def _optional(cls) -> frozenset[str]:
+        """Names of the arguments that may be left open."""
         fields = {field.alias or name: field for name, field in cls.model_fields.items()} | dict(cls.alternatives())
-        optional = {name for name, field in fields.items() if field.default is None}
-        return {name: value for name, value in data.items() if value is not None or name not in optional}
+        return frozenset(name for name, field in fields.items() if field.default is None)
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:

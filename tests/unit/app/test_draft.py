@@ -3,6 +3,8 @@
 import tomllib
 from pathlib import Path
 
+import numpy as np
+
 from beltdyn.app.draft import draft
 
 
@@ -10,6 +12,21 @@ def test_a_right_file_gives_its_drive(alternator_text: str, tmp_path: Path) -> N
     found = draft(tomllib.loads(alternator_text), tmp_path)
     assert found.drive is not None
     assert found.told == []
+
+
+def test_while_something_is_dragged_the_layout_is_enough(alternator_text: str, tmp_path: Path) -> None:
+    """It has the same path, and is wrong where no belt can run; the state of the belt is not looked at."""
+    data = tomllib.loads(alternator_text)
+    whole, quick = (draft(data, tmp_path, only_laid_out=only).drive for only in (False, True))
+    assert whole is not None
+    assert quick is not None
+    np.testing.assert_array_equal(quick.path.span_points, whole.path.span_points)
+    data["pulley"][1]["center"] = ["400 mm", "400 mm"]
+    assert draft(data, tmp_path, only_laid_out=True).drive is None
+    slack = tomllib.loads(alternator_text)
+    slack["belt"] = {key: value for key, value in slack["belt"].items() if key != "installed_tension"} | {"length": 9.0}
+    assert draft(slack, tmp_path).drive is None
+    assert draft(slack, tmp_path, only_laid_out=True).drive is not None
 
 
 def test_errors_stand_at_their_keys(alternator_text: str, tmp_path: Path) -> None:

@@ -86,12 +86,15 @@ def test_the_file_is_shown_with_its_numbers(workspace: Workspace) -> None:
     go(workspace, journey)
 
 
-def test_a_drag_is_followed_and_becomes_one_step_of_undo(workspace: Workspace, alternator_text: str) -> None:
+def test_a_drag_is_followed_and_becomes_one_step_of_undo(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    followed: list[str] = []
+    monkeypatch.setattr(Canvas, "follow", lambda _, scene: followed.append(scene["belt"]))
+
     async def journey(user: User) -> None:
         before = canvas(user)["scene"]
         for x in (0.002, 0.005, 0.01):
             act(user, action="move", number=2, x=x, y=0.27, done=False)
-            assert canvas(user)["scene"]["belt"] != before["belt"]
+        assert len({before["belt"], *followed}) == 4
         await user.should_not_see("drive.toml *")
         act(user, action="move", number=2, x=0.01, y=0.27)
         await user.should_see("drive.toml *")

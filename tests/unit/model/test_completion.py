@@ -43,27 +43,6 @@ def test_allowed_penetration_is_that_on_the_smallest_pulley(make_drive: MakeDriv
     assert loads(dumps(drive)) == drive
 
 
-def test_fixed_tensioner_moves_its_pulley(make_drive: MakeDrive) -> None:
-    fixed = {"kind": "fixed", "pulley": "idler", "direction": (3, 4), "take_up": "10 mm"}
-    drive = make_drive("flat", tensioner=[fixed])
-    np.testing.assert_allclose(drive.centers[1], [0.256, -0.042], rtol=1e-14)
-    assert drive.pulleys[1].center == (0.25, -0.05)
-    assert loads(dumps(drive)) == drive
-
-
-@pytest.mark.parametrize("sense", [1, -1])
-@pytest.mark.parametrize("length", [2.56, 2.62])
-def test_take_up_for_a_tension(make_drive: MakeDrive, length: float, sense: int) -> None:
-    """The idler climbs for a long belt and sinks for a short one, on its line, however that is directed."""
-    fixed = {"kind": "fixed", "pulley": "idler", "direction": (0, sense)}
-    drive = make_drive("flat", tensioner=[fixed], length=length, installed_tension=500.0)
-    assert drive.belt_length == length
-    assert install(drive).tension == pytest.approx(500.0, rel=1e-9)
-    assert drive.centers[1, 0] == 0.25
-    assert (drive.centers[1, 1] > -0.05) == (length == 2.62)
-    assert loads(dumps(drive)) == drive
-
-
 @pytest.mark.parametrize(
     ("layout", "belt", "tensioner", "words"),
     [

@@ -1,0 +1,227 @@
+"""Where the pulleys of a drive stand and how its belt runs around them: path, and take-up of fixed tensioners."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
+from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
+from beltdyn.model.belt import Belt
+from beltdyn.model.carrier import carriers_of, check_tensioners
+from beltdyn.model.contact import Contact
+from beltdyn.model.defaults import Choice, choose_stiffness, stiffness_for_tension
+from beltdyn.model.end import PathEnd, pulling
+from beltdyn.model.path import Path
+from beltdyn.model.pulley import Pulley
+from beltdyn.model.routing import lay_path
+from beltdyn.model.static_estimate import StaticEstimate
+from beltdyn.model.tensioner_balance import balance_tensioners
+
+LARGEST_STRAIN = 0.5
+"""Of a belt that is laid on its path."""
+_MOST_STEPS = 60
+
+
+class Given(NamedTuple):
+    """Parts of a drive, as a user gives them."""
+
+    belt: Belt
+    pulleys: tuple[Pulley, ...]
+    contact: Contact
+    tensioners: tuple[Tensioner, ...]
+    ends: tuple[PathEnd, ...] = ()
+    staying: bool = False
+    """Whether the mesh is to stay in place while the belt flows through it."""
+
+    def path_around(self, pulleys: Sequence[Pulley]) -> Path:
+        """The path of the belt around pulleys, checked."""
+        return lay_path(pulleys, self.belt, self.ends)
+
+    def estimate(self, path: Path) -> StaticEstimate:
+        """The belt at rest, with spring-loaded tensioners in balance."""
+        carriers = carriers_of(self.tensioners, self.names, path)
+        return balance_tensioners(path, loaded(self.belt, self.ends), self.contact, carriers)[0]
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the pulleys."""
+        return [pulley.name for pulley in self.pulleys]
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the belt's length and the place of all pulleys are given."""
+        return loaded(self.belt, self.ends).installed_tension is None and not self.has_springs
+
+    @property
+    def has_springs(self) -> bool:
+        """Whether a spring-loaded tensioner moves a pulley."""
+        return any(isinstance(tensioner, MovingTensioner) for tensioner in self.tensioners)
+
+    @property
+    def pulleys_in_place(self) -> tuple[Pulley, ...]:
+        """The pulleys, moved by the take-up of fixed tensioners."""
+        pulleys = self.pulleys
+        for tensioner in self.tensioners:
+            if isinstance(tensioner, FixedTensioner) and tensioner.take_up != 0:
+                pulleys = _moved(pulleys, tensioner)
+        return pulleys
+
+
+class Layout(NamedTuple):
+    """A belt on its path, with spring-loaded tensioners at zero."""
+
+    given: Given
+    """The parts, with the take-up of their tensioners."""
+    pulleys: tuple[Pulley, ...]
+    """Where fixed tensioners hold them."""
+    path: Path
+    """Around these pulleys."""
+    choices: tuple[Choice, ...] = ()
+    """Numbers of computation that had to be chosen for it."""
+
+
+def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
+    """The belt with the tension that a pulled end gives it at rest, or itself without such an end."""
+    tension = pulling(ends)
+    return belt if tension is None else belt.replace(length=belt.length, installed_tension=tension)
+
+
+def lay_out(given: Given) -> Layout:
+    """Lay the belt around the pulleys.
+
+    Fixed tensioners move their pulleys; where a length and an installed tension are given, one of them takes up what is
+    missing.
+
+    Parameters
+    ----------
+    given : Given
+
+    Returns
+    -------
+    Layout
+
+    Raises
+    ------
+    ValueError
+        If a belt cannot run around the pulleys, its length does not fit, a tensioner does not fit the pulleys, or none
+        can bring the belt to its tension.
+    """
+    pulleys = given.pulleys_in_place
+    path = given.path_around(pulleys)
+    check_tensioners(given.tensioners, pulleys, path)
+    if given.is_settled:
+        check_length(given.belt.given_length, path.length)
+    if given.belt.length is None or given.belt.installed_tension is None:
+        return Layout(given, pulleys, path)
+    given, choices = with_chosen_stiffness(given, path)
+    _check_take_up_is_open(given.tensioners)
+    given = _tightened(given, path)
+    pulleys = given.pulleys_in_place
+    return Layout(given, pulleys, given.path_around(pulleys), choices)
+
+
+def with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice, ...]]:
+    """The same with a stiffness of contact, if neither this nor a penetration is given."""
+    belt, contact = loaded(given.belt, given.ends), given.contact
+    if contact.stiffness is not None or contact.allowed_penetration is not None:
+        return given, ()
+    tension = belt.installed_tension
+    if tension is None:
+        first = given._replace(contact=contact.replace(stiffness=stiffness_for_tension(path, belt)))
+        tension = first.estimate(path).tension
+    choice = choose_stiffness(path, belt, tension)
+    return given._replace(contact=contact.replace(stiffness=choice.value)), (choice,)
+
+
+def fixed_tensioner(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
+    """The first fixed tensioner."""
+    return next(tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner))
+
+
+def leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
+    """How much longer the path becomes by a metre of take-up, m."""
+    return float(path.gradient(pulley) @ np.array(tensioner.direction))
+
+
+def with_take_up(tensioners: tuple[Tensioner, ...], distance: float) -> tuple[Tensioner, ...]:
+    """The same with another take-up of the one fixed tensioner, m."""
+    fixed = fixed_tensioner(tensioners)
+    return tuple(one.replace(take_up=distance) if one is fixed else one for one in tensioners)
+
+
+def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner) -> tuple[Pulley, ...]:
+    """Pulleys with that of a fixed tensioner moved by its take-up."""
+    x, y = (tensioner.take_up * part for part in tensioner.direction)
+    return tuple(
+        pulley.replace(center=(pulley.center[0] + x, pulley.center[1] + y))
+        if pulley.name == tensioner.pulley
+        else pulley
+        for pulley in pulleys
+    )
+
+
+def _check_take_up_is_open(tensioners: tuple[Tensioner, ...]) -> None:
+    """Refuse a belt of given length and tension without the one fixed tensioner whose take-up is to be computed."""
+    fixed = [tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner)]
+    if len(fixed) != 1:
+        raise ValueError(
+            f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners: one of them "
+            'takes up what is missing. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
+        )
+    if fixed[0].take_up != 0:
+        raise ValueError(
+            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, which belt.length and '
+            "belt.installed_tension determine. Remove one of the three"
+        )
+
+
+def _tightened(given: Given, path: Path) -> Given:
+    """The same with the take-up of the one fixed tensioner that gives a belt of given length its tension."""
+    from scipy.optimize import brentq
+
+    fixed, length = fixed_tensioner(given.tensioners), given.belt.given_length
+
+    def taken_up(distance: float) -> Given:
+        return given._replace(tensioners=with_take_up(given.tensioners, distance))
+
+    def excess(distance: float) -> float:
+        there = taken_up(distance)
+        return there.estimate(there.path_around(there.pulleys_in_place)).length - length
+
+    lengthens = leverage(path, given.names.index(fixed.pulley), fixed)
+    if abs(lengthens) < LEAST_LEVERAGE:
+        raise _no_take_up(given, fixed, "moving it along its direction hardly changes the length of the path")
+    here, first = 0.0, excess(0.0)
+    step = -float(np.sign(lengthens * first)) * 1e-3 * min(pulley.radius for pulley in given.pulleys)
+    for _ in range(_MOST_STEPS):
+        try:
+            if excess(here + step) * first <= 0:
+                return taken_up(float(brentq(excess, here, here + step, xtol=1e-15)))
+        except ValueError as error:
+            raise _no_take_up(given, fixed, str(error)) from error
+        here, step = here + step, 1.3 * step
+    raise _no_take_up(given, fixed, f"not within {abs(here):.3g} m")
+
+
+def _no_take_up(given: Given, tensioner: FixedTensioner, reason: str) -> ValueError:
+    return ValueError(
+        f'no take-up of "{tensioner.pulley}" brings a belt of {given.belt.length:.5g} m to '
+        f"{given.belt.installed_tension:.5g} N: {reason}. Change belt.length, or the direction of the tensioner"
+    )
+
+
+def check_length(length: float, path: float, tensioned: bool = False) -> None:
+    """Refuse a belt that is too long or too short for its path, with moving tensioners where they stand."""
+    where = "the path around the pulleys" + ", where its tensioners put them" * tensioned
+    if length >= path:
+        raise ValueError(
+            f"belt.length = {length:.5g} m is longer than {where} ({path:.5g} m): the belt would hang slack. "
+            f"Shorten it, or {'raise the preload' if tensioned else 'move the pulleys apart'}."
+        )
+    if path / length - 1 > LARGEST_STRAIN:
+        raise ValueError(
+            f"belt.length = {length:.5g} m is too short for {where} ({path:.5g} m): "
+            f"it would be stretched by {path / length - 1:.0%}, and {LARGEST_STRAIN:.0%} is the limit. "
+            f"Lengthen it, or {'lower the preload' if tensioned else 'move the pulleys together'}."
+        )
