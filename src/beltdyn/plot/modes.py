@@ -2,6 +2,7 @@
 
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,6 +29,66 @@ KINDS = ("span", "rotational", "tensioner", "coupled")
 _FRAMES = 24
 
 
+class Swing(NamedTuple):
+    """How the parts of a drive move in a mode: the real part of these, times exp(i phase), at a phase.
+
+    Attributes
+    ----------
+    belt : ndarray, shape (points, 2)
+        Ways of the points of the belt, m.
+    centers : ndarray, shape (pulleys, 2)
+        Ways of the centers of the pulleys, m.
+    angles : ndarray, shape (pulleys,)
+        Rotation of the pulleys, rad.
+    size : float
+        The largest of these ways, those of rims included, m.
+    """
+
+    belt: ComplexArray
+    centers: ComplexArray
+    angles: ComplexArray
+    size: float
+
+
+def swing(result: Result, mode: int) -> Swing:
+    """How parts move in a mode, at a size that is seen.
+
+    Parameters
+    ----------
+    result : Result
+        Of `modes`.
+    mode : int
+        Which one, from 1 on.
+    """
+    one, drive = result.dataset.sel(mode=mode), result.drive
+    size = _DRAWN * float(np.ptp(extent_of(drive, drive.path), axis=0).max())
+    belt = size * _complex(one["belt_shape"].values)[:, None] * one["point_normal"].values
+    centers = np.zeros((len(drive.pulleys), 2), complex)
+    arms = _complex(one["tensioner_shape"].values) if "tensioner_shape" in one else np.zeros(0, complex)
+    for carrier, way in zip(drive.carriers, arms, strict=True):
+        along = carrier.place(0.0)[1]
+        centers[carrier.pulley] = size * way * along / np.linalg.norm(along)
+    return Swing(belt, centers, size * _complex(one["rim_shape"].values) / np.abs(drive.path.radii), size)
+
+
+def shown_modes(result: Result) -> list[int]:
+    """Numbers of the modes that are drawn on a page: the first ones."""
+    return [int(one) for one in result.dataset["mode"].values[:_MOST]]
+
+
+def mode_name(result: Result, mode: int) -> str:
+    """What a mode is, in two lines: frequency and damping ratio, and what moves."""
+    one = result.dataset.sel(mode=mode)
+    dry = f", arm {one['dry_tensioners'].values}" if "dry_tensioners" in one else ""
+    shown = f"{mode}: {float(one['frequency']):.4g} Hz, damping {float(one['damping_ratio']):.2%}{dry}"
+    return f"{shown}\n{one['kind'].values}: {one['moving_parts'].values}"
+
+
+def tint_of(result: Result, mode: int) -> str:
+    """Color of the kind of a mode."""
+    return color(KINDS.index(str(result.dataset["kind"].sel(mode=mode).values)))
+
+
 class ModePicture:
     """A mode of a drive, which can be moved to another phase.
 
@@ -42,38 +103,29 @@ class ModePicture:
     """
 
     def __init__(self, result: Result, mode: int, ax: Axes) -> None:
-        one, drive = result.dataset.sel(mode=mode), result.drive
-        extent = extent_of(drive, drive.path)
-        self._size = _DRAWN * float(np.ptp(extent, axis=0).max())
-        self._place, self._normal = one["point_position"].values, one["point_normal"].values
-        self._belt, self._rims = _complex(one["belt_shape"].values), _complex(one["rim_shape"].values)
-        self._arms = _complex(one["tensioner_shape"].values) if "tensioner_shape" in one else np.zeros(0, complex)
+        drive, self._swing = result.drive, swing(result, mode)
+        extent, size = extent_of(drive, drive.path), self._swing.size
+        self._place = result.dataset["point_position"].values
         self._carriers, self._radii, self._centers = drive.carriers, np.abs(drive.path.radii), drive.path.centers
-        tint = color(KINDS.index(str(one["kind"].values)))
+        tint = tint_of(result, mode)
         ax.plot(*_closed(self._place).T, color=INK, linewidth=0.6, linestyle=":", zorder=2)
         self._line = ax.plot([], [], color=tint, linewidth=2.0, zorder=3)[0]
         self._marks = [_draw_pulley(ax, *item, tint) for item in zip(self._centers, self._radii, strict=True)]
         self._held = [ax.plot([], [], **LINE)[0] if one.tensioner.anchor else None for one in self._carriers]
-        low, high = extent[0] - 1.5 * self._size, extent[1] + 1.5 * self._size
+        low, high = extent[0] - 1.5 * size, extent[1] + 1.5 * size
         ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         ax.set_axis_off()
-        parts = str(one["moving_parts"].values)
-        dry = f", arm {one['dry_tensioners'].values}" if "dry_tensioners" in one else ""
-        shown = f"{mode}: {float(one['frequency']):.4g} Hz, damping {float(one['damping_ratio']):.2%}{dry}"
-        ax.set_title(f"{shown}\n{one['kind'].values}: {parts}", fontsize=8)
+        ax.set_title(mode_name(result, mode), fontsize=8)
 
     def show(self, phase: float) -> None:
         """Move everything to a phase, rad."""
-        turn = self._size * np.exp(1j * phase)
-        across = np.real(turn * self._belt)[:, None] * self._normal
-        self._line.set_data(*_closed(self._place + across).T)
-        centers = self._centers.copy()
-        for carrier, way, arm in zip(self._carriers, np.real(turn * self._arms), self._held, strict=True):
-            along = carrier.place(0.0)[1]
-            centers[carrier.pulley] += way * along / np.linalg.norm(along)
+        turn = np.exp(1j * phase)
+        self._line.set_data(*_closed(self._place + np.real(turn * self._swing.belt)).T)
+        centers = self._centers + np.real(turn * self._swing.centers)
+        for carrier, arm in zip(self._carriers, self._held, strict=True):
             if arm is not None:
                 arm.set_data(*np.array([carrier.tensioner.anchor, centers[carrier.pulley]]).T)
-        angles = np.real(turn * self._rims) / self._radii
+        angles = np.real(turn * self._swing.angles)
         for (rim, mark), center, radius, angle in zip(self._marks, centers, self._radii, angles, strict=True):
             rim.center = tuple(center)
             mark.set_data(*np.array([center, center + radius * np.array([-np.sin(angle), np.cos(angle)])]).T)
@@ -97,8 +149,7 @@ def _draw_pulley(ax: Axes, center: FloatArray, radius: float, tint: str) -> tupl
 
 def _all_modes(draw: object, result: Result, choice: Choice) -> Figure:
     """Lay out the first modes."""
-    numbers = [int(one) for one in result.dataset["mode"].values[:_MOST]]
-    return panels(rows([partial(mode_shape, result, one) for one in numbers]), sharey=False)
+    return panels(rows([partial(mode_shape, result, one) for one in shown_modes(result)]), sharey=False)
 
 
 @figure(always, _all_modes, of=("modes",))
@@ -170,8 +221,7 @@ def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwr
         pictures.append(ModePicture(result, mode, ax))
         return ax
 
-    numbers = [int(one) for one in result.dataset["mode"].values[:_MOST]]
-    page = panels(rows([partial(add, one) for one in numbers]), sharey=False)
+    page = panels(rows([partial(add, one) for one in shown_modes(result)]), sharey=False)
     with film(page, Path(path), frame_rate, overwrite) as take:
         for phase in 2.0 * np.pi * np.arange(_FRAMES) / _FRAMES:
             for picture in pictures:

@@ -19,6 +19,7 @@ from beltdyn.report.figures import charted
 from beltdyn.report.library import embedded, library
 from beltdyn.report.motion import motion
 from beltdyn.report.origin import analysis_of, differing_keys, origin
+from beltdyn.report.swing import swinging
 from beltdyn.report.verdict import compared, in_unit, limit_in_words, verdict
 from beltdyn.results import Result, Run
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
@@ -124,11 +125,7 @@ def environment() -> Environment:
 def _page(results: Sequence[Result]) -> str:
     names = names_of_results(results) if len(results) > 1 else [name_of(results[0]) or results[0].drive.title]
     drawn, charts = charted(results)
-    moving = {
-        f"motion-{number}": motion(one, len(results))
-        for number, one in enumerate(results)
-        if isinstance(one, Run) and _moves(one)
-    }
+    moving = {f"motion-{number}": found for number, one in enumerate(results) if (found := _moving(one, len(results)))}
     return (
         environment()
         .get_template("page.html.jinja")
@@ -150,14 +147,18 @@ def _page(results: Sequence[Result]) -> str:
             charts=embedded(charts),
             library=library() if charts else "",
             style=read("page.css"),
-            script=read("page.js") if charts or moving else "",
+            script=script() if charts or moving else "",
         )
     )
 
 
-def _moves(run: Run) -> bool:
-    """Whether anything turns."""
-    return bool((run.dataset["pulley_speed"] != 0.0).any())
+def _moving(result: Result, results: int) -> dict[str, Any]:
+    """What shows the drive moving: a run, if anything turns, or modes; nothing of other results."""
+    if result.kind == "modes":
+        return swinging(result)
+    if isinstance(result, Run) and bool((result.dataset["pulley_speed"] != 0.0).any()):
+        return motion(result, results)
+    return {}
 
 
 def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> dict[str, Any]:
@@ -173,6 +174,7 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
         "description": result.drive.description or "",
         "picture": picture(result.drive),
         "motion": target if target in moving else "",
+        "swings": "modes" in moving.get(target, {}),
         "findings": result.findings if isinstance(result, Run) else [],
         "warnings": result.warnings,
         "tables": tables,
@@ -180,6 +182,12 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
         "origin": origin(result),
         "drive": result.dataset.attrs.get("drive_as_given") or result.drive.text,
     }
+
+
+def script() -> str:
+    """The scripts of a page, one after the other."""
+    parts = "".join(str(read(f"{name}.js")) for name in ("motion", "swing", "charts", "start"))
+    return f'"use strict";\n(() => {{\n{parts}}})();\n'
 
 
 def read(name: str) -> str | None:

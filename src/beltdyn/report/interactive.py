@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from html import escape
 
 from beltdyn.errors import ModelError
-from beltdyn.report.build import environment, read
+from beltdyn.report.build import environment, read, script
 from beltdyn.report.figures import Shown, charted
 from beltdyn.report.library import embedded, library
 from beltdyn.results import Result
@@ -77,7 +77,7 @@ def interactive(results: Result | Sequence[Result], *names: str) -> InteractiveF
         colors=json.dumps([]),
         library=library() if charts else "",
         style=read("page.css"),
-        script=read("page.js"),
+        script=script(),
     )
     return InteractiveFigures(text, tuple(one.name for one in shown), _height(shown))
 

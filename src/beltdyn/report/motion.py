@@ -57,9 +57,9 @@ def motion(run: Run, runs: int = 1) -> dict[str, Any]:
         "closed": not run.drive.ends,
         "points": place.shape[1],
         "extent": [low.tolist(), high.tolist()],
-        "place": _packed((place - low) / span, np.uint16),
-        "tension": _packed(_share(tension), np.uint8),
-        "pressure": _packed(_share(pressure), np.uint8),
+        "place": packed((place - low) / span, np.uint16),
+        "tension": packed(_share(tension), np.uint8),
+        "pressure": packed(_share(pressure), np.uint8),
         "range": {"tension": _range(tension), "pressure": _range(pressure)},
         "angle": fields["pulley_angle"].values.round(5).tolist(),
         "speed": fields["pulley_speed"].values[-1].tolist(),
@@ -129,6 +129,6 @@ def _share(values: FloatArray) -> FloatArray:
     return np.asarray((values - low) / (high - low)) if high > low else np.zeros_like(values)
 
 
-def _packed(shares: FloatArray, kind: type[np.unsignedinteger[Any]]) -> str:
+def packed(shares: FloatArray, kind: type[np.unsignedinteger[Any]]) -> str:
     """Shares from 0 to 1 as whole numbers in base64."""
     return base64.b64encode((shares * np.iinfo(kind).max).round().astype(kind).tobytes()).decode()

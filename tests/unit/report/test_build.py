@@ -221,6 +221,11 @@ def test_a_report_has_what_matters(kind: str, excited: bd.Drive, tmp_path: Path)
     explained = text.partition('id="meaning"')[2].partition("</section>")[0]
     for meaning, kinds in MEANINGS.items():
         assert (meaning in explained) == (kind in kinds), meaning
+    moving = data(text, "motions").values()
+    assert [sorted(one.keys() & {"modes", "time"}) for one in moving] == {
+        "modes": [["modes"]],
+        "steady": [["time"]],
+    }.get(kind, [])
     judged = kind in ("steady", "map")
     assert ("The limit is kept" in text) == judged
     assert ('id="numbers"' in text) == (judged or kind == "static")
