@@ -46,5 +46,5 @@ def test_arms_hold_their_pulleys() -> None:
     arm = np.array(shown["center"][pulley]) - [x, y]
     for one in shown["modes"]:
         ways = np.array(one["center"])
-        np.testing.assert_allclose(arm @ ways[pulley], 0.0, atol=1e-6 * np.linalg.norm(arm))
+        np.testing.assert_allclose(arm @ ways[pulley], 0.0, atol=1e-6 * float(np.linalg.norm(arm)))
         assert np.abs(np.delete(ways, pulley, axis=0)).max() == 0.0
