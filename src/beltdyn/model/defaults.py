@@ -22,7 +22,7 @@ TENSION_LOST = 0.005
 DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.001
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
 DAMPING_RATIO = 0.5
-"""Damping of contact over the critical one."""
+"""Damping of contact over the critical one, which steadies a belt where it slides."""
 STANDSTILL = 0.05
 """Part of the largest speed below which the creep velocity no longer falls: steeper friction spoils the start."""
 CREEP_LENGTHS = 16.0

@@ -5,7 +5,7 @@ from typing import Any
 
 from beltdyn.errors import ModelError
 from beltdyn.model.drive import Drive
-from beltdyn.parts.change import unit_at
+from beltdyn.parts.change import as_argument, unit_at
 from beltdyn.parts.error_location import entry_name
 from beltdyn.parts.quantity import tolerance_in
 from beltdyn.parts.text_file import parse_toml
@@ -22,7 +22,7 @@ def tolerances_of(drive: Drive) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        Half the width of the interval in which a number lies.
+        Half the width of the interval in which a number lies; of a diameter that of the radius.
 
     Examples
     --------
@@ -38,7 +38,8 @@ def tolerances_of(drive: Drive) -> dict[str, float]:
         except (ModelError, ValueError):
             continue  # no number: a name
         if tolerance is not None:
-            found[path] = tolerance
+            number, size = as_argument(drive, path, tolerance)
+            found[number] = size
     return found
 
 

@@ -5,13 +5,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from beltdyn.model.drive import Drive
+from beltdyn.model.tolerances import tolerances_of
 from beltdyn.model.toml_reader import loads
-from beltdyn.model.toml_writer import dumps
-from beltdyn.parts.change import steps_of, unit_at
-from beltdyn.parts.error_location import entry_name
+from beltdyn.model.toml_writer import location_of, spelled_out
+from beltdyn.parts.change import unit_at
 from beltdyn.parts.quantity import written_like
 from beltdyn.parts.text_file import parse_toml
-from beltdyn.parts.toml_edits import Edit, Location, changed_data, changed_text
+from beltdyn.parts.toml_edits import Edit, changed_data, changed_text
 
 _DIGITS = 10
 
@@ -52,7 +52,7 @@ def edited(drive: Drive, changes: Mapping[str, float]) -> str:
             return text
     except (LookupError, ValueError):
         pass
-    return dumps(changed)
+    return spelled_out(changed, tolerances_of(drive))
 
 
 def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
@@ -63,20 +63,11 @@ def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
     KeyError, IndexError
         If nothing stands there.
     """
+    location = location_of(data, path)
     given: Any = data
-    location: Location = ()
-    for step in steps_of(path):
-        key = _key(given, step)
-        given, location = given[key], (*location, key)
+    for key in location:
+        given = given[key]
     return Edit("set", location, written_like(value, given, unit, _DIGITS))
-
-
-def _key(holder: Any, step: str) -> str | int:
-    """A step of a path as a key, or the position in a list."""
-    if isinstance(holder, Mapping):
-        return step
-    names = [entry_name(one) or str(number) for number, one in enumerate(holder, 1)]
-    return names.index(step) if step in names else int(step) - 1
 
 
 def _near(one: Any, other: Any) -> bool:

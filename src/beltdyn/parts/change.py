@@ -112,6 +112,37 @@ def unit_at(part: Part, path: str) -> str:
     return unit
 
 
+def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:
+    """A number with a tolerance as the argument that it is turned into: of a diameter, the radius with half of it.
+
+    Parameters
+    ----------
+    part
+        The part.
+    path
+        As for `changed_arguments`.
+    size
+        Its tolerance.
+
+    Returns
+    -------
+    path, size
+        Those given where it is turned into no other.
+
+    Raises
+    ------
+    ModelError
+        If the path leads nowhere.
+    """
+    inner, steps = _innermost(part, path)
+    other = inner.in_place_of.get(steps[0])
+    if other is None:
+        return path, size
+    value = inner.value_of(steps[0])
+    least, largest = (inner.replace(**{steps[0]: value + sense * size}).value_of(other) for sense in (-1.0, 1.0))
+    return f"{path.removesuffix(steps[0])}{other}", 0.5 * abs(largest - least)
+
+
 def _innermost(part: Part, path: str) -> tuple[Part, Steps]:
     """The innermost part on a path, and the steps from there."""
     followed = _followed(part, path)
