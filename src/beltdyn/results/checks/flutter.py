@@ -3,9 +3,10 @@
 import math
 from collections.abc import Iterator
 
+from beltdyn.model.defaults import DAMPING_RATIO
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
-from beltdyn.results.checks.power import DAMPING_LIMIT, STEADYING, damping_share, may_flutter
+from beltdyn.results.checks.power import DAMPING_LIMIT, damping_share, may_flutter
 from beltdyn.results.recorded import attribute
 
 GROWTH_LIMIT = math.log(100.0)
@@ -37,6 +38,6 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
             fault,
             f"Contact forces are uncertain then, and speeds and slip by as much as a run with simulation.rtol = "
             f"{drive.simulation.rtol / 10.0:g} changes them; real belts rarely flutter so.",
-            f"Set contact.damping = {STEADYING * drive.critical_damping:.2g} N s/m^2, half of critical, in place of "
-            f"{drive.contact_damping:.2g}.",
+            f"Set contact.damping = {DAMPING_RATIO * drive.critical_damping:.2g} N s/m^2, half of critical, in place "
+            f"of {drive.contact_damping:.2g}.",
         )

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from beltdyn.model.defaults import DAMPING_RATIO
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.parts.quantity import RPM
 from beltdyn.results.balance import Balance
@@ -13,9 +14,6 @@ DAMPING_LIMIT = 0.01
 
 _DAMPING_GOAL = 1e-3
 """The same with the damping that the remedy names."""
-
-STEADYING = 0.5
-"""Contact damping over the critical one that steadies a belt where it slides."""
 
 GAIN_LIMIT = 1e-3
 """Largest power that a loss may give, over the power put in, without a warning."""
@@ -54,7 +52,7 @@ def may_flutter(evidence: Evidence) -> bool:
     its own loss, and no sign of vibrations.
     """
     growth = attribute(evidence.recorded, "flutter_growth", 0.0)
-    return growth > 0.0 and evidence.drive.contact_damping < STEADYING * evidence.drive.critical_damping
+    return growth > 0.0 and evidence.drive.contact_damping < DAMPING_RATIO * evidence.drive.critical_damping
 
 
 def artificial_losses(evidence: Evidence) -> Iterator[Finding]:
