@@ -1,13 +1,15 @@
 """An analysis: how steady running, or the drive at rest, and its modes change with the numbers of the drive file.
 
-Each number is changed a little up and down, and Newton's method follows from the state at hand, on the same mesh: its
-first step is the linear change of the implicit function theorem, du = -(dF/du)^-1 (dF/dp) dp, and those after it take
-the rest.  Where a tension at rest is asked for, the length of the belt, or the take-up, follows.  Modes are followed by
+Each number is changed a little up and down, and the state follows on the same mesh by the tangent of the state at hand,
+which is factorised once: the first step is that of the implicit function theorem, du = -(dF/du)^-1 dF, with dF the
+residual of the changed drive, and those after it, with the same tangent, take the rest.  An adjoint solution for each
+result would save the substitution, which is a small part of making the changed drive, whose residual it needs too.
+Where a tension at rest is asked for, the length of the belt, or the take-up, follows in each changed drive: on its own,
+it would change the tension by so much more that other points of the mesh come into contact.  Modes are followed by
 their shapes, with right and left eigenvectors (`state_modes`).
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,17 +19,14 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.model.tolerances import tolerances_of
 from beltdyn.parts.change import value_at
-from beltdyn.parts.error_location import entry_name
-from beltdyn.parts.messages import suggest
-from beltdyn.parts.part import Part
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.results.schema import AXIS_NAMES
 from beltdyn.solve.modes import REST, STEADY
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.studies.drive_numbers import PART, Number, chosen_numbers
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
-from beltdyn.solve.studies.named_results import listed, names_in, names_of, need_bands, unit_of
+from beltdyn.solve.studies.named_results import names_in, names_of, need_bands, unit_of
 from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.studies.spread import with_spread
 from beltdyn.solve.studies.tolerance_points import require_points, results_at_points
@@ -35,26 +34,6 @@ from beltdyn.solve.sweep import without_schedules
 
 _USUAL = {STEADY: "efficiency, least_slip_safety, largest_tension", REST: "tension, hub_load"}
 """Results that are looked at where none are named."""
-
-_PART = 0.01
-"""Of a number, for which effects are told."""
-_MOVE = 1e-3
-"""Of a coordinate, whose zero is a matter of convention, for which effects are told, m."""
-_COORDINATES = ("center", "pivot", "point")
-_KEPT = ("simulation", "steady", "limits", "contact.stiffness", "contact.damping")
-"""Where numbers stand that have no effect on a state that stays, or are those of the method."""
-_SWITCHES = ("schedule",)
-"""Keys of what lies between 0 and 1."""
-
-
-class Number(NamedTuple):
-    """A number of a drive file."""
-
-    path: str
-    """As `Drive.with_` takes it."""
-    value: float
-    step: float
-    """Change for which effects are told."""
 
 
 def sensitivity(
@@ -132,7 +111,7 @@ def sensitivity(
             'width = "12.5 ± 0.1 mm".'
         )
     chosen, wanted = (
-        _chosen(given, numbers, tolerances),
+        chosen_numbers(given, numbers, tolerances),
         names_in(names_of(drive, at_rest=about == REST), of or _USUAL[about]),
     )
     rest = bring_to_stand(given)
@@ -205,57 +184,9 @@ def _warnings(state: FoundState, names: Sequence[str]) -> list[str]:
     return found
 
 
-def numbers_of(part: Part, path: str = "") -> Iterator[Number]:
-    """The numbers of a drive that can be changed a little, with their paths; zeros only where they are coordinates.
-
-    Parameters
-    ----------
-    part
-        A drive, or a part of one.
-    path
-        Of the part.
-    """
-    for key, value in part.arguments.items():
-        yield from _numbers_in(value, f"{path}.{key}" if path else key)
-
-
-def _numbers_in(value: object, path: str) -> Iterator[Number]:
-    """The numbers in a value of a drive."""
-    key = path.rpartition(".")[2]
-    if path in _KEPT or key in _SWITCHES or isinstance(value, bool | int | str):
-        return
-    if isinstance(value, Part):
-        yield from numbers_of(value, path)
-    elif isinstance(value, float):
-        if key.partition("[")[0] in _COORDINATES:
-            yield Number(path, value, _MOVE)
-        elif value != 0.0:
-            yield Number(path, value, _PART * value)
-    elif isinstance(value, Sequence) and (len(value) == len(AXIS_NAMES) or any(isinstance(one, Part) for one in value)):
-        for number, one in enumerate(value, 1):
-            yield from _numbers_in(one, f"{path}[{entry_name(one) or number}]")
-
-
-def _chosen(drive: Drive, numbers: str | None, tolerances: Mapping[str, float]) -> list[Number]:
-    """The numbers that are asked for; those with tolerances are numbers of the drive whatever they stand for."""
-    known = {one.path: one for one in numbers_of(drive)}
-    for path, size in tolerances.items():
-        value = float(value_at(drive, path))
-        known.setdefault(path, Number(path, value, _PART * value or size))
-    if numbers is None:
-        return list(known.values())
-    wanted = listed(numbers)
-    for path in wanted:
-        if path not in known:
-            raise ModelError(
-                f"{path} is no number of this drive that can be changed a little. {suggest(path, list(known))}"
-            )
-    return [known[path] for path in wanted]
-
-
 def _derivatives(changes: SmallChanges, state: FoundState, number: Number, names: Sequence[str]) -> FloatArray:
     """Derivatives of results with respect to a number, by central differences of the states."""
-    change = CHANGE * number.step / _PART
+    change = CHANGE * number.step / PART
 
     def at(value: float) -> FloatArray:
         beside = state.neighbour(changes.drive(number.path, value))

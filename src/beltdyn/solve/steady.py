@@ -15,6 +15,7 @@ from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import FINER, bring_to_stand, stand
 from beltdyn.solve.steady_running.neighbour import require_neighbour, search_from, with_length_of
+from beltdyn.solve.steady_running.newton import SteadyWork
 from beltdyn.solve.steady_running.refinement import MeshRule, against_coarser, is_fine, refine
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
@@ -141,7 +142,9 @@ class Beside(NamedTuple):
         return _as_run(self.drive, self.drive.simulation.end, found)
 
 
-def steady_beside(drive: Drive, start: Run, guess: FloatArray | None = None) -> Beside | None:
+def steady_beside(
+    drive: Drive, start: Run, guess: FloatArray | None = None, tangent: SteadyWork | None = None
+) -> Beside | None:
     """Look for the steady running of a drive on the mesh of another one; None if it is not found from there.
 
     Parameters
@@ -152,15 +155,23 @@ def steady_beside(drive: Drive, start: Run, guess: FloatArray | None = None) -> 
         Steady running of one that differs a little.
     guess
         By how much its unknowns may differ from those that are carried over from the other one, as far as is known.
+    tangent
+        That of the other one, from `tangent_of`, with which a small change is followed by the implicit function
+        theorem.
     """
     require_neighbour(drive, start, None)
     search, begun = _begin(drive, start, drive.simulation.end), time.perf_counter()
     carried = search.unknowns()
     if guess is not None:
         search.place(carried + guess)
-    if not search.resume():
+    if not search.resume(tangent):
         return None
     return Beside(drive, search, start, search.unknowns() - carried, time.perf_counter() - begun)
+
+
+def tangent_of(run: Run) -> SteadyWork:
+    """The factorised tangent of steady running, from `steady_state`."""
+    return _begin(run.drive, run, float(run.dataset.attrs["steady_at"])).factorised()
 
 
 def steady_on_mesh(drive: Drive, start: Run) -> Run:

@@ -1,15 +1,23 @@
 """Sensitivities against closed forms, against running states further away, and by what changes nothing."""
 
+from importlib.resources import files
+
 import numpy as np
 import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, loads
+from beltdyn.parts.change import value_at
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, summarize
-from beltdyn.solve.sensitivity import numbers_of, sensitivity
+from beltdyn.solve.rest.staying import bring_to_stand
+from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.studies.drive_numbers import numbers_of
+from beltdyn.solve.studies.found_state import Running
+from beltdyn.solve.studies.small_changes import SmallChanges
+from beltdyn.solve.sweep import without_schedules
 
 TENSION = 600.0
 SPANS = "driver-driven", "driven-driver"
@@ -142,3 +150,22 @@ def test_numbers_of_a_drive(loaded: Drive) -> None:
 def test_wrong_names_are_told(loaded: Drive, options: dict[str, str], said: str) -> None:
     with pytest.raises(ModelError, match=said):
         sensitivity(loaded, **options)  # type: ignore[arg-type]
+
+
+@pytest.mark.slow
+def test_derivatives_do_not_depend_on_the_step() -> None:
+    """Hub loads of a drive of seven pulleys are sums of contact forces, which tell states apart by 1e-9 of a radius."""
+    drive = loads(files("beltdyn").joinpath("examples", "accessory_drive.toml").read_text(encoding="utf-8"))
+    given = without_schedules(drive, drive.simulation.end)[0]
+    rest = bring_to_stand(given)
+    state, changes, path = Running(steady_state(rest.drive)), SmallChanges(given, rest), "pulley[alternator].radius"
+    radius, load = value_at(given, path), "hub_load[alternator]"
+
+    def effect(part: float) -> float:
+        one, other = (
+            state.neighbour(changes.drive(path, (1.0 + sense * part) * radius)).value(load) for sense in (1.0, -1.0)
+        )
+        return (one - other) / (2.0 * part)
+
+    effects = [effect(part) for part in (3e-5, 1e-5, 3e-6)]
+    assert np.ptp(effects) < 1e-5 * state.value(load)

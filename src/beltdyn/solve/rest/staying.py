@@ -198,7 +198,7 @@ def _balance(drive: Drive, system: System, state: State, anchor: Anchor, factor:
     """Bring a state to equilibrium with contact stiffer by a factor; if that fails, False, and the state as it was."""
     still, begun = without_friction(with_stiffer_contact(system, factor)), state.position.copy()
     tolerance = TOLERANCE * float(np.min(drive.radii))
-    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, steady_work(still))[0] == FOUND
+    found = find_steady(still, state.at(0.0), anchor, tolerance, _MOST, False, steady_work(still))[0] == FOUND
     if not found:
         state.position[:] = begun
     return found

@@ -43,7 +43,7 @@ def steady_work(system: System) -> SteadyWork:
 
 @kernel
 def find_steady(
-    system: System, motion: Motion, anchor: Anchor, tolerance: float, most: int, work: SteadyWork
+    system: System, motion: Motion, anchor: Anchor, tolerance: float, most: int, factorised: bool, work: SteadyWork
 ) -> tuple[int, int]:
     """Find steady running, or equilibrium at rest, from a state nearby.
 
@@ -56,11 +56,14 @@ def find_steady(
     anchor
         What keeps the mesh in place.
     tolerance
-        Size of the last step, m.
+        Size of the last step, m. It is known before it is made, and differences of states are the more exact with it.
     most
         Iterations, at most; with none of them the tangent at the state is factorised.
+    factorised
+        Whether the factors in `work` serve the first iteration: those of a state nearby, of which the first step is
+        that of the implicit function theorem.
     work
-        From `steady_work`; the body forces in it are those of the state that was found.
+        From `steady_work`; the body forces in it are those of the state that was found, but for the last step.
 
     Returns
     -------
@@ -69,11 +72,12 @@ def find_steady(
     """
     equations = work.equations
     node_part, border_part = equations.node_part, equations.border_part
-    assemble_steady(system, motion, anchor, True, equations)
+    assemble_steady(system, motion, anchor, not factorised, equations)
     if most == 0 and not factorise_ring(equations.matrix, True):
         return SINGULAR, 0
     for iteration in range(1, most + 1):
-        if not factorise_ring(equations.matrix, True):
+        known = factorised and iteration == 1
+        if not known and not factorise_ring(equations.matrix, True):
             return SINGULAR, iteration
         substitute(equations.matrix, True, node_part, border_part)
         size, length = _size(system, node_part, border_part), 1.0
@@ -91,6 +95,7 @@ def find_steady(
         while length == 1.0 and tolerance < ahead <= _CONTRACTION * size:
             size, ahead = ahead, _once_more(system, motion, anchor, work)
         if ahead <= tolerance:
+            _step(system, motion, anchor, -1.0, work.ahead_node, work.ahead_border)
             return FOUND, iteration
         assemble_steady(system, motion, anchor, True, equations)
     return NOT_FOUND, most

@@ -14,7 +14,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.solve.rest.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_running.continuation import go_on
-from beltdyn.solve.steady_running.newton import FOUND, find_steady, steady_work
+from beltdyn.solve.steady_running.newton import FOUND, SteadyWork, find_steady, steady_work
 from beltdyn.solve.steady_running.slip_limit import slips_through
 from beltdyn.system.arrays import System
 from beltdyn.system.build_staying import on_other_mesh
@@ -113,9 +113,27 @@ class SteadySearch:
         self.state.position[:], self.state.velocity[:] = unknowns[:size], unknowns[size : 2 * size]
         self.constant.frame.speed[:] = unknowns[2 * size :]
 
-    def resume(self) -> bool:
-        """Find steady running under the loads that are asked for from that under others; False if that fails."""
-        return self._try(Setting())
+    def resume(self, tangent: SteadyWork | None = None) -> bool:
+        """Find steady running under the loads that are asked for from that under others; False if that fails.
+
+        Parameters
+        ----------
+        tangent
+            From `factorised`, of steady running that differs a little, on the same mesh. It serves as long as
+            corrections shrink well; otherwise it is overwritten.
+        """
+        if tangent is None:
+            return self._try(Setting())
+        self._work = tangent
+        return self._try(Setting(), factorised=True) or self._try(Setting())
+
+    def factorised(self) -> SteadyWork:
+        """The factorised tangent at the state, for small changes of the drive."""
+        system = self._at(self.setting)
+        drive_shafts(system, self.state.velocity)
+        anchor = anchor_at(system, self.state, False)
+        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, False, self._work)
+        return self._work
 
     def run(self, rest: Standing) -> None:
         """Find steady running under the loads that are asked for.
@@ -234,10 +252,8 @@ class SteadySearch:
 
     def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
         """By how much tensioners move where they are pushed, N or N m, to first order, m or rad."""
-        system, matrix, found = self._at(self.setting), self._work.equations.matrix, list[FloatArray]()
-        anchor = anchor_at(system, self.state, False)
-        find_steady(system, self.state.at(0.0), anchor, 0.0, 0, self._work)
-        unknown = system.bodies.unknown[-system.tensioners.size :]
+        matrix, found = self.factorised().equations.matrix, list[FloatArray]()
+        unknown = self._system.bodies.unknown[-self._system.tensioners.size :]
         for push in pushes:
             clear(matrix, False)
             matrix.border_side[unknown] = push
@@ -294,14 +310,17 @@ class SteadySearch:
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         self._follow(Setting())
 
-    def _try(self, setting: Setting) -> bool:
-        """Look for steady running at a setting from the state that there is, which stays where that fails."""
+    def _try(self, setting: Setting, *, factorised: bool = False) -> bool:
+        """Look for steady running at a setting from the state that there is, which stays where that fails.
+
+        The first corrections are by the tangent that is factorised already, if it is.
+        """
         state, system = self.state, self._at(setting)
         before = self.unknowns()
         drive_shafts(system, state.velocity)
         tolerance = TOLERANCE * float(np.min(self.drive.radii))
         anchor = anchor_at(system, state, False)
-        status, iterations = find_steady(system, state.at(0.0), anchor, tolerance, _MOST, self._work)
+        status, iterations = find_steady(system, state.at(0.0), anchor, tolerance, _MOST, factorised, self._work)
         self.iterations += iterations
         if status == FOUND:
             self.setting, self._moments = setting, self._work.equations.forces.moment.copy()

@@ -12,7 +12,7 @@ from beltdyn.model import Drive
 from beltdyn.model.study import FreeNumber, Points
 from beltdyn.parts.change import converted, unit_at, value_at
 from beltdyn.solve.rest.staying import Standing, bring_to_stand
-from beltdyn.solve.steady import Beside, require_found, steady_beside, steady_from
+from beltdyn.solve.steady import Beside, steady_beside, steady_from
 from beltdyn.solve.steady_running.continuation import go_on
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
 from beltdyn.solve.studies.named_results import need_bands
@@ -262,7 +262,7 @@ class Designs:
         """The state of a drive with a number changed by a step; notes the tangent on the way there."""
         if not isinstance(state, Running):
             return state.neighbour(drive)
-        beside = require_found(steady_beside(drive, state.run))
+        beside = state.beside(drive)
         tangents[path] = beside.change / step
         return state.of(beside, state)
 

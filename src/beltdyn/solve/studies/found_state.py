@@ -11,7 +11,8 @@ from beltdyn.model import Drive
 from beltdyn.results import Run
 from beltdyn.solve.rest.installation import looked_at
 from beltdyn.solve.rest.staying import Standing, stand_like
-from beltdyn.solve.steady import Beside, require_found, steady_beside
+from beltdyn.solve.steady import Beside, require_found, steady_beside, tangent_of
+from beltdyn.solve.steady_running.newton import SteadyWork
 from beltdyn.solve.steady_running.operating_points import labels_of
 from beltdyn.solve.studies.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
 from beltdyn.solve.studies.state_modes import FollowedModes, FoundModes, Mode, StateModes
@@ -107,7 +108,12 @@ class FoundState(ABC):
             count *= 2
 
     def _mode_of(self, variable: str, label: str) -> Mode | None:
-        """The mode of which a variable of `OF_MODES` is."""
+        """The mode of which a variable of `OF_MODES` is; that of a neighbour is chosen where it is followed from."""
+        near = self._near if isinstance(self._modes, FollowedModes) else None
+        chosen = (near or self)._chosen_mode(variable, label)
+        return None if chosen is None else self._modes.like(chosen)
+
+    def _chosen_mode(self, variable: str, label: str) -> Mode | None:
         if OF_MODES[variable].dims == ("span",):
             return self._mode_of_span(label)
         number = int(label)
@@ -168,7 +174,15 @@ class Running(FoundState):
 
     def neighbour(self, drive: Drive) -> FoundState:
         """The steady running of a drive that differs a little, on the same mesh."""
-        return self.of(require_found(steady_beside(drive, self.run)), self)
+        return self.of(self.beside(drive), self)
+
+    def beside(self, drive: Drive) -> Beside:
+        """What `neighbour` finds, by the tangent of this state."""
+        return require_found(steady_beside(drive, self.run, tangent=self._tangent))
+
+    @cached_property
+    def _tangent(self) -> SteadyWork:
+        return tangent_of(self.run)
 
     def of(self, found: Beside, near: FoundState | None) -> "Running":
         """Another state that was found on the same mesh; parameters as for this one."""

@@ -9,14 +9,13 @@ the first step of Newton's method for them.  Its derivative is that of the impli
 """
 
 from collections.abc import Sequence
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.solve.modes import FIRST_STUCK, eigenmodes
 from beltdyn.solve.vibration.mode_shapes import belt_points, shares_of
+from beltdyn.solve.vibration.mode_table import FIRST_STUCK, eigenmodes
 from beltdyn.solve.vibration.small_motions import SmallMotions, dry_tensioners
 
 if TYPE_CHECKING:
@@ -41,6 +40,8 @@ class Mode(NamedTuple):
     """Of its kinetic energy, shape (P,)."""
     alike: int
     """Modes of the same eigenvalue, itself among them."""
+    among: int
+    """How many modes were looked for when it was found."""
 
     @property
     def frequency(self) -> float:
@@ -63,6 +64,15 @@ class StateModes(Protocol):
         ----------
         count
             How many.
+        """
+
+    def like(self, mode: Mode) -> Mode:
+        """The mode of this state which is like one of the state from which modes are followed.
+
+        Parameters
+        ----------
+        mode
+            One of the modes found there.
         """
 
 
@@ -93,6 +103,10 @@ class FoundModes:
     def first(self, count: int) -> list[Mode]:
         """The lowest modes; see `StateModes`."""
         return [mode for lowest in self.lowest(count) for mode in lowest.modes]
+
+    def like(self, mode: Mode) -> Mode:
+        """The mode itself."""
+        return mode
 
     def lowest(self, count: int) -> "list[_Lowest]":
         """The lowest modes of each of the variants, with their eigenvectors.
@@ -125,11 +139,13 @@ class FollowedModes:
 
     def first(self, count: int) -> list[Mode]:
         """The same modes as the lowest ones of the other state; see `StateModes`."""
-        found = list[Mode]()
-        for lowest, motions in zip(self._base.lowest(count), self._motions, strict=True):
-            values = lowest.near(motions)
-            found += [mode._replace(value=value) for mode, value in zip(lowest.modes, values, strict=True)]
-        return found
+        return [self.like(mode) for mode in self._base.first(count)]
+
+    def like(self, mode: Mode) -> Mode:
+        """The mode of this state which is like one of the other; see `StateModes`."""
+        variant, first = (1, FIRST_STUCK) if mode.number >= FIRST_STUCK else (0, 1)
+        value = self._base.lowest(mode.among)[variant].near(mode.number - first, self._motions[variant])
+        return mode._replace(value=value)
 
 
 class _Group(NamedTuple):
@@ -154,32 +170,37 @@ class _Lowest:
         self._values, self._vectors = eigenmodes(motions, count)
         shares = shares_of(motions, belt_points(motions), self._values, self._vectors)
         each = [shares.of(number) for number in range(self._values.size)]
-        self._alike = _alike(self._values)
-        counts = {number: len(members) for members in self._alike for number in members}
+        alike = _alike(self._values)
+        self._members = {number: members for members in alike for number in members}
+        self._groups = dict[int, _Group]()
         self.modes = [
-            Mode(first + number, complex(value), one.kind, one.span, counts[number])
+            Mode(first + number, complex(value), one.kind, one.span, len(self._members[number]), count)
             for number, (value, one) in enumerate(zip(self._values, each, strict=True))
         ]
 
-    def near(self, motions: SmallMotions) -> list[complex]:
-        """Eigenvalues of a state nearby, 1/s; those that are alike change by their mean."""
-        found = self._values.copy()
-        for group in self._groups:
-            ahead = _projected(group.left, _dynamic_stiffness(motions, group.value), group.right)
-            change = np.trace(np.linalg.solve(group.slope, ahead - group.here)) / len(group.members)
-            found[group.members] -= change
-        return [complex(value) for value in found]
+    def near(self, number: int, motions: SmallMotions) -> complex:
+        """An eigenvalue of a state nearby, 1/s; those that are alike change by their mean.
 
-    @cached_property
-    def _groups(self) -> list[_Group]:
-        return [self._group(members) for members in self._alike]
+        Parameters
+        ----------
+        number
+            Counted from zero.
+        motions
+            About that state.
+        """
+        group = self._group(self._members[number])
+        ahead = _between(group.left, motions, group.value, group.right)
+        change = np.trace(np.linalg.solve(group.slope, ahead - group.here)) / len(group.members)
+        return complex(self._values[number] - change)
 
     def _group(self, members: Sequence[int]) -> _Group:
-        value, right = complex(np.mean(self._values[members])), self._vectors[:, members]
-        left = _left_eigenvectors(_dynamic_stiffness(self._motions, value * (1.0 + _BESIDE)), len(members))
-        here = _projected(left, _dynamic_stiffness(self._motions, value), right)
-        slope = _projected(left, self._motions.damping + 2.0 * value * self._motions.mass, right)
-        return _Group(members, value, right, left, here, slope)
+        if members[0] not in self._groups:
+            value, right = complex(np.mean(self._values[members])), self._vectors[:, members]
+            left = _left_eigenvectors(_dynamic_stiffness(self._motions, value * (1.0 + _BESIDE)), len(members))
+            here = _between(left, self._motions, value, right)
+            slope = left.conj().T @ (self._motions.damping @ right + 2.0 * value * (self._motions.mass @ right))
+            self._groups[members[0]] = _Group(members, value, right, left, here, np.asarray(slope, complex))
+        return self._groups[members[0]]
 
 
 def _alike(values: ComplexArray) -> list[list[int]]:
@@ -200,9 +221,10 @@ def _dynamic_stiffness(motions: SmallMotions, value: complex) -> "csc_array":
     return found
 
 
-def _projected(left: ComplexArray, matrix: "csc_array", right: ComplexArray) -> ComplexArray:
-    """Y* A X."""
-    return np.asarray(left.conj().T @ np.asarray(matrix @ right), complex)
+def _between(left: ComplexArray, motions: SmallMotions, value: complex, right: ComplexArray) -> ComplexArray:
+    """Y* L(s) X, without making L(s)."""
+    met = motions.stiffness @ right + value * (motions.damping @ right) + value**2 * (motions.mass @ right)
+    return np.asarray(left.conj().T @ met, complex)
 
 
 def _left_eigenvectors(matrix: "csc_array", count: int) -> ComplexArray:
