@@ -6,12 +6,12 @@ from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Variable
-from beltdyn.solve.modes import SLIDING, STUCK
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady_running.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints
 from beltdyn.solve.vibration.campbell_diagram import CampbellDiagram
 from beltdyn.solve.vibration.excitation import given_excitations, own_excitations
+from beltdyn.solve.vibration.mode_table import SLIDING, STUCK
 from beltdyn.solve.vibration.waves import averaged
 
 _KEPT = (

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray, IntArray
-from beltdyn.solve.modes import eigenmodes
 from beltdyn.solve.vibration.mode_shapes import Shares, even_points, shares_of, speeds_of
+from beltdyn.solve.vibration.mode_table import eigenmodes
 from beltdyn.solve.vibration.small_motions import SmallMotions
 
 _LEAST, _LEAST_OF_PAUSED = 0.3, 0.6
