@@ -1,4 +1,5 @@
 from . import errors, model, plot, published, results, theory
+from .cosimulation import fmu
 from .errors import (
     BeltdynError,
     ConvergenceError,
@@ -210,6 +211,7 @@ __all__ = [
     "errors",
     "export",
     "find_equilibrium",
+    "fmu",
     "install",
     "interactive",
     "json_schema",

@@ -15,6 +15,7 @@ from beltdyn.cli.check import check
 from beltdyn.cli.console import show_error
 from beltdyn.cli.demo import demo
 from beltdyn.cli.export import export
+from beltdyn.cli.fmu import fmu
 from beltdyn.cli.new import new
 from beltdyn.cli.page import app as page
 from beltdyn.cli.paper import paper
@@ -38,7 +39,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, check),
     *ANALYSES.values(),
-    *(study, plot, report, export, page, demo, paper, catalogue, schema),
+    *(study, plot, report, export, fmu, page, demo, paper, catalogue, schema),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

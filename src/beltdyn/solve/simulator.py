@@ -1,36 +1,49 @@
 """A drive that is simulated step by step, with inputs set and outputs read between: for control, coupling, teaching."""
 
-from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import Profiles, go_on, profile_integral, profile_value
 from beltdyn.model import Drive, Pulley
 from beltdyn.parts.number_range import number_in
+from beltdyn.results.balance import STORED
 from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrators.integrator_state import IntegratorState
 from beltdyn.solve.integrators.trajectory import Statistics, drive_task
 from beltdyn.solve.progress import Report
 from beltdyn.solve.simulate import beginning_of, choose_integrator
+from beltdyn.system.arrays import ENERGY_WORKS
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state_forces import body_forces_at
 
+_OF_PULLEYS = (
+    *("pulley_speed", "pulley_angle", "shaft_speed", "shaft_angle", "shaft_torque", "pulley_torque"),
+    *("hub_load", "wrap_angle"),
+)
+"""Outputs of each pulley."""
+
 
 @dataclass(frozen=True)
 class SimulatorState:
-    """Where a simulator was, from `Simulator.save`."""
+    """Where a simulator was, from `Simulator.save`; it can be pickled, for a simulator of the same drive elsewhere."""
 
     integrator: IntegratorState
     pulleys: tuple[Pulley, ...]
     profiles: Profiles
     anew: bool
+
+    def __getstate__(self) -> dict[str, Any]:
+        return vars(self) | {"pulleys": [pulley.model_dump(mode="json", exclude_none=True) for pulley in self.pulleys]}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        vars(self).update(state, pulleys=tuple(Pulley.model_validate(one) for one in state["pulleys"]))
 
 
 class Simulator:
@@ -180,30 +193,31 @@ class Simulator:
         Returns
         -------
         dict
-            ``pulley_speed[NAME]``, ``pulley_angle[NAME]``, ``shaft_torque[NAME]`` (from outside),
-            ``pulley_torque[NAME]`` (of the belt), ``hub_load[NAME]``, ``wrap_angle[NAME]``,
-            ``span_tension[NAME-NAME]``, and of tensioners ``tensioner_position[NAME]``.
+            ``pulley_speed[NAME]``, ``pulley_angle[NAME]``, ``shaft_speed[NAME]``, ``shaft_angle[NAME]`` (behind a hub
+            chain), ``shaft_torque[NAME]`` (from outside), ``pulley_torque[NAME]`` (of the belt), ``hub_load[NAME]``,
+            ``wrap_angle[NAME]``, ``span_tension[NAME-NAME]``, of tensioners ``tensioner_position[NAME]``, and the
+            energies that the drive holds, the works done and the losses since the beginning, by their names in results.
         """
         system, state = self._integration.system, self._integration.state
         position, velocity = state.position[None].copy(), state.velocity[None].copy()
         forces = body_forces_at(system, np.array([self.time]), position, velocity)
         seen = observe_motion(system, position, velocity, forces, np.ones(1, dtype=bool))
-        first, count = system.first_body, len(system.pulleys)
+        pulleys = system.first_body + np.arange(len(system.pulleys))
+        shafts = system.first_body + system.pulleys.shaft
         of_pulleys = {
-            "pulley_speed": velocity[0, first : first + count],
-            "pulley_angle": position[0, first : first + count],
+            "pulley_speed": velocity[0, pulleys],
+            "pulley_angle": position[0, pulleys],
+            "shaft_speed": velocity[0, shafts],
+            "shaft_angle": position[0, shafts],
             "shaft_torque": seen.shaft_torque[0],
             "pulley_torque": seen.pulley_torque[0],
             "hub_load": np.hypot(*seen.hub_force[0].T),
             "wrap_angle": seen.wrap_angle[0],
         }
-        names = [pulley.name for pulley in self.drive.pulleys]
-        spans = [f"{a}-{b}" for a, b in self.drive.spans]
-        carried = [names[pulley] for pulley in system.tensioners.pulley]
-        found = {f"{key}[{name}]": value for key, row in of_pulleys.items() for name, value in _named(names, row)}
-        found |= {f"span_tension[{name}]": value for name, value in _named(spans, seen.span_tension[0])}
-        places = position[0, position.shape[1] - len(carried) :]
-        return found | {f"tensioner_position[{name}]": value for name, value in _named(carried, places)}
+        tensioners = position[0, position.shape[1] - len(system.tensioners) :]
+        stored = np.concatenate([getattr(seen, name) for name in STORED])
+        rows = [*(of_pulleys[name] for name in _OF_PULLEYS), seen.span_tension[0], tensioners, stored, state.work]
+        return dict(zip(output_names(self.drive), map(float, np.concatenate(rows)), strict=True))
 
     def save(self) -> SimulatorState:
         """Keep where it is, to which `restore` goes back; inputs that wait for the next step are not kept."""
@@ -224,5 +238,15 @@ class Simulator:
         self._wanted.clear()
 
 
-def _named(names: Sequence[str], values: FloatArray) -> list[tuple[str, float]]:
-    return [(name, float(value)) for name, value in zip(names, values, strict=True)]
+def output_names(drive: Drive) -> list[str]:
+    """Names of the outputs of a simulator, before there is one.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    of_pulleys = [f"{name}[{pulley.name}]" for name in _OF_PULLEYS for pulley in drive.pulleys]
+    of_spans = [f"span_tension[{before}-{after}]" for before, after in drive.spans]
+    of_tensioners = [f"tensioner_position[{one.pulley}]" for one in drive.moving_tensioners]
+    return [*of_pulleys, *of_spans, *of_tensioners, *STORED, *ENERGY_WORKS]

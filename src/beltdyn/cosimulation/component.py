@@ -1,0 +1,195 @@
+"""A drive as a component of a co-simulation: begun, set, stepped and read by a host, whatever the standard."""
+
+from dataclasses import dataclass, field
+from math import nan
+from pathlib import Path
+from typing import NamedTuple
+
+from beltdyn.cosimulation.interface import TOLERANCE, Interface
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, load
+from beltdyn.solve import Simulator
+from beltdyn.solve.progress import Report
+from beltdyn.solve.simulator import SimulatorState
+
+DRIVE_FILE = "drive.toml"
+
+_ROUNDING = 1e-6
+"""Part of a step by which a host may miss an instant: it adds up steps."""
+
+_INSTANT = 1e-9
+"""A step that is taken back, s: kernels are compiled by their first use."""
+
+
+class ComponentState(NamedTuple):
+    """Where a component is, from `Component.state`; it can be pickled.
+
+    Attributes
+    ----------
+    tolerance : float
+        With which it began.
+    wanted, applied : dict of str to float
+        Inputs that were set, and those that the drive has taken, by their names.
+    offset : float or None
+        Time of the host less that of the drive, s; None before the first step.
+    simulator : SimulatorState or None
+        None before the beginning.
+    """
+
+    tolerance: float
+    wanted: dict[str, float]
+    applied: dict[str, float]
+    offset: float | None
+    simulator: SimulatorState | None
+
+
+@dataclass
+class Component:
+    """A drive in the hands of a host.
+
+    A step that fails changes nothing: the component stays where it was, and can be stepped anew or set back.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    interface : Interface
+        What the host sets and reads.
+    """
+
+    drive: Drive
+    interface: Interface
+    tolerance: float = field(init=False)
+    """Relative tolerance of time steps, to be set before the beginning."""
+    stop: float | None = field(init=False, default=None)
+    """Instant of the host after which no step may end, s."""
+
+    def __post_init__(self) -> None:
+        self.tolerance = self.interface.tolerance
+        self._inputs = {one.name: one for one in self.interface.inputs}
+        self._wanted: dict[str, float] = {}
+        self._applied: dict[str, float] = {}
+        self._offset: float | None = None
+        self._simulator: Simulator | None = None
+        self._outputs: dict[str, float] = {}
+
+    @classmethod
+    def read(cls, folder: Path) -> "Component":
+        """The component whose drive file and interface are in a folder."""
+        return cls(load(folder / DRIVE_FILE), Interface.read(folder))
+
+    def begin(self, progress: Report | None = None) -> None:
+        """Find the state at the beginning, and compile what steps need where that is not on the disk yet.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with a `Progress` meanwhile.
+
+        Raises
+        ------
+        ModelError, ConvergenceError
+            As `Simulator`; the component has not begun then.
+        """
+        self._simulator = None
+        simulator = Simulator(self.drive.with_({TOLERANCE: self.tolerance}), progress)
+        start = simulator.save()
+        simulator.step(simulator.time + _INSTANT)
+        simulator.restore(start)
+        self._simulator, self._outputs = simulator, simulator.outputs()
+
+    @property
+    def time(self) -> float:
+        """Time of the host, s; of the drive before the first step."""
+        now = self._simulator.time if self._simulator else self.interface.begin
+        return now + (self._offset or 0.0)
+
+    def set(self, name: str, value: float) -> None:
+        """Set an input for the steps to come."""
+        self._wanted[name] = value
+
+    def get(self, name: str) -> float:
+        """An input as it was set, or an output; nan before the beginning."""
+        if name in self._inputs:
+            return self._wanted.get(name, self._inputs[name].start)
+        if self._simulator is None:
+            return nan
+        if not self._outputs:
+            self._outputs = self._simulator.outputs()
+        return self._outputs[name]
+
+    def step(self, time: float, size: float) -> None:
+        """Simulate a step of the host.
+
+        Parameters
+        ----------
+        time : float
+            Where it begins by the clock of the host, s: the first step begins where the drive does.
+        size : float
+            Its length, s.
+
+        Raises
+        ------
+        ModelError
+            If it does not begin where the last one ended, is not above zero, ends after the stop, or an input cannot
+            be set.
+        ConvergenceError
+            If the simulation cannot go on.
+        """
+        before = self.state()
+        try:
+            self._step(time, size)
+        except Exception:
+            self.restore(before)
+            raise
+
+    def _step(self, time: float, size: float) -> None:
+        """A step that leaves behind how far it has come if it fails."""
+        if self._simulator is None:
+            raise ModelError(
+                "the drive has not begun. Initialise the unit before its first step; an error as it was initialised "
+                "says what to change."
+            )
+        slack = _ROUNDING * abs(size)
+        if self._offset is None:
+            self._offset = time - self._simulator.time
+        if not abs(time - self.time) <= slack:
+            raise ModelError(
+                f"a step is to begin at t = {time:g} s, and the drive is at t = {self.time:g} s. Step on from there, "
+                "or set the state of that instant first."
+            )
+        if self.stop is not None and time + size > self.stop + slack:
+            raise ModelError(
+                f"a step is to end at t = {time + size:g} s, after the stop time {self.stop:g} s. End it there, or "
+                "set a later stop time at the beginning."
+            )
+        self._take_inputs(self._simulator)
+        self._outputs = {}
+        self._simulator.step(time + size - self._offset)
+
+    def _take_inputs(self, simulator: Simulator) -> None:
+        """Hand on inputs that have changed: each change takes new accelerations, and short steps after it."""
+        for name, value in self._wanted.items():
+            if value != self._applied.get(name):
+                one = self._inputs[name]
+                (simulator.set_speed if one.is_speed else simulator.set_torque)(one.pulley, value)
+                self._applied[name] = value
+
+    def state(self) -> ComponentState:
+        """Where it is, to which `restore` goes back; what follows is the same to the last bit."""
+        simulator = self._simulator.save() if self._simulator else None
+        return ComponentState(self.tolerance, dict(self._wanted), dict(self._applied), self._offset, simulator)
+
+    def restore(self, state: ComponentState) -> None:
+        """Go to a state of this component, or of another one of the same drive, in this process or another one."""
+        begun = state.simulator is not None
+        if begun and (self._simulator is None or self.tolerance != state.tolerance):
+            self.tolerance, self._simulator = state.tolerance, None
+            self.begin()
+        self.tolerance, self._offset = state.tolerance, state.offset
+        self._wanted, self._applied = dict(state.wanted), dict(state.applied)
+        self._outputs = {}
+        if self._simulator is not None and state.simulator is not None:
+            self._simulator.restore(state.simulator)
+        else:
+            self._simulator = None

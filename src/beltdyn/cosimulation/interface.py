@@ -1,0 +1,202 @@
+"""What a host sets and reads of a drive: names, units and meanings, and their choice."""
+
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple, Self
+
+from beltdyn import __version__
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive, Pulley, RotaryTensioner
+from beltdyn.parts.messages import suggest
+from beltdyn.results import RECORDED
+from beltdyn.solve.simulator import output_names
+
+_FILE = "interface.json"
+
+TOLERANCE = "simulation.rtol"
+"""The parameter that a host may set before it initialises a drive."""
+
+_SPEED_UNIT, _TORQUE_UNIT = "rad/s", "N m"
+
+
+class Input(NamedTuple):
+    """What a host sets.
+
+    Attributes
+    ----------
+    name : str
+        Its path in the drive file, ``pulley[NAME].speed`` or ``pulley[NAME].torque``.
+    pulley : str
+        Name of the pulley.
+    unit : str
+        rad/s or N m.
+    meaning : str
+        In words.
+    start : float
+        By the drive file at the beginning; zero where it gives no torque.
+    """
+
+    name: str
+    pulley: str
+    unit: str
+    meaning: str
+    start: float
+
+    @property
+    def is_speed(self) -> bool:
+        """Whether it is the speed of a pulley, and not its torque."""
+        return self.unit == _SPEED_UNIT
+
+
+class Output(NamedTuple):
+    """What a host reads.
+
+    Attributes
+    ----------
+    name : str
+        That of `Simulator.outputs`.
+    unit : str
+        SI.
+    meaning : str
+        In words.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+
+
+class Interface(NamedTuple):
+    """All that a host has to know of a drive.
+
+    Attributes
+    ----------
+    title : str
+        What the drive is.
+    identifier : str
+        Name of the files of the unit: letters, digits and underscores.
+    begin, end, interval : float
+        Begin and end of the run that the drive file describes, and time between its outputs, s.
+    tolerance : float
+        ``simulation.rtol`` of the drive file.
+    inputs, outputs : tuple
+        What is set and read.
+    version : str
+        That of beltdyn.
+    """
+
+    title: str
+    identifier: str
+    begin: float
+    end: float
+    interval: float
+    tolerance: float
+    inputs: tuple[Input, ...]
+    outputs: tuple[Output, ...]
+    version: str = __version__
+
+    def write(self, folder: Path) -> Path:
+        """Write it into a folder, where `read` finds it."""
+        file = folder / _FILE
+        file.write_text(json.dumps(self._asdict()), encoding="utf-8")
+        return file
+
+    @classmethod
+    def read(cls, folder: Path) -> Self:
+        """What `write` wrote into a folder."""
+        data = json.loads((folder / _FILE).read_text(encoding="utf-8"))
+        data["inputs"] = tuple(Input(*one) for one in data["inputs"])
+        data["outputs"] = tuple(Output(*one) for one in data["outputs"])
+        return cls(**data)
+
+
+def inputs_of(drive: Drive) -> dict[str, Input]:
+    """What can be set of a drive: the speed of each pulley whose speed is prescribed, the torque of each other one.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    """
+    made = [_input(pulley, drive.simulation.start_at) for pulley in drive.pulleys]
+    return {one.name: one for one in made}
+
+
+def _input(pulley: Pulley, begin: float) -> Input:
+    """What can be set of a pulley, with its value at the beginning (s)."""
+    given = pulley.speed or pulley.torque
+    key, unit = ("speed", _SPEED_UNIT) if pulley.prescribed else ("torque", _TORQUE_UNIT)
+    meaning = "Prescribed speed of the shaft" if pulley.prescribed else "Torque applied to the shaft"
+    start = float(given.at(begin)) if given else 0.0
+    return Input(f"pulley[{pulley.name}].{key}", pulley.name, unit, f"{meaning}: {pulley.name}", start)
+
+
+def choose_inputs(drive: Drive, names: Sequence[str] | None) -> tuple[Input, ...]:
+    """The inputs of some names.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    names : sequence of str, optional
+        By default all speeds and torques that the drive file gives.
+
+    Raises
+    ------
+    ModelError
+        If a name is not that of an input.
+    """
+    known = inputs_of(drive)
+    if names is None:
+        given = {pulley.name for pulley in drive.pulleys if pulley.speed or pulley.torque}
+        return tuple(one for one in known.values() if one.pulley in given)
+    _require_known("an input", names, known)
+    return tuple(known[name] for name in dict.fromkeys(names))
+
+
+def choose_outputs(drive: Drive, names: Sequence[str] | None) -> tuple[Output, ...]:
+    """The outputs of some names.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    names : sequence of str, optional
+        Such names, or those before the brackets, as ``pulley_speed`` for that of all pulleys; by default all.
+
+    Raises
+    ------
+    ModelError
+        If a name is not that of an output.
+    """
+    families: dict[str, list[str]] = {}
+    for name in output_names(drive):
+        families.setdefault(name.partition("[")[0], []).append(name)
+    choices = {name: [name] for family in families.values() for name in family} | families
+    wanted = list(families) if names is None else names
+    _require_known("an output", wanted, choices)
+    chosen = dict.fromkeys(name for one in wanted for name in choices[one])
+    return tuple(_output(drive, name) for name in chosen)
+
+
+def _require_known(what: str, names: Sequence[str], known: Iterable[str]) -> None:
+    """Make sure that there is what is named."""
+    every = list(known)
+    for name in names:
+        if name not in every:
+            remedy = "Name the file by -o" if name.endswith(".fmu") else suggest(name, every)
+            raise ModelError(f"{name!r} is not {what} of this drive. {remedy.removesuffix('.')}.".replace("?.", "?"))
+
+
+def _output(drive: Drive, name: str) -> Output:
+    """Unit and meaning of what a simulator gives."""
+    family, _, of = name.removesuffix("]").partition("[")
+    if family == "hub_load":
+        unit, meaning = "N", "Force of the belt on the pulley, its magnitude"
+    else:
+        unit, meaning = RECORDED[family].units, RECORDED[family].long_name
+    if family == "tensioner_position":
+        turns = any(one.pulley == of and isinstance(one, RotaryTensioner) for one in drive.tensioners)
+        unit = "rad" if turns else "m"
+    return Output(name, unit, f"{meaning}: {of}" if of else meaning)

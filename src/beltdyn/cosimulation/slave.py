@@ -1,0 +1,153 @@
+"""What units of both standards have in common: variables, their description, states, steps and messages."""
+
+import pickle
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element
+
+from beltdyn import __version__
+from beltdyn.cosimulation.component import Component, ComponentState
+from beltdyn.cosimulation.description import complete_description
+from beltdyn.cosimulation.interface import TOLERANCE
+from beltdyn.errors import BeltdynError
+
+_WARNING, _ERROR = 1, 3
+"""Status of a message, the same numbers in both standards."""
+
+
+class Standard(NamedTuple):
+    """Names of a package that makes units.
+
+    Attributes
+    ----------
+    real : type
+        Variables that are real numbers.
+    causality, initial, variability : type
+        Enumerations.
+    """
+
+    real: Any
+    causality: Any
+    initial: Any
+    variability: Any
+
+
+class DriveSlave:
+    """A drive behind the calls of FMI; a class of either standard comes after it among the bases.
+
+    Errors are messages to the host, and make a step fail: an exception that went through would count as fatal, and the
+    packages that make units free twice then what they hold, so that a host crashes. After an error at the beginning
+    outputs are nan, and the first step fails.
+    """
+
+    standard: Standard
+    register_variable: Callable[..., None]
+    log: Callable[..., None]
+    resources: str
+
+    def __init__(self, **arguments: Any) -> None:
+        super().__init__(**arguments)
+        self.component = Component.read(Path(self.resources))
+        self.modelName = self.component.interface.identifier
+        self.version = __version__
+        self._register()
+
+    def _register(self) -> None:
+        """Name the variables to the host, in the order of their references."""
+        interface, component, standard = self.component.interface, self.component, self.standard
+        if hasattr(standard.causality, "independent"):
+            self._add("time", "independent", "continuous", lambda: component.time)
+        self._add(
+            TOLERANCE,
+            "parameter",
+            "fixed",
+            lambda: component.tolerance,
+            lambda value: setattr(component, "tolerance", value),
+        )
+        for one in interface.inputs:
+            self._add(one.name, "input", "continuous", *_access(component, one.name))
+        for other in interface.outputs:
+            self._add(other.name, "output", "continuous", _access(component, other.name)[0], initial="calculated")
+
+    def _add(
+        self,
+        name: str,
+        causality: str,
+        variability: str,
+        getter: Callable[[], float],
+        setter: Callable[[float], None] | None = None,
+        initial: str | None = None,
+    ) -> None:
+        """Name a variable to the host."""
+        standard = self.standard
+        one = standard.real(
+            name,
+            causality=standard.causality[causality],
+            variability=standard.variability[variability],
+            initial=standard.initial[initial] if initial else None,
+            getter=getter,
+            setter=setter,
+        )
+        self.register_variable(one, nested=False)
+
+    def to_xml(self, model_options: Mapping[str, str] | None = None) -> Element:
+        """The model description, with units and all that the package that makes units leaves out."""
+        root: Element = super().to_xml(dict(model_options or {}))  # type: ignore[misc]
+        complete_description(root, self.component.interface)
+        return root
+
+    def enter_initialization_mode(self) -> None:
+        """Find the state at the beginning."""
+        made = self.component.interface.version
+        if made != __version__:
+            self._tell(f"this unit was made by beltdyn {made}, and beltdyn {__version__} runs it.", _WARNING)
+        self._attempt(self.component.begin)
+
+    def advance(self, time: float, size: float) -> bool:
+        """Simulate a step, and tell whether it has succeeded; if not, the host is told why.
+
+        Parameters
+        ----------
+        time : float
+            Begin of the step by the clock of the host, s.
+        size : float
+            Its length, s.
+        """
+        return self._attempt(self.component.step, time, size)
+
+    def _attempt(self, action: Callable[..., None], *arguments: Any) -> bool:
+        """Do something, and tell whether it has succeeded; if not, the host is told why."""
+        try:
+            action(*arguments)
+        except BeltdynError as error:
+            self._tell(str(error), _ERROR)
+        except Exception as error:
+            self._tell(f"{type(error).__name__}: {error}", _ERROR)
+        else:
+            return True
+        return False
+
+    def _tell(self, message: str, status: int) -> None:
+        """Hand a message to the host."""
+        self.log(message, status, {_WARNING: "logStatusWarning", _ERROR: "logStatusError"}[status])
+
+    def _get_fmu_state(self) -> ComponentState:
+        return self.component.state()
+
+    def _set_fmu_state(self, state: ComponentState) -> None:
+        self._attempt(self.component.restore, state)
+
+    @staticmethod
+    def _fmu_state_to_bytes(state: ComponentState) -> bytes:
+        return pickle.dumps(state)
+
+    @staticmethod
+    def _fmu_state_from_bytes(state: bytes) -> ComponentState:
+        found: ComponentState = pickle.loads(state)
+        return found
+
+
+def _access(component: Component, name: str) -> tuple[Callable[[], float], Callable[[float], None]]:
+    """How a host gets and sets a variable."""
+    return lambda: component.get(name), lambda value: component.set(name, value)

@@ -1,0 +1,120 @@
+"""A drive in the hands of a host: its clock, inputs that change and that do not, steps that fail."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from beltdyn.cosimulation.component import Component
+from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs
+from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.model import Drive
+from beltdyn.solve import Simulator
+
+SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"
+
+
+def component_of(drive: Drive) -> Component:
+    chosen = choose_inputs(drive, None), choose_outputs(drive, None)
+    return Component(drive, Interface("Drive", "drive", 0.0, 0.03, 1e-3, 1e-4, *chosen))
+
+
+@pytest.fixture
+def component(short: Drive) -> Component:
+    made = component_of(short)
+    made.begin()
+    return made
+
+
+def outputs(component: Component) -> list[float]:
+    return [component.get(one.name) for one in component.interface.outputs]
+
+
+def test_it_steps_as_a_simulator_does(short: Drive, component: Component) -> None:
+    """To the bit, on the schedule of the file while nothing is set, whenever the clock of the host begins."""
+    simulator = Simulator(short)
+    for number in range(3):
+        component.step(100.0 + number * 0.002, 0.002)
+        simulator.step((100.0 + number * 0.002 + 0.002) - 100.0)
+    assert outputs(component) == list(simulator.outputs().values())
+    assert component.time == pytest.approx(100.006, abs=1e-12)
+
+
+def test_inputs_that_do_not_change_cost_nothing(short: Drive) -> None:
+    """To set the same again is as if it had been set once: no new accelerations, no short steps."""
+    once, always = component_of(short), component_of(short)
+    for one in (once, always):
+        one.begin()
+    for number in range(4):
+        for one in (once, always) if number == 0 else (always,):
+            one.set(SPEED, 1.5)
+            one.set(TORQUE, -0.2)
+        for one in (once, always):
+            one.step(number * 1e-3, 1e-3)
+    assert outputs(once) == outputs(always)
+    assert once.get("pulley_speed[driver]") == pytest.approx(1.5)
+    assert once.get("shaft_torque[driven]") == -0.2
+
+
+def test_states_go_to_another_component(short: Drive, component: Component) -> None:
+    """As bytes, with inputs that wait for the next step, and the clock; what follows is the same to the bit."""
+    component.step(5.0, 0.002)
+    component.set(TORQUE, -0.7)
+    kept = pickle.dumps(component.state())
+    component.step(5.002, 0.003)
+    other = component_of(short)
+    other.restore(pickle.loads(kept))
+    assert other.time == 5.002
+    other.step(5.002, 0.003)
+    assert outputs(other) == outputs(component)
+    other.restore(component_of(short).state())
+    assert np.isnan(outputs(other)).all()
+
+
+@pytest.mark.parametrize(
+    ("time", "size", "sentence"),
+    [
+        (0.5, 0.001, "a step is to begin at t = 0.5 s, and the drive is at t = 0.001 s"),
+        (0.001, 0.0, "is not after the present time"),
+        (0.001, -0.001, "is not after the present time"),
+        (0.001, float("nan"), "a step is to begin at"),
+        (0.001, 0.5, "a step is to end at t = 0.501 s, after the stop time 0.03 s"),
+    ],
+)
+def test_wrong_steps_change_nothing(component: Component, time: float, size: float, sentence: str) -> None:
+    component.stop = 0.03
+    component.step(0.0, 0.001)
+    before = outputs(component)
+    with pytest.raises(ModelError, match=sentence):
+        component.step(time, size)
+    assert outputs(component) == before
+    component.step(0.001, 0.029)
+
+
+def test_a_step_that_cannot_go_on_changes_nothing(light: Drive) -> None:
+    """With another torque it succeeds then."""
+    component = component_of(light)
+    component.begin()
+    component.step(0.0, 0.001)
+    before = outputs(component)
+    component.set(TORQUE, 1e15)
+    with pytest.raises(ConvergenceError, match="the simulation cannot go on"):
+        component.step(0.001, 0.001)
+    assert outputs(component) == before
+    component.set(TORQUE, float("nan"))
+    with pytest.raises(ModelError, match="must be a finite number"):
+        component.step(0.001, 0.001)
+    component.set(TORQUE, -0.1)
+    component.step(0.001, 0.001)
+    assert component.time == 0.002
+
+
+def test_before_the_beginning(short: Drive) -> None:
+    component = component_of(short)
+    assert np.isnan(outputs(component)).all()
+    assert (component.time, component.get(SPEED), component.get(TORQUE)) == (0.0, 0.0, -0.1)
+    with pytest.raises(ModelError, match="the drive has not begun"):
+        component.step(0.0, 0.001)
+    component.tolerance = -1.0
+    with pytest.raises(ModelError, match=r"simulation\.rtol"):
+        component.begin()
