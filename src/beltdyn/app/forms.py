@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple
 
 from beltdyn.app.scene import groups
 from beltdyn.model import Drive, read_catalogue
-from beltdyn.parts.error_location import ErrorLocation
+from beltdyn.parts.error_location import ErrorLocation, option_names
 from beltdyn.parts.toml_edits import Location
 
 Form = Literal["text", "number", "choice", "flag", "point", "numbers", "group", "groups"]
@@ -162,7 +162,14 @@ def _tagged(locations: ErrorLocation, data: Mapping[str, Any], location: Locatio
         group = value_at(data, location[:depth])
         if known and isinstance(group, Mapping) and group.get("kind") in known:
             tagged = (*tagged, str(group["kind"]))
+        elif isinstance(group, Mapping):
+            tagged = (*tagged, *_parts(locations.locate(tagged)[1]))
     return tagged
+
+
+def _parts(schema: Mapping[str, Any]) -> tuple[str, ...]:
+    """The part that may stand in place of a choice; none where there is none."""
+    return tuple(name for name, option in option_names(schema).items() if "$ref" in option)
 
 
 def _group_name(location: Location) -> str:
@@ -173,8 +180,9 @@ def _group_name(location: Location) -> str:
 def _field(
     data: Mapping[str, Any], location: Location, schema: Mapping[str, Any], first: bool, given_unit: str
 ) -> Field:
-    hint, form = str(schema.get("description", "")), _form(schema)
-    choices = tuple(schema.get("enum", ())) or _kinds(schema if form != "groups" else _entries(schema))
+    hint, value = str(schema.get("description", "")), value_at(data, location)
+    form: Form = "group" if _parts(schema) and isinstance(value, Mapping) else _form(schema)
+    choices = _choices(schema) if form == "choice" else _kinds(schema if form != "groups" else _entries(schema))
     if location == ("belt", "profile"):
         form, choices = "choice", _profiles()
     elif location[-1] == "pulley" and location[0] == "tensioner":
@@ -190,8 +198,14 @@ def _field(
         choices,
         default,
         first,
-        value_at(data, location),
+        value,
     )
+
+
+def _choices(schema: Mapping[str, Any]) -> tuple[str, ...]:
+    """What may be chosen; nothing where there is no choice."""
+    options = (schema, *option_names(schema).values())
+    return tuple(choice for option in options for choice in option.get("enum", ()))
 
 
 def _unit(description: str) -> str:
@@ -201,7 +215,7 @@ def _unit(description: str) -> str:
 
 
 def _form(schema: Mapping[str, Any]) -> Form:
-    if "enum" in schema:
+    if _choices(schema):
         return "choice"
     if "discriminator" in schema or "properties" in schema:
         return "group"

@@ -5,6 +5,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from beltdyn.model.earlier_run import EarlierRun, Start
 from beltdyn.model.instants import Instants
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Ratio, Time
@@ -41,16 +42,18 @@ class Simulation(Part):
         description="the error of contact forces at the beginning, over the largest of a pulley, up to which the mesh "
         "that stays is refined, below 1; by default it has the number of elements that is given or chosen",
     )
-    start: Literal["equilibrium", "laid", "steady"] = Field(
+    start: Start = Field(
         "equilibrium",
-        description="the state at the beginning: static equilibrium, the belt laid on its path, or steady running "
-        "under the speeds and loads of that instant",
+        description="the state at the beginning: static equilibrium, the belt laid on its path, steady running "
+        "under the speeds and loads of that instant, or the state of an earlier run as "
+        '{ file = "run.nc", time = "0.5 s" }',
     )
-    start_at: Time = Field(
-        0.0,
+    start_at: Time | None = Field(
+        None,
         ge=0,
         lt=inf,
-        description='the instant of speeds, torques and schedules at which the run begins, in s; with start = "steady"',
+        description="the instant of speeds, torques and schedules at which the run begins, in s, where it begins in "
+        "steady running or in the state of an earlier run; by default 0, or the instant of that state",
     )
     integrator: Literal["generalized_alpha", "cvode", "ida", "bdf", "radau"] = Field(
         "generalized_alpha", description="the time integrator"
@@ -70,16 +73,23 @@ class Simulation(Part):
         """Output instants; fields along the belt are recorded at least as often as asked for."""
         wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
         stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
-        return Instants(self.output_interval, self.end, stride, self.start_at)
+        return Instants(self.output_interval, self.end, stride, self.begin)
+
+    @property
+    def begin(self) -> float:
+        """The instant at which the run begins, s; zero of an earlier run whose last instant is not looked up yet."""
+        if self.start_at is None and isinstance(self.start, EarlierRun):
+            return self.start.time or 0.0
+        return self.start_at or 0.0
 
     @property
     def end(self) -> float:
         """The instant at which the run ends, s."""
-        return self.start_at + self.duration
+        return self.begin + self.duration
 
     @model_validator(mode="after")
-    def _begins_later_in_steady_running(self) -> Self:
-        if self.start_at > 0.0 and self.start != "steady":
+    def _begins_later_in_motion(self) -> Self:
+        if self.start_at and self.start in ("equilibrium", "laid"):
             raise ValueError(
                 f'start_at = {self.start_at:g} s does not fit start = "{self.start}", a belt at rest. '
                 'Set start = "steady", or remove start_at'
@@ -105,7 +115,7 @@ class Simulation(Part):
             ("integrator", self.integrator, ("generalized_alpha",)),
             ("joint", self.joint, ("shared_node",)),
         ):
-            if value not in fits:
+            if not (value in fits or isinstance(value, EarlierRun)):
                 raise ValueError(
                     f'{key} = "{value}" does not fit frame = "staying". Set {key} = "{fits[0]}", or '
                     'frame = "travelling"'

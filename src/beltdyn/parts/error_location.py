@@ -37,7 +37,7 @@ class ErrorLocation:
         Parameters
         ----------
         location : tuple
-            Keys, positions in lists and, after a profile, its kind.
+            Keys, positions in lists and, after a profile, its kind; after one of several options, which one.
 
         Returns
         -------
@@ -58,6 +58,9 @@ class ErrorLocation:
         for step in location:
             if isinstance(step, str) and step in schema.get("discriminator", {}).get("mapping", {}):
                 schema = self._resolve({"$ref": schema["discriminator"]["mapping"][step]})
+                continue
+            if step in option_names(schema):
+                schema = self._resolve(option_names(schema)[str(step)])
                 continue
             steps.append(step)
             data, schema = _item(data, step), self._option(schema, step)
@@ -94,6 +97,23 @@ class ErrorLocation:
         if len(given) == 1:
             return {"description": schema.get("description", "")} | self._resolve(given[0])
         return schema
+
+
+def option_names(schema: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Tell what options of different form are called in locations: by their part, or their type in JSON.
+
+    Parameters
+    ----------
+    schema : mapping
+        The JSON schema of a key.
+
+    Returns
+    -------
+    dict
+        Name -> schema; empty where there are no such options.
+    """
+    options = schema.get("oneOf", ()) if {"discriminator", "properties"}.isdisjoint(schema) else ()
+    return {option.get("$ref", option.get("type", "")).split("/")[-1]: option for option in options}
 
 
 @cache

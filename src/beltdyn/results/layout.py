@@ -32,6 +32,8 @@ class Layout:
         Names of the coordinates of a node.
     tensioners : tuple of str
         Names of the pulleys that tensioners carry, in the order of their coordinates.
+    bodies : tuple of str
+        Names of all that moves beside the belt, in the order of the coordinates.
     """
 
     pulleys: tuple[str, ...]
@@ -41,6 +43,7 @@ class Layout:
     belt_coordinate: FloatArray
     coordinate_names: tuple[str, ...]
     tensioners: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = ()
 
     @property
     def nodes(self) -> int:
@@ -64,6 +67,7 @@ class Layout:
             "pulley": self.pulleys,
             "span": self.spans,
             "tensioner": self.tensioners,
+            "body": self.bodies,
             "axis": AXIS_NAMES,
             "coordinate": self.coordinate_names,
             "node_coordinate": self.node_coordinate,
@@ -80,6 +84,7 @@ class Layout:
             "pulley": len(self.pulleys),
             "span": len(self.spans),
             "tensioner": len(self.tensioners),
+            "body": len(self.bodies),
             "axis": len(AXIS_NAMES),
             "coordinate": len(self.coordinate_names),
             "node": self.nodes,

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from types import MappingProxyType
 
-FORMAT = (1, 1)
+FORMAT = (1, 2)
 """Version of the result file. The first number grows when earlier readers would misread a file, the second when a file
 holds more than before."""
 
@@ -52,6 +52,7 @@ class Variable:
 _OVER_TIME = ("time",)
 _PULLEY = ("time", "pulley")
 _NODE = ("field_time", "node", "coordinate")
+_BODY = ("field_time", "body")
 _ELEMENT = ("field_time", "element")
 _SPAN = ("time", "span")
 _POINT = ("field_time", "contact_point")
@@ -65,6 +66,7 @@ COORDINATES = MappingProxyType(
         "filtered_time": Variable(("filtered_time",), "s", "Time of what is recorded for spectra"),
         "pulley": Variable(("pulley",), "1", "Pulley", "str"),
         "span": Variable(("span",), "1", "Span, from pulley or end to pulley or end", "str"),
+        "body": Variable(("body",), "1", "Body beside the belt, with a coordinate of its own", "str", core=False),
         "tensioner": Variable(("tensioner",), "1", "Tensioner, by the pulley it carries", "str"),
         "axis": Variable(("axis",), "1", "Direction in the plane", "str"),
         "coordinate": Variable(("coordinate",), "1", "Nodal coordinate", "str"),
@@ -95,6 +97,8 @@ _OUTPUTS = {
     "node_position": Variable(("field_time", "node", "axis"), "m", "Node position", at_rest=True),
     "nodal_coordinates": Variable(_NODE, "m, 1", "Nodal coordinates", at_rest=True),
     "nodal_velocities": Variable(_NODE, "m/s, 1/s", "Nodal velocities", SHORT, core=False),
+    "body_position": Variable(_BODY, "rad, m", "Coordinate of a body", core=False),
+    "body_velocity": Variable(_BODY, "rad/s, m/s", "Rate of the coordinate of a body", core=False),
     "belt_tension": Variable(_ELEMENT, "N", "Belt tension", at_rest=True),
     "tension_variation": Variable(
         _ELEMENT, "N", "Variation of the tension within an element", SHORT, core=False, at_rest=True

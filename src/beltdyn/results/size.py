@@ -106,6 +106,7 @@ def _sizes(drive: Drive) -> dict[str, int]:
         "pulley": pulleys,
         "span": drive.path.spans,
         "tensioner": len(drive.moving_tensioners),
+        "body": _bodies(drive),
         "axis": len(AXIS_NAMES),
         "coordinate": len(kind.coordinates),
         "node": kind.points * (belt.given_elements + (bool(drive.ends) or drive.simulation.joint == "multipliers")),
@@ -113,6 +114,13 @@ def _sizes(drive: Drive) -> dict[str, int]:
         "contact_point": points * curves,
         "arc_part": ARC_PARTS,
     }
+
+
+def _bodies(drive: Drive) -> int:
+    """Number of what has a coordinate beside the belt: rims, hub chains, controllers, belt, tensioners."""
+    behind = sum(len(one.hub) + sum(load.state_lag is not None for load in one.load) for one in drive.pulleys)
+    flows = drive.simulation.frame == "staying"
+    return len(drive.pulleys) + behind + flows + len(drive.moving_tensioners)
 
 
 def _variable_bytes(variable: Variable, row: tuple[int, ...], count: int) -> int:

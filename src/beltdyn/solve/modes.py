@@ -6,12 +6,13 @@ from beltdyn.parts.number_range import numbers_in
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run
 from beltdyn.results.recorded import runs_steadily
+from beltdyn.solve.earlier_run import instant_of
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running.changed_drive import at_speed, driver_of, held_at, sense_of
 from beltdyn.solve.vibration.eigenvalues import MOST_SWINGING
 from beltdyn.solve.vibration.mode_table import modes_about
-from beltdyn.solve.vibration.run_state import instant_of
+from beltdyn.solve.vibration.run_state import require_mesh_that_stays
 from beltdyn.solve.vibration.small_motions import about_instant, about_rest, about_steady
 
 REST: str = "rest"
@@ -89,6 +90,7 @@ def modes(
         about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
     if isinstance(about, Run) and not runs_steadily(about.dataset):
+        require_mesh_that_stays(about)
         drive, instant = about.drive, instant_of(about, at)
         motions, state = about_instant(about, instant), f"in its run at t = {instant:.6g} s"
     elif isinstance(about, Run):

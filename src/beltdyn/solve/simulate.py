@@ -7,30 +7,22 @@ from typing import get_args
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
 from beltdyn.model.toml_writer import has_functions
-from beltdyn.results import Run, mesh_error_attribute, require_room
+from beltdyn.results import Run, require_room
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
+from beltdyn.solve.beginning import Begin, begin_on, mesh_of
 from beltdyn.solve.checkpoint import Keeper, checkpoint_file, read_checkpoint
 from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.earlier_run import with_instant
 from beltdyn.solve.integrators.generalized_alpha import AlphaIntegration, GeneralizedAlpha
-from beltdyn.solve.integrators.settling import Start
 from beltdyn.solve.integrators.standard import Name, StandardIntegrator
 from beltdyn.solve.integrators.trajectory import Integrator, drive_task
 from beltdyn.solve.observation.observer import Arrays
 from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Report
-from beltdyn.solve.rest.installation import bring_to_rest
-from beltdyn.solve.steady import require_steady, require_steady_start, steady_state
-from beltdyn.solve.steady_running.flowing_start import Beginning, begin_flowing
-from beltdyn.solve.steady_running.travelling_start import Held, steady_state_on
-from beltdyn.system.arrays import System
-from beltdyn.system.build import drive_system
-from beltdyn.system.state import State, laid
+from beltdyn.solve.steady import require_steady, steady_state
 
 CHECKPOINT = 60.0
 """Computing time between two checkpoints of a run, s."""
-
-Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
-"""``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
 
 
 def simulate(
@@ -137,27 +129,17 @@ def record_run(
     if compare_steady:
         require_steady(drive)
     integrator = integrator or choose_integrator(drive)
-    flowing, staying, steady = None, drive.simulation.frame == "staying", drive.simulation.start == "steady"
-    if steady:
-        require_steady_start(drive)
-        begin = begin or (None if staying else Held())
-    if staying:
-        _require_flowing(integrator)
-        flowing = begin_flowing(drive, progress)
-    system = flowing.system if flowing else drive_system(drive)
+    drive = with_instant(drive)
+    mesh = mesh_of(drive, integrator, progress)
     title = f"{drive.title}, {drive.simulation.duration:g} s"
-    with Recording(drive, system, output, title, progress, overwrite, **attributes) as recording:
+    about = {**attributes, **mesh.attributes}
+    with Recording(drive, mesh.system, output, title, progress, overwrite, **about) as recording:
         recording.prepare()
-        drive, system, state, unstable, _ = flowing or _begin_travelling(drive, system, progress)
+        found = begin_on(mesh, integrator, progress, begin)
         recording.integrator, recording.watch = integrator.name, watch
-        if begin is not None:
-            system, state, said = begin(drive, system, state, integrator, progress)
-            recording.note(**said)
-        recording.start(drive, system, unstable)
-        if flowing:
-            errors = flowing.mesh_errors or {"peak pressure": float("nan")}  # not known
-            recording.note(**{mesh_error_attribute(name): error for name, error in errors.items()})
-        task = drive_task(drive, system, state, recording.statistics)
+        recording.start(found.drive, found.system, found.unstable)
+        recording.note(**found.attributes)
+        task = drive_task(found.drive, found.system, found.state, recording.statistics)
         if isinstance(integrator, GeneralizedAlpha) and not has_functions(given):
             keeper = Keeper(Path(output) if output is not None else None, checkpoint, given, compare_steady)
             keeper.remove()  # of an earlier run
@@ -205,63 +187,9 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
 def _steady_running(drive: Drive) -> dict[str, object]:
     """Attributes that tell of the steady running under the speeds and loads at the end, or why there is none."""
     try:
-        return {VALUES: steady_values(steady_state(drive))}
+        return {VALUES: steady_values(steady_state(with_instant(drive)))}
     except (ConvergenceError, ModelError) as error:
         return {FAILURE: str(error)}
-
-
-def beginning_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
-    """Where a run of a drive begins, as its file says.
-
-    Parameters
-    ----------
-    drive, integrator, progress
-        As for `simulate`.
-
-    Raises
-    ------
-    ModelError, ConvergenceError
-        As `simulate`.
-    """
-    staying, steady = drive.simulation.frame == "staying", drive.simulation.start == "steady"
-    if steady:
-        require_steady_start(drive)
-    if staying:
-        _require_flowing(integrator)
-        return begin_flowing(drive, progress)
-    found = _begin_travelling(drive, drive_system(drive), progress)
-    if not steady:
-        return found
-    system, state, _ = Held()(found.drive, found.system, found.state, integrator, progress)
-    return found._replace(system=system, state=state)
-
-
-def _begin_travelling(drive: Drive, system: System, progress: Report | None) -> Beginning:
-    """The state in which a run on the mesh that travels begins."""
-    start = drive.simulation.start
-    if drive.belt.installed_tension is None and start == "laid":
-        return Beginning(drive, system, laid(system, drive.path))
-    rest = bring_to_rest(drive, progress)
-    if start == "steady":
-        state = steady_state_on(rest)
-    else:
-        state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
-    return Beginning(rest.drive, rest.system, state, rest.unstable)
-
-
-def _require_flowing(integrator: Integrator) -> None:
-    """Make sure that a run may be one on a mesh that stays.
-
-    Raises
-    ------
-    ModelError
-        If not.
-    """
-    if not isinstance(integrator, GeneralizedAlpha):
-        raise ModelError(
-            f'the integrator "{integrator.name}" does not fit simulation.frame = "staying", whose flow it does not '
-            'know. Leave the integrator out, or set simulation.frame = "travelling".'
-        )
 
 
 def choose_integrator(drive: Drive) -> Integrator:

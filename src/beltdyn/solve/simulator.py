@@ -13,12 +13,14 @@ from beltdyn.machines.profiles.functions import Profiles, go_on, profile_integra
 from beltdyn.model import Drive, Pulley
 from beltdyn.parts.number_range import number_in
 from beltdyn.results.balance import STORED
+from beltdyn.solve.beginning import begin_on, mesh_of
+from beltdyn.solve.earlier_run import with_instant
 from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrators.integrator_state import IntegratorState
 from beltdyn.solve.integrators.trajectory import Statistics, drive_task
 from beltdyn.solve.progress import Report
-from beltdyn.solve.simulate import beginning_of, choose_integrator
 from beltdyn.system.arrays import ENERGY_WORKS
+from beltdyn.solve.simulate import choose_integrator
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state_forces import body_forces_at
@@ -82,7 +84,7 @@ class Simulator:
             raise ModelError(
                 f'a simulator steps by generalized_alpha, not by "{integrator.name}". Leave simulation.integrator out.'
             )
-        begin = beginning_of(drive, integrator, progress)
+        begin = begin_on(mesh_of(with_instant(drive), integrator, progress), integrator, progress)
         self.drive = begin.drive
         """With the length, or the take-up, that gives the installed tension."""
         self._integration = integrator.begin(drive_task(begin.drive, begin.system, begin.state, Statistics()))

@@ -276,7 +276,7 @@ def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
     search = found.search
     duration = _TURNS * search.drive.belt_length / abs(search.belt_parameter)
     turns = drive.simulation.replace(
-        duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=0.0
+        duration=duration, output_interval=duration, field_interval=None, start="equilibrium", start_at=None
     )
     shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
     title = f"{drive.title} in steady running, as at {instant:g} s"

@@ -191,5 +191,5 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     pulleys = list(drive.pulleys)
     pulleys[number] = pulleys[number].replace(speed=speed)
     settings = drive.simulation
-    begun = "equilibrium" if settings.start == "steady" else settings.start
-    return drive.replace(pulley=pulleys, simulation=settings.replace(duration=duration, start=begun, start_at=0.0))
+    begun = "laid" if settings.start == "laid" else "equilibrium"
+    return drive.replace(pulley=pulleys, simulation=settings.replace(duration=duration, start=begun, start_at=None))

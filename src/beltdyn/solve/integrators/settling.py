@@ -211,7 +211,7 @@ def with_angles(drive: Drive, system: System, before: System | None = None, time
     prescribed = [number for number, pulley in enumerate(drive.pulleys) if pulley.prescribed]
     integral = interpreted(profile_integral)
     angles = [0.0 if before is None else integral(before.profiles, number, time) for number in prescribed]
-    go_on(profiles, prescribed, drive.simulation.start_at, angles)
+    go_on(profiles, prescribed, drive.simulation.begin, angles)
     return system._replace(profiles=profiles)
 
 

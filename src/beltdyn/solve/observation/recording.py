@@ -96,7 +96,7 @@ class Recording:
         title: str,
         progress: Report | None,
         overwrite: bool = False,
-        **attributes: str,
+        **attributes: Any,
     ) -> None:
         self.statistics = Statistics()
         self.watch: Callable[[Arrays], None] | None = None
@@ -351,13 +351,15 @@ class Recording:
         }
 
     def _nodes(self, states: Chunk, instants: FloatArray) -> Arrays:
-        """Coordinates and velocities of nodes."""
+        """Coordinates and velocities of nodes, and of bodies at the same instants."""
         system = self._system
         shape = len(instants), system.nodes * system.points, len(system.scale) // system.points
-        names = "nodal_coordinates", "nodal_velocities"
+        position, velocity = states.at(instants)
         return {
-            name: motion[:, : system.first_body].reshape(shape)
-            for name, motion in zip(names, states.at(instants), strict=True)
+            "nodal_coordinates": position[:, : system.first_body].reshape(shape),
+            "nodal_velocities": velocity[:, : system.first_body].reshape(shape),
+            "body_position": position[:, system.first_body :],
+            "body_velocity": velocity[:, system.first_body :],
         }
 
     def _attributes(self) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.defaults import MOST
 from beltdyn.model.graded_mesh import FINENESS
+from beltdyn.results import mesh_error_attribute
 from beltdyn.solve.integrators.settling import with_angles
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import FINER, Standing, anchor_at, bring_to_stand, stand
@@ -18,6 +19,9 @@ from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build_staying import flowing_system, on_other_mesh, smoothed_over_time
 from beltdyn.system.state import State
+
+DIRECTION = "mesh_direction"
+"""Attribute of results on a mesh that stays: the direction along which node 0 does not move, a unit vector."""
 
 
 class Beginning(NamedTuple):
@@ -29,8 +33,8 @@ class Beginning(NamedTuple):
     state: State
     unstable: tuple[str, ...] = ()
     """Names of the pulleys whose tensioners are not in stable balance at rest."""
-    mesh_errors: Mapping[str, float] = MappingProxyType({})
-    """What a mesh that stays makes wrong at rest, or in steady running, relative, where a finer one has told."""
+    attributes: Mapping[str, Any] = MappingProxyType({})
+    """What is said of it, global attributes of the dataset."""
 
 
 def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
@@ -62,7 +66,9 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
         meshed = _running(meshed, drive.simulation.force_tolerance)
     system, direction = meshed.system, anchor_at(meshed.system, meshed.state, True).direction
     flowing = with_angles(meshed.drive, flowing_system(smoothed_over_time(system), direction))
-    return Beginning(meshed.drive, flowing, with_passage(system, meshed.state, meshed.speed), (), meshed.errors)
+    errors = meshed.errors or {"peak pressure": float("nan")}  # not known
+    said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
+    return Beginning(meshed.drive, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)
 
 
 class _Meshed(NamedTuple):
@@ -102,7 +108,7 @@ def _meshed(drive: Drive) -> _Meshed:
 def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
     """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
     rest = meshed.rest
-    search = SteadySearch(rest.drive, rest.system, rest.state, rest.drive.simulation.start_at)
+    search = SteadySearch(rest.drive, rest.system, rest.state, rest.drive.simulation.begin)
     search.run(rest)
     system, errors = rest.system, meshed.errors
     if force_tolerance is not None:

@@ -45,7 +45,7 @@ def steady_state_on(rest: Rest) -> State:
         If there is no steady running.
     """
     standing = stand(rest.drive)
-    search = SteadySearch(rest.drive, standing.system, standing.state, rest.drive.simulation.start_at)
+    search = SteadySearch(rest.drive, standing.system, standing.state, rest.drive.simulation.begin)
     search.run(standing)
     return taken_over(search, rest.system)
 
@@ -99,7 +99,7 @@ class Held:
         progress
             Whom to tell.
         """
-        held = constant_drive(system, drive.simulation.start_at)._replace(tensioners=system.tensioners)
+        held = constant_drive(system, drive.simulation.begin)._replace(tensioners=system.tensioners)
         stops = np.arange(1.0, _WINDOWS * _TURNS + 1.0) * _window(drive, system, state)
         task = drive_task(drive, held, state, Statistics())
         instants = Instants(drive.simulation.output_interval, float(stops[-1]))

@@ -4,33 +4,26 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
-from beltdyn.solve.rest.staying import anchor_at
-from beltdyn.solve.steady_running.flowing_start import with_passage
-from beltdyn.solve.steady_running.neighbour import take_along
+from beltdyn.solve.earlier_run import recorded_state, staying_mesh
+from beltdyn.solve.steady_running.flowing_start import DIRECTION
 from beltdyn.system.arrays import System
-from beltdyn.system.build_staying import flowing_system, smoothed_over_time, staying_system
+from beltdyn.system.build_staying import flowing_system
 from beltdyn.system.constant_drive import constant_drive
-from beltdyn.system.observe import observe
-from beltdyn.system.state import State, at_rest
-
-_SAME = 1e-6
-"""Distance of instants that count as one, over the time between them."""
+from beltdyn.system.state import State
 
 
-def instant_of(run: Run, at: float | None) -> float:
-    """The instant at which the belt was recorded that is asked for, s.
+def require_mesh_that_stays(run: Run) -> None:
+    """Make sure that a run has states that stay.
 
     Parameters
     ----------
     run
         A run over time.
-    at
-        s; the last one by default.
 
     Raises
     ------
     ModelError
-        If the mesh of the run travels, or its belt was not recorded then.
+        If the mesh of the run travels.
     """
     if run.drive.simulation.frame != "staying":
         raise ModelError(
@@ -38,21 +31,6 @@ def instant_of(run: Run, at: float | None) -> float:
             'arcs, and no state of it stays. Run the drive again with frame = "staying", or find its modes about '
             "steady running."
         )
-    run.require_output()
-    run.require("nodal_velocities")
-    times = run.dataset["field_time"].values
-    if at is None:
-        return float(times[-1])
-    nearest = float(times[np.argmin(np.abs(times - at))])
-    step = float(np.diff(times).min()) if times.size > 1 else max(abs(nearest), 1.0)
-    if not abs(nearest - at) <= _SAME * step:
-        every = f", every {step:.6g} s," if times.size > 1 else ""
-        raise ModelError(
-            f"at = {at:g} s is no instant at which this run has recorded its belt: it has from {times[0]:.6g} to "
-            f"{times[-1]:.6g} s{every} the nearest at {nearest:.8g} s. Give that one, or run the drive again with "
-            "another simulation.field_interval."
-        )
-    return nearest
 
 
 def state_of(run: Run, time: float) -> tuple[System, State, float]:
@@ -70,38 +48,15 @@ def state_of(run: Run, time: float) -> tuple[System, State, float]:
     system : System
         From `constant_drive`; its belt flows at the speed.
     state : State
-        Position and velocity; angles of bodies are zero.
+        Position and velocity.
     speed : float
         Length of unstretched belt that passes in a second, m/s.
     """
-    seen = run.fields_at(time)
-    lengths = np.diff(seen["node_coordinate"].values, append=run.drive.belt_length)
-    given = smoothed_over_time(staying_system(run.drive, lengths))
-    state, first = at_rest(given, seen["nodal_coordinates"].values), given.first_body
-    state.velocity[:first] = seen["nodal_velocities"].values.ravel()
-    if given.tensioners.size:
-        state.position[-given.tensioners.size :] = seen["tensioner_position"].values
-        state.velocity[-given.tensioners.size :] = seen["tensioner_speed"].values
-    bodies, rims = state.velocity[first:], seen["pulley_speed"].values
-    bodies[: rims.size] = rims
-    take_along(given, bodies, seen["shaft_speed"].values)
-    held, passing = constant_drive(given, time), _passing(given, state, seen["belt_speed"].values, time)
-    held.frame.speed[0] = passing
-    return held, state, passing
-
-
-def _passing(given: System, state: State, seen: np.ndarray, time: float) -> float:
-    """Length of belt that passes in a second, m/s, with which spans have the speeds that were seen.
-
-    Their speeds are straight in it.
-    """
-    flowing = flowing_system(given, anchor_at(given, state, True).direction)
-
-    def speeds(passing: float) -> np.ndarray:
-        moving = with_passage(given, state, passing)
-        motion = moving.position[None].copy(), moving.velocity[None].copy()
-        return np.asarray(observe(flowing, np.array([time]), *motion).belt_speed[0])
-
-    still = speeds(0.0)
-    slope = speeds(1.0) - still
-    return float(np.nanmean((seen - still) / slope))
+    given = staying_mesh(run.drive, run)
+    flowing = flowing_system(given, np.array(run.dataset.attrs[DIRECTION]))
+    moving, place = recorded_state(run, time, flowing), flowing.frame.place
+    speed = float(moving.velocity[place])
+    state = State(*(np.delete(vector, place) for vector in (moving.position, moving.velocity, moving.acceleration)))
+    held = constant_drive(given, time)
+    held.frame.speed[0] = speed
+    return held, state, speed

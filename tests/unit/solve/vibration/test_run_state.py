@@ -10,8 +10,9 @@ from beltdyn.cli.app import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.published.cases import better, loaded_two_pulley
+from beltdyn.solve.earlier_run import instant_of
 from beltdyn.solve.modes import modes
-from beltdyn.solve.vibration.run_state import instant_of, state_of
+from beltdyn.solve.vibration.run_state import state_of
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,98 @@
+"""Where a run begins: at rest, laid, in steady running, or in the state of an earlier run."""
+
+from collections.abc import Callable
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.model.earlier_run import EarlierRun
+from beltdyn.solve.earlier_run import begin_from
+from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
+from beltdyn.solve.integrators.settling import Start
+from beltdyn.solve.integrators.trajectory import Integrator
+from beltdyn.solve.progress import Report
+from beltdyn.solve.rest.installation import bring_to_rest
+from beltdyn.solve.steady import require_steady_start
+from beltdyn.solve.steady_running.flowing_start import Beginning, begin_flowing
+from beltdyn.solve.steady_running.travelling_start import Held, steady_state_on
+from beltdyn.system.arrays import System
+from beltdyn.system.build import drive_system
+from beltdyn.system.state import State, laid
+
+Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
+"""``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
+
+
+def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
+    """The mesh of a run, with the state on it where the mesh is found by that.
+
+    Parameters
+    ----------
+    drive, integrator, progress
+        As for `simulate`; of an earlier run, with the instant from `with_instant`.
+
+    Raises
+    ------
+    ModelError, ConvergenceError
+        As `simulate`.
+    """
+    settings = drive.simulation
+    staying = settings.frame == "staying"
+    if staying and not isinstance(integrator, GeneralizedAlpha):
+        raise ModelError(
+            f'the integrator "{integrator.name}" does not fit simulation.frame = "staying", whose flow it does not '
+            'know. Leave the integrator out, or set simulation.frame = "travelling".'
+        )
+    if settings.start == "steady":
+        require_steady_start(drive)
+    if isinstance(settings.start, EarlierRun):
+        return begin_from(drive)
+    if staying:
+        return begin_flowing(drive, progress)
+    system = drive_system(drive)
+    return Beginning(drive, system, laid(system, drive.path))
+
+
+def begin_on(
+    mesh: Beginning, integrator: Integrator, progress: Report | None = None, begin: Begin | None = None
+) -> Beginning:
+    """The state in which a run begins.
+
+    Parameters
+    ----------
+    mesh
+        From `mesh_of`.
+    integrator, progress
+        As for `simulate`.
+    begin
+        Goes on from there to the state with which an analysis begins; by default, a mesh that travels settles in
+        steady running if it begins so.
+
+    Raises
+    ------
+    ModelError, ConvergenceError
+        As `simulate`.
+    """
+    settings = mesh.drive.simulation
+    if settings.frame == "staying" or isinstance(settings.start, EarlierRun):
+        found = mesh
+    else:
+        found = _travelling(mesh, progress)
+        begin = begin or (Held() if settings.start == "steady" else None)
+    if begin is None:
+        return found
+    system, state, said = begin(found.drive, found.system, found.state, integrator, progress)
+    return found._replace(system=system, state=state, attributes={**found.attributes, **said})
+
+
+def _travelling(mesh: Beginning, progress: Report | None) -> Beginning:
+    """The state in which a run on the mesh that travels begins."""
+    drive = mesh.drive
+    start = drive.simulation.start
+    if drive.belt.installed_tension is None and start == "laid":
+        return mesh
+    rest = bring_to_rest(drive, progress)
+    if start == "steady":
+        state = steady_state_on(rest)
+    else:
+        state = rest.state if start == "equilibrium" else laid(rest.system, rest.drive.path)
+    return Beginning(rest.drive, rest.system, state, rest.unstable)
