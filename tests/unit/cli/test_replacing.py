@@ -87,3 +87,44 @@ def test_second_run_of_the_same_file(
 @pytest.mark.skipif(sys.platform == "win32", reason="devices have no such names there")
 def test_devices(refuse: Refuse, drive_file: Path) -> None:
     assert "it is a device or a pipe, not a file" in refuse(["run", str(drive_file), "-o", "/dev/null", "--force"])
+
+
+WRONG_TABLES = {
+    "duty.csv": "duration [s],nobody speed [rpm]\n1,100\n",
+    "measured.csv": "hub_lod[driven] [N]\n50\n",
+    "study.toml": 'drive = "DRIVE"\nanalysis = "static"\nresults = ["hub_lod"]\n[[number]]\npath = "belt.width"\n'
+    'values = "10, 12 mm"\n',
+    "optimize.toml": '[[number]]\npath = "belt.width"\nleast = "8 mm"\nlargest = "12 mm"\n[goal]\nresult = "hub_lod"\n',
+    "calibrate.toml": '[[number]]\npath = "belt.width"\nleast = "8 mm"\nlargest = "12 mm"\n'
+    '[[measurement]]\ntable = "measured.csv"\nstate = "rest"\n',
+}
+"""Tables and studies with a name that is misspelt."""
+WRONG_COMMANDS = (
+    ["study", "study.toml", "-j", "1"],
+    ["map", "DRIVE", "--pulley", "nobody", "--speed", "100..200 rpm"],
+    ["duty", "DRIVE", "--table", "duty.csv"],
+    ["traction", "DRIVE", "--pulley", "nobody", "--slip", "0.1"],
+    ["campbell", "DRIVE", "--pulley", "nobody", "--speed", "100..200 rpm"],
+    ["response", "DRIVE", "--pulley", "nobody", "--speed", "100..200 rpm"],
+    ["sweep", "DRIVE", "--pulley", "nobody", "--from", "10", "--to", "20"],
+    ["optimize", "DRIVE", "--study", "optimize.toml"],
+    ["calibrate", "DRIVE", "--study", "calibrate.toml"],
+)
+
+
+@pytest.mark.parametrize("words", WRONG_COMMANDS, ids=lambda words: words[0])
+def test_a_misspelt_name_costs_no_results(words: list[str], refuse: Refuse, drive_file: Path, layout: Layout) -> None:
+    """Names and points are checked before old files are touched, with `--force`, too."""
+    folder = drive_file.parent
+    for name, text in WRONG_TABLES.items():
+        (folder / name).write_text(text.replace("DRIVE", drive_file.name), encoding="utf-8")
+    old = folder / "old.nc"
+    FileRecorder(old, layout, {"title": "old"}).close("interrupted", {})
+    rows = "point,belt.width [m],hub_load[driven] [N],seconds [s],warnings,failure\n1,0.01,53.5,0.1,,\n"
+    old.with_suffix(".csv").write_text(rows, encoding="utf-8")
+    before = old.read_bytes()
+    files = {name: str(folder / name) for name in WRONG_TABLES} | {"DRIVE": str(drive_file)}
+    message = refuse([*(files.get(word, word) for word in words), "--force", "-o", str(old)])
+    assert "nobody" in message or "hub_lod" in message
+    assert old.read_bytes() == before
+    assert old.with_suffix(".csv").read_text(encoding="utf-8") == rows

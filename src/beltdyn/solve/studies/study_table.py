@@ -75,11 +75,12 @@ class StudyTable:
         self._status, self._written, self._pause = "running", time.perf_counter(), _OFTEN
         self._rows = None if output is None else StudyRows(output.with_suffix(".csv"), plan)
         self._lock: OutputLock | None = None
+        self._begun = False
         if output is not None:
-            self._begin_files(output, overwrite, retry)
+            self._claim(output, overwrite, retry)
 
-    def _begin_files(self, output: Path, overwrite: bool, retry: bool) -> None:
-        """Take the rows that are there, and write both files."""
+    def _claim(self, output: Path, overwrite: bool, retry: bool) -> None:
+        """Take the rows that are there; files stay as they are until there is something to write."""
         assert self._rows is not None
         require_replaceable(output, is_result, overwrite)
         require_replaceable(self._rows.path, is_study_table, overwrite)
@@ -90,8 +91,6 @@ class StudyTable:
         try:
             if not overwrite:
                 self._go_on(output, retry)
-            self._rows.begin(self._columns, [self._outcome(int(one)) for one in np.flatnonzero(self.done)])
-            self._save()
         except BaseException:
             self._lock.release()
             raise
@@ -145,7 +144,8 @@ class StudyTable:
             with uninterrupted():
                 self._append(self._early)  # those of a study of which no point has results
                 self._early = []
-                self._save()
+                if self.done.any():
+                    self._save()
         finally:
             if self._lock is not None:
                 self._lock.release()
@@ -174,17 +174,21 @@ class StudyTable:
         if not self._columns:
             self._early += fresh
             return
-        if added and self._rows is not None:
-            self._rows.begin(self._columns, [self._outcome(int(one)) for one in np.flatnonzero(self.done)])
-            self._early = []
-        else:
-            self._append(fresh)
+        self._begun = self._begun and not added
+        self._append(fresh)
+        self._early = []
         if time.perf_counter() - self._written > self._pause:
             self._save()
 
     def _append(self, outcomes: Sequence[Outcome]) -> None:
-        if self._rows is not None and outcomes:
+        """Write rows of points that are noted: all that are known where the file begins, or has other columns now."""
+        if self._rows is None or not outcomes:
+            return
+        if self._begun:
             self._rows.append(outcomes)
+            return
+        self._rows.begin(self._columns, [self._outcome(int(one)) for one in np.flatnonzero(self.done)])
+        self._begun = True
 
     def _note(self, outcome: Outcome, point: int) -> None:
         for name, value in outcome.values.items():
