@@ -15,6 +15,7 @@ from beltdyn.cosimulation.component import DRIVE_FILE, Component
 from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps
+from beltdyn.model.earlier_run import EarlierRun
 from beltdyn.results.atomic import atomic_path, is_marked, require_replaceable
 from beltdyn.solve.progress import Report
 
@@ -87,10 +88,15 @@ def fmu(
         raise ModelError(f"{path} must end in .fmu, by which other programs know such files. Rename it.")
     require_replaceable(path, is_marked, overwrite)
     text, settings = dumps(drive), drive.simulation
+    if isinstance(settings.start, EarlierRun):
+        raise ModelError(
+            f"simulation.start = {settings.start}: a functional mock-up unit goes to other machines, where that file "
+            'is not. Set simulation.start = "equilibrium" or "steady".'
+        )
     interface = Interface(
         title=drive.title,
         identifier=_identifier(path.stem),
-        begin=settings.start_at,
+        begin=settings.begin,
         end=settings.end,
         interval=settings.output_interval,
         tolerance=settings.rtol,

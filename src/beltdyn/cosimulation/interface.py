@@ -119,7 +119,7 @@ def inputs_of(drive: Drive) -> dict[str, Input]:
     drive : Drive
         The drive.
     """
-    made = [_input(pulley, drive.simulation.start_at) for pulley in drive.pulleys]
+    made = [_input(pulley, drive.simulation.begin) for pulley in drive.pulleys]
     return {one.name: one for one in made}
 
 

@@ -19,8 +19,8 @@ from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrators.integrator_state import IntegratorState
 from beltdyn.solve.integrators.trajectory import Statistics, drive_task
 from beltdyn.solve.progress import Report
-from beltdyn.system.arrays import ENERGY_WORKS
 from beltdyn.solve.simulate import choose_integrator
+from beltdyn.system.arrays import ENERGY_WORKS
 from beltdyn.system.build_machines import profile_arrays
 from beltdyn.system.observe import observe_motion
 from beltdyn.system.state_forces import body_forces_at

@@ -257,6 +257,8 @@ def test_names_that_are_no_identifiers(short: Drive, tmp_path: Path) -> None:
 
 def test_what_cannot_be_written_is_told(short: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "drive.fmu"
+    with pytest.raises(ModelError, match="goes to other machines"):
+        fmu(short.with_({"simulation.start": {"file": "run.nc"}}), tmp_path / "drive.fmu")
     with pytest.raises(ModelError, match=r"must end in \.fmu"):
         fmu(short, tmp_path / "drive.zip")
     with pytest.raises(ModelError, match=r"fmi = '1.0' is not a version of FMI that can be written. Take 2.0 or 3.0."):
