@@ -178,6 +178,54 @@ def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(open_page: Open, folde
     expect(belt).to_have_count(1)
 
 
+FAN = """
+belt = { profile = "PJ", ribs = 6, installed_tension = "300 N" }
+contact = { friction = 0.4 }
+simulation = { duration = 0.4, output_interval = "1 ms", frame = "staying" }
+
+[[pulley]]
+name = "motor"
+center = [0.0, 0.0]
+radius = "40 mm"
+speed = { kind = "cosine_ramp", start = 0.02, end = 0.2, value = "1500 rpm" }
+
+[[pulley]]
+name = "fan"
+center = [0.3, 0.0]
+radius = "40 mm"
+inertia = 0.002
+load = [{ kind = "resistance", constant = "5 N m" }]
+"""
+STUDY = """
+number = [{ path = "belt.installed_tension", least = "150 N", largest = "500 N" }]
+goal = { result = "hub_load" }
+requirement = [{ result = "slip_safety", at_least = 3.0 }]
+"""
+
+
+def test_an_optimisation_finds_a_drive_file(open_page: Open, folder: Path) -> None:
+    """The least hub load is that at which slip is just as safe as it has to be."""
+    (folder / "drive.toml").write_text(FAN, encoding="utf-8")
+    (folder / "study.toml").write_text(STUDY, encoding="utf-8")
+    page = open_page()
+    page.get_by_label("analysis", exact=True).click()
+    page.get_by_role("option", name=re.compile("^optimize:")).click()
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("optimize needs study.").wait_for()
+    choose(page, "study", "study.toml")
+    page.get_by_role("button", name="Run", exact=True).click()
+    page.get_by_text("optimize: completed").wait_for()
+    shoot(page, "optimisation")
+    safety = page.locator("tr", has_text="slip_safety at least 3").locator("td")
+    assert [float(one) for one in safety.all_inner_texts()[1:3]] == pytest.approx([4.66, 3.0], rel=0.01)
+    with page.expect_download() as kept:
+        page.get_by_role("button", name="Drive file found").click()
+    best = tomllib.loads(Path(kept.value.path()).read_text(encoding="utf-8"))
+    assert 150.0 < float(best["belt"]["installed_tension"].removesuffix(" N")) < 300.0
+    page.get_by_role("button", name="Look at it").first.click()
+    page.frame_locator("iframe.bd-report").get_by_role("heading", name="Where it comes from").wait_for()
+
+
 def test_wrong_values_and_layouts_are_told_and_undone(open_page: Open) -> None:
     page = open_page()
     page.locator('[data-pulley="alternator"]').click()
@@ -215,6 +263,17 @@ def test_the_keyboard_is_enough(open_page: Open) -> None:
     page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
     page.keyboard.press("Control+z")
     page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 3")
+    page.get_by_role("button", name="Running").focus()
+    page.keyboard.press("Enter")
+    page.get_by_label("speed in percent of the drive file").wait_for()
+    page.get_by_role("button", name="Modes").focus()
+    page.keyboard.press("Tab")  # to the slider of speed, and then to that of load
+    page.keyboard.press("ArrowLeft")
+    expect(page.get_by_text("speed 95 %")).to_have_count(1)
+    page.keyboard.press("Tab")
+    for _ in range(3):
+        page.keyboard.press("ArrowDown")
+    expect(page.get_by_text("load 85 %")).to_have_count(1)
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])

@@ -13,7 +13,7 @@ from beltdyn.model import install
 from beltdyn.results.rest_sheet import rest_sheet
 
 _TITLES = {"rest": "At rest", "running": "Running", "modes": "Modes"}
-_PERCENT = 0.01
+_PERCENT, _MINUTE = 0.01, 60.0
 
 
 class NumbersView:
@@ -96,7 +96,8 @@ class NumbersView:
                 answer = await calculator.ask(asked)
                 if asked == self._shown and not self._box.is_deleted:
                     self._show(answer)
-                    self._say(f"{_TITLES[asked.what].lower()}, computed in {answer.seconds:.2g} s")
+                    seconds = f"{answer.seconds:.2g}" if answer.seconds < _MINUTE else f"{answer.seconds:.0f}"
+                    self._say(f"{_TITLES[asked.what].lower()}, computed in {seconds} s")
         finally:
             self._busy = False
 

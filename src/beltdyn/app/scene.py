@@ -152,11 +152,12 @@ def _pulley(one: Circle, drive: Drive | None, center: Sequence[float], draft: Dr
 
 
 def _spans(path: Path) -> list[dict[str, Any]]:
-    """Middles of spans, the directions in which there is room for their lengths, and the lengths."""
-    middles, middle = path.span_points.mean(axis=1), path.centers.mean(axis=0)
-    along = np.diff(path.span_points, axis=1)[:, 0]
-    normals = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
-    outward = np.where(np.sum(normals * (middles - middle), axis=1, keepdims=True) < 0.0, -normals, normals)
+    """Middles of spans, the directions in which there is room for their lengths, and the lengths.
+
+    Room is on the right of the belt, which goes around its pulleys counter-clockwise: off the drive.
+    """
+    middles, along = path.span_points.mean(axis=1), np.diff(path.span_points, axis=1)[:, 0]
+    outward = np.column_stack([along[:, 1], -along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
     return [
         {"x": x, "y": y, "right": right, "down": -up, "label": _written(length)}
         for (x, y), (right, up), length in zip(
