@@ -180,7 +180,7 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
         "tables": tables,
         "facts": facts,
         "origin": origin(result),
-        "drive": result.dataset.attrs.get("drive_as_given") or result.drive.text,
+        "drive": result.drive_as_given,
     }
 
 

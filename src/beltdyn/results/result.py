@@ -55,6 +55,11 @@ class Result:
         return self.dataset
 
     @property
+    def drive_as_given(self) -> str:
+        """The text of the drive file as it was given, before its open numbers were found for the analysis."""
+        return str(self.dataset.attrs.get("drive_as_given") or self.drive.text)
+
+    @property
     def status(self) -> str:
         """How the analysis ended: "completed"; of a `Run` also "running", "interrupted" or "failed"."""
         return str(self.dataset.attrs["status"])

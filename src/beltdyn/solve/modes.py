@@ -84,6 +84,7 @@ def modes(
     >>> found.dataset.kind.values.tolist()
     ['rotational', 'span', 'span']
     """
+    given = drive.drive_as_given if isinstance(drive, Run) else drive.text
     if isinstance(drive, Run):
         if about != STEADY:
             raise ModelError("about does not go with a run in place of the drive, which is the state. Leave it out.")
@@ -102,7 +103,8 @@ def modes(
         run = steady_state(held, at=at, force_tolerance=force_tolerance, progress=progress)
         motions, state = about_steady(run), _running(run)
     result = modes_about(motions, count)
-    return Result(result.dataset.assign_attrs(title=f"Modes of {drive.title}, {state}"), result.drive)
+    told = {"title": f"Modes of {drive.title}, {state}", "drive_as_given": given}
+    return Result(result.dataset.assign_attrs(told), result.drive)
 
 
 def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | None, count: int) -> None:

@@ -99,6 +99,7 @@ def sweep(
         overwrite,
         begin=Settling(number, start, _LEAD * length, longest) if start != 0.0 else None,
         watch=None if drive.ends else SlipThrough(raised, number),
+        drive_as_given=drive.text,
         swept_pulley=pulley,
         held=", ".join(one for one in held if not one.startswith(f"{pulley}.speed = ")),
     )

@@ -3,9 +3,11 @@
 import json
 import re
 from collections.abc import Callable, Mapping
+from functools import cache
 from html.parser import HTMLParser
 from importlib.resources import files
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,7 @@ from beltdyn.results import Result, Run
 
 _EMPTY = {"meta", "img", "input", "link", "br", "hr", "circle", "path"}
 LARGEST = 5_000_000
+MARK = "# A line that the user wrote.\n"
 EXAMPLES = files("beltdyn").joinpath("examples")
 MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[str, ...]]] = {
     "static": (bd.equilibrium, ("Largest hub load", "Wrap angle"), ("contact_pressure-0",)),
@@ -40,6 +43,17 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
         ("Amplitude of span tension", "speed of crank, order 2"),
         ("response-0",),
     ),
+    "duty": (
+        lambda drive: bd.duty(drive, table=_table()),
+        ("Largest slip", "duration"),
+        ("operating_points-0",),
+    ),
+    "sensitivity": (
+        lambda drive: bd.sensitivity(drive, about="rest", numbers="belt.installed_tension"),
+        ("belt.installed_tension",),
+        (),
+    ),
+    "open": (lambda _: bd.equilibrium(bd.loads(MARK + _text("band_brake"))), ("Largest hub load",), ()),
 }
 """Name -> how it is made, words of its report, and places of its charts."""
 MEANINGS = {
@@ -105,6 +119,10 @@ def test_the_page_is_whole_and_small(text: str, page: Page) -> None:
 
 
 def test_nothing_is_fetched(text: str, page: Page) -> None:
+    require_nothing_fetched(text, page)
+
+
+def require_nothing_fetched(text: str, page: Page) -> None:
     """Neither by an element nor by a style; Bokeh names addresses in its texts, and calls none by itself."""
     for tag, one in page.elements:
         assert not str(one.get("src", "data:")).startswith(("http", "//", "/")), tag
@@ -200,20 +218,47 @@ def test_the_name_of_a_report() -> None:
     assert report_file([Path("a/b.nc"), Path("c.nc"), Path("d.nc")]) == Path("a/b-and-2-more.html")
 
 
+def _text(example: str) -> str:
+    return EXAMPLES.joinpath(f"{example}.toml").read_text(encoding="utf-8")
+
+
+def _table() -> Path:
+    """A duty table of two points."""
+    path = Path(mkdtemp()) / "duty.csv"
+    path.write_text("duration [s],crank speed [rpm],load\n10,1000,1\n20,1500,0.5\n", encoding="utf-8")
+    return path
+
+
+Reported = Callable[[str], tuple[Result, str]]
+
+
 @pytest.fixture(scope="module")
-def excited() -> bd.Drive:
-    text = EXAMPLES.joinpath("alternator_drive.toml").read_text(encoding="utf-8")
-    harmonics = "harmonics = [{ order = 2, amplitude = 0.001 }]\n"
-    return bd.loads(text.replace("speed = {", f"{harmonics}speed = {{", 1) + "\n[limits]\nleast_margin = 1.5\n")
+def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
+    """A result of a kind, with its report."""
+    harmonics, limits = (
+        "harmonics = [{ order = 2, amplitude = 0.001 }]\n",
+        "least_margin = 1.5\nlargest_hub_load = 10\n",
+    )
+    given = _text("alternator_drive").replace("speed = {", f"{harmonics}speed = {{", 1)
+    drive = bd.loads(f"{MARK}{given}\n[limits]\n{limits}")
+
+    @cache
+    def of(kind: str) -> tuple[Result, str]:
+        result = MAKERS[kind][0](drive)
+        path = write_report(result, tmp_path_factory.mktemp(kind) / "report.html")
+        return result, path.read_text(encoding="utf-8")
+
+    return of
 
 
 @pytest.mark.parametrize("kind", MAKERS)
-def test_a_report_has_what_matters(kind: str, excited: bd.Drive, tmp_path: Path) -> None:
-    make, words, charts = MAKERS[kind]
-    result = make(excited)
-    text = write_report(result, tmp_path / "report.html").read_text(encoding="utf-8")
-    Page(text)
+def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
+    _, words, charts = MAKERS[kind]
+    result, text = reported(kind)
     assert len(text.encode()) < LARGEST
+    require_nothing_fetched(text, Page(text))
+    given = text.partition('<section id="file">')[2]
+    assert MARK.strip() in given, "the drive file stands there as it was given, with its comments"
     for word in (*words, "Hub load" if kind != "modes" else "growth rate", "<math", "SHA-256", "[[pulley]]"):
         assert word in text, word
     roots = data(text, "charts").get("items", [{"roots": {}}])[0]["roots"].values()
@@ -226,13 +271,32 @@ def test_a_report_has_what_matters(kind: str, excited: bd.Drive, tmp_path: Path)
         "modes": [["modes"]],
         "steady": [["time"]],
     }.get(kind, [])
-    judged = kind in ("steady", "map")
-    assert ("The limit is kept" in text) == judged
-    assert ('id="numbers"' in text) == (judged or kind == "static")
+    limited = {"static": "0 of 1", "steady": "1 of 2", "map": "1 of 2", "duty": "1 of 2"}.get(kind)
+    assert ("limits are kept" in text) == (limited is not None)
+    assert limited is None or f"{limited} limits are kept" in text
+    assert ('id="numbers"' in text) == (limited is not None or kind == "open")
+    if 'id="numbers"' in text:
+        loads = result.dataset["hub_load"].values if "hub_load" in result.dataset else _hub_loads(result)
+        (row,) = re.findall(r"<tr><th[^>]*>Largest hub load</th>(.*?)</tr>", text, re.DOTALL)
+        assert f"<b>{np.nanmax(loads):.4g} N</b>" in row
+        assert ("✗ fail" in row) == (limited is not None)
 
 
-def test_steady_running_names_no_instants(excited: bd.Drive, tmp_path: Path) -> None:
-    text = write_report(bd.steady_state(excited), tmp_path / "steady.html").read_text(encoding="utf-8")
+def _hub_loads(run: Result) -> Any:
+    return np.linalg.norm(run.dataset["hub_force"].values, axis=-1)
+
+
+def test_modes_stand_with_their_frequencies(reported: Reported) -> None:
+    """To four digits, in the tables."""
+    result, text = reported("modes")
+    tables = text.partition('<section id="tables">')[2].partition("</section>")[0]
+    found = np.array([float(one) for one in re.findall(r">(-?\d+\.?\d*(?:e[+-]?\d+)?)<", tables)])
+    for frequency in result.dataset["frequency"].values:
+        assert np.abs(found / frequency - 1.0).min() < 5e-3
+
+
+def test_steady_running_names_no_instants(reported: Reported) -> None:
+    _, text = reported("steady")
     assert "at 0 s" not in text
     assert "mean at the end" not in text
     titles = {one.get("text") for one in _parts(data(text, "charts")) if one.get("name") == "Title"}

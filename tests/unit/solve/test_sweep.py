@@ -86,6 +86,7 @@ def test_a_sweep_is_a_run_that_names_its_pulley(drive: Drive, start: float | str
     run = sweep(drive, pulley="driver", from_=start, to=end, duration="10 ms", settling="20 ms")
     assert run.kind == "run"
     assert run.dataset.attrs["swept_pulley"] == "driver"
+    assert run.drive_as_given == drive.text
     assert float(run.dataset.pulley_speed.sel(pulley="driver")[-1]) == pytest.approx(40.0 * np.pi)
     assert float(run.dataset.time[-1]) == pytest.approx(0.01)
 

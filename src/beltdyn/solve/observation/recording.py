@@ -212,7 +212,7 @@ class Recording:
         """
         layout = result_layout(drive, system)
         if drive is not self._drive:
-            attributes = provenance(drive.text, self._title) | {**self._about, "drive_as_given": self._drive.text}
+            attributes = provenance(drive.text, self._title) | {"drive_as_given": self._drive.text, **self._about}
             self._recorder.revise(layout, attributes)
         if unstable:
             self._findings["unstable_tensioners"] = ", ".join(unstable)
