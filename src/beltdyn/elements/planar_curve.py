@@ -23,8 +23,18 @@ class Density(NamedTuple):
 
 
 def curve_scratch(vectors: int) -> dict[str, str]:
-    """Fields of ``work`` for `add_density`, with the number of vectors: derivatives of G and c in the coordinates."""
-    return {"of_metric": f"{2 * vectors}f8", "of_cross": f"{2 * vectors}f8"}
+    """Fields of ``work`` for `add_density`, with the number of vectors.
+
+    They are the derivatives of G and c by z = (q, w), the force of a point on z and its derivative, and that derivative
+    by the coordinates.
+    """
+    return {
+        "of_metric": "4f8",
+        "of_cross": "4f8",
+        "point_force": "4f8",
+        "point_tangent": "(4,4)f8",
+        "by_coordinates": f"(4,{2 * vectors})f8",
+    }
 
 
 @kernel(inline=True)
@@ -63,39 +73,58 @@ def add_density(
     work
         `gradient` and `tangent` are changed; fields of `curve_scratch`.
     """
-    fill_slopes(slope, bend, q, w, work)
-    for c in range(2 * len(slope)):
-        work.gradient[c] += density.g * work.of_metric[c] + density.c * work.of_cross[c]
+    fill_slopes(q, w, work)
+    for k in range(4):
+        work.point_force[k] = density.g * work.of_metric[k] + density.c * work.of_cross[k]
+    add_point_force(slope, bend, work)
     if wanted:
-        add_density_tangent(density, slope, bend, work)
+        fill_density_tangent(density, work)
+        add_point_tangent(slope, bend, work)
 
 
 @kernel(inline=True)
-def fill_slopes(
-    slope: tuple[float, ...], bend: tuple[float, ...], q: tuple[float, float], w: tuple[float, float], work: np.record
-) -> None:
-    """Overwrite the derivatives of G and c; arguments as for `add_density`."""
+def fill_slopes(q: tuple[float, float], w: tuple[float, float], work: np.record) -> None:
+    """Overwrite the derivatives of G and c by z; arguments as for `add_density`."""
     of_metric, of_cross = work.of_metric, work.of_cross
-    for a in range(len(slope)):
-        of_metric[2 * a], of_metric[2 * a + 1] = 2.0 * slope[a] * q[0], 2.0 * slope[a] * q[1]
-        of_cross[2 * a] = slope[a] * w[1] - bend[a] * q[1]
-        of_cross[2 * a + 1] = bend[a] * q[0] - slope[a] * w[0]
+    of_metric[0], of_metric[1], of_metric[2], of_metric[3] = 2.0 * q[0], 2.0 * q[1], 0.0, 0.0
+    of_cross[0], of_cross[1], of_cross[2], of_cross[3] = w[1], -w[0], -q[1], q[0]
 
 
-@kernel
-def add_density_tangent(density: Density, slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
-    """Add a point's part of the tangent, with `fill_slopes` done before; arguments as for `add_density`."""
-    of_metric, of_cross = work.of_metric, work.of_cross
-    for row in range(2 * len(slope)):
+@kernel(inline=True)
+def fill_density_tangent(density: Density, work: np.record) -> None:
+    """Overwrite the tangent of a point, with `fill_slopes` done before; arguments as for `add_density`."""
+    of_metric, of_cross, tangent = work.of_metric, work.of_cross, work.point_tangent
+    for row in range(4):
         by_metric = density.gg * of_metric[row] + density.gc * of_cross[row]
         by_cross = density.gc * of_metric[row] + density.cc * of_cross[row]
-        for column in range(2 * len(slope)):
-            work.tangent[row, column] += by_metric * of_metric[column] + by_cross * of_cross[column]
+        for column in range(4):
+            tangent[row, column] = by_metric * of_metric[column] + by_cross * of_cross[column]
+    for axis in range(2):
+        tangent[axis, axis] += 2.0 * density.g
+        turned = density.c * (1.0 - 2.0 * axis)
+        tangent[axis, 3 - axis] += turned
+        tangent[3 - axis, axis] += turned
+
+
+@kernel(inline=True)
+def add_point_force(slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
+    """Give the force of a point to the coordinates; arguments as for `add_density`."""
+    force = work.point_force
     for a in range(len(slope)):
+        for axis in range(2):
+            work.gradient[2 * a + axis] += slope[a] * force[axis] + bend[a] * force[2 + axis]
+
+
+@kernel(inline=True)
+def add_point_tangent(slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
+    """Give the tangent of a point to the coordinates; arguments as for `add_density`."""
+    by_place, by_coordinates, tangent = work.point_tangent, work.by_coordinates, work.tangent
+    for row in range(4):
         for b in range(len(slope)):
-            same = 2.0 * density.g * slope[a] * slope[b]
-            turned = density.c * (slope[a] * bend[b] - bend[a] * slope[b])
-            work.tangent[2 * a, 2 * b] += same
-            work.tangent[2 * a, 2 * b + 1] += turned
-            work.tangent[2 * a + 1, 2 * b] -= turned
-            work.tangent[2 * a + 1, 2 * b + 1] += same
+            for axis in range(2):
+                by_coordinates[row, 2 * b + axis] = slope[b] * by_place[row, axis] + bend[b] * by_place[row, 2 + axis]
+    for a in range(len(slope)):
+        for axis in range(2):
+            for column in range(2 * len(slope)):
+                along, across = by_coordinates[axis, column], by_coordinates[2 + axis, column]
+                tangent[2 * a + axis, column] += slope[a] * along + bend[a] * across

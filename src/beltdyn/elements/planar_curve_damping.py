@@ -11,7 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.elements.hysteretic import Hysteretic, hysteretic
-from beltdyn.elements.planar_curve import Density, add_density_tangent, fill_slopes
+from beltdyn.elements.planar_curve import (
+    Density,
+    add_point_force,
+    add_point_tangent,
+    fill_density_tangent,
+    fill_slopes,
+)
 from beltdyn.kernel import kernel
 
 Two = tuple[float, float]
@@ -48,9 +54,8 @@ class PointDamping(NamedTuple):
 
 
 def curve_damping_scratch(vectors: int) -> dict[str, str]:
-    """Fields of ``work`` for `add_curve_damping`: derivatives of both strains, of their rates, and by the speed."""
-    size = 2 * vectors
-    return {"strain_slope": f"(2,{size})f8", "strain_drift": f"(2,{size})f8", "by_square": f"{size}f8"}
+    """Fields of ``work`` for `add_curve_damping`: derivatives of strains and of their rates by (q, w), by the speed."""
+    return {"strain_slope": "(2,4)f8", "strain_drift": "(2,4)f8", "by_square": f"{2 * vectors}f8"}
 
 
 @kernel
@@ -77,7 +82,7 @@ def add_curve_damping(
         Powers lost in stretch and in bending, W.
     """
     q, w, q_rate, w_rate = motion.q, motion.w, motion.q_rate, motion.w_rate
-    fill_slopes(slope, bend, q, w, work)
+    fill_slopes(q, w, work)
     metric, cross = q[0] * q[0] + q[1] * q[1], q[0] * w[1] - q[1] * w[0]
     metric_rate = 2.0 * (q[0] * q_rate[0] + q[1] * q_rate[1])
     cross_rate = q_rate[0] * w[1] - q_rate[1] * w[0] + q[0] * w_rate[1] - q[1] * w_rate[0]
@@ -88,42 +93,50 @@ def add_curve_damping(
     strain_rate, curvature_rate = stretch_g * metric_rate, by_g * metric_rate + by_c * cross_rate
     law = hysteretic(damping.hysteresis, cross * by_c, curvature_rate, damping.square, damping.passing_length)
     force, moment = damping.axial * strain_rate, damping.bending * curvature_rate + law.stress
-    for a in range(len(slope)):
-        for axis in range(2):
-            column, side = 2 * a + axis, 1.0 - 2.0 * axis
-            of_metric, of_cross = work.of_metric[column], work.of_cross[column]
-            metric_drift = 2.0 * slope[a] * q_rate[axis]
-            cross_drift = side * (slope[a] * w_rate[1 - axis] - bend[a] * q_rate[1 - axis])
-            work.strain_slope[0, column] = stretch_g * of_metric
-            work.strain_slope[1, column] = by_g * of_metric + by_c * of_cross
-            work.strain_drift[0, column] = stretch_g * metric_drift + stretch_gg * metric_rate * of_metric
-            work.strain_drift[1, column] = (
-                by_g * metric_drift
-                + by_c * cross_drift
-                + (by_gg * metric_rate + by_gc * cross_rate) * of_metric
-                + by_gc * metric_rate * of_cross
-            )
-            work.gradient[column] += force * work.strain_slope[0, column] + moment * work.strain_slope[1, column]
-            work.by_square[column] += law.by_square * work.strain_slope[1, column]
+    metric_drift = (2.0 * q_rate[0], 2.0 * q_rate[1], 0.0, 0.0)
+    cross_drift = (w_rate[1], -w_rate[0], -q_rate[1], q_rate[0])
+    by_metric = by_gg * metric_rate + by_gc * cross_rate
+    for k in range(4):
+        of_metric, of_cross = work.of_metric[k], work.of_cross[k]
+        work.strain_slope[0, k] = stretch_g * of_metric
+        work.strain_slope[1, k] = by_g * of_metric + by_c * of_cross
+        work.strain_drift[0, k] = stretch_g * metric_drift[k] + stretch_gg * metric_rate * of_metric
+        work.strain_drift[1, k] = (
+            by_g * metric_drift[k] + by_c * cross_drift[k] + by_metric * of_metric + by_gc * metric_rate * of_cross
+        )
+        work.point_force[k] = force * work.strain_slope[0, k] + moment * work.strain_slope[1, k]
+    add_point_force(slope, bend, work)
+    if law.by_square != 0.0:
+        _add_by_square(law.by_square, slope, bend, work)
     if damping.by_position != 0.0 or damping.by_velocity != 0.0:
         pull, turn = damping.by_position * force, damping.by_position * moment
         density = Density(
             pull * stretch_g + turn * by_g, turn * by_c, pull * stretch_gg + turn * by_gg, turn * by_gc, 0.0
         )
-        add_density_tangent(density, slope, bend, work)
+        fill_density_tangent(density, work)
         _add_products(damping, law, work)
+        add_point_tangent(slope, bend, work)
     return force * strain_rate, moment * curvature_rate
 
 
 @kernel(inline=True)
+def _add_by_square(factor: float, slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
+    """Add the derivative of the force by the square of the speed."""
+    turned = work.strain_slope[1]
+    for a in range(len(slope)):
+        for axis in range(2):
+            work.by_square[2 * a + axis] += factor * (slope[a] * turned[axis] + bend[a] * turned[2 + axis])
+
+
+@kernel(inline=True)
 def _add_products(damping: PointDamping, law: Hysteretic, work: np.record) -> None:
-    """Add what the strains and their rates contribute to the tangent."""
-    size, by_strain = work.strain_slope.shape[1], damping.by_position * law.by_strain
+    """Add what the strains and their rates contribute to the tangent of a point."""
+    by_strain = damping.by_position * law.by_strain
     for k, factor, share in ((0, damping.axial, 0.0), (1, damping.bending + law.by_rate, by_strain)):
         if factor == 0.0:
             continue
-        for column in range(size):
+        for column in range(4):
             drift, slope = work.strain_drift[k, column], work.strain_slope[k, column]
             change = factor * damping.by_position * drift + (factor * damping.by_velocity + share) * slope
-            for row in range(size):
-                work.tangent[row, column] += work.strain_slope[k, row] * change
+            for row in range(4):
+                work.point_tangent[row, column] += work.strain_slope[k, row] * change
