@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.contact_force import contact_force
+from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
@@ -28,6 +28,7 @@ from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 
 ROUNDS, REPEATS = 15, 300
+FACTORS = ContactFactors(1.0, 2e3, 2e3, 0.0, 0.0)
 
 
 @kernel
@@ -80,7 +81,7 @@ def repeat_contact(system: System, motion: Motion, work: Equations, _none: Float
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
                 if not out_of_reach(piece.control, pulley):
-                    contact_force(piece, pulley, system.law, points, 1.0, 2e3, scratch.contact)
+                    contact_force(piece, pulley, system.law, points, FACTORS, scratch.contact)
 
 
 def smallest(run: Callable[[], object]) -> float:

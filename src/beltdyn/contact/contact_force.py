@@ -4,7 +4,7 @@ The centreline is a Bezier curve given by its control points, whatever the belt 
 vectors of which the control points are combinations (the basis): Q_b = integral of S_b (f_n n + (f_t + f_r) t) dx.
 """
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from beltdyn.contact.bezier import Curve, combine, fill_bernstein, fill_bernstei
 from beltdyn.contact.contact_zone import touching_intervals, zone_record
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.penetration import Approach, approach
-from beltdyn.contact.point_force import PointForce, point_force, point_tangent, point_turn
+from beltdyn.contact.point_force import PointForce, PointTangent, point_force, point_tangent, point_turn
 from beltdyn.kernel import kernel
 from beltdyn.quadrature import Quadrature
 from beltdyn.records import blank, record
@@ -35,6 +35,25 @@ class ContactTotals(NamedTuple):
     """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - arm omega), W."""
     compression_power: float
     """Power lost as the belt is pressed in and comes out, -f_r (t . dr/dt), W."""
+
+
+class ContactFactors(NamedTuple):
+    """The tangent is the sum of these times derivatives; with all of them zero there is none."""
+
+    by_position: float
+    """By positions of the belt, and by the pulley's angle."""
+    by_velocity: float
+    """By velocities of the belt, whose change goes along with that of positions."""
+    by_turning: float
+    """By the pulley's speed."""
+    by_slope: float
+    """By velocities of the belt that change by the derivative of the change of positions along the belt: it flows
+    through its mesh at this speed, m/s."""
+    by_flow: float
+    """By that speed of the flow."""
+
+
+NO_CONTACT_TANGENT: Final = ContactFactors(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def contact_record(count: int, vectors: int) -> np.dtype[np.void]:
@@ -61,6 +80,8 @@ def contact_record(count: int, vectors: int) -> np.dtype[np.void]:
         by_turn=f"({vectors},2)f8",  # derivative of `force` with respect to angle and speed of the pulley
         moment_by_turn="f8",  # the same of the moment on the pulley
         moment=f"({vectors},2)f8",  # derivative of the moment on the pulley with respect to the vectors, N
+        by_flow=f"({vectors},2)f8",  # derivative of `force` with respect to the speed of the belt's flow
+        moment_by_flow="f8",
         zone=zone_record(count),
         weights=f"({count},)f8",  # of the control points at a point, and their derivatives along the curve
         rates=f"({count},)f8",
@@ -82,8 +103,7 @@ def contact_force(
     pulley: PulleyState,
     law: ContactLaw,
     rule: Quadrature,
-    by_position: float,
-    by_velocity: float,
+    factors: ContactFactors,
     work: np.record,
 ) -> ContactTotals:
     """Contact forces of an element against a pulley by Gauss quadrature, with their tangent (Eqs. 17-24).
@@ -98,9 +118,8 @@ def contact_force(
         Laws of contact; `law.follow_zone` places the points on the touching intervals instead of the whole element.
     rule
         Points and weights.
-    by_position, by_velocity : float
-        The tangent is by_position d/d(position) + by_velocity d/d(velocity), of the belt and of the pulley's
-        angle; with both zero there is none.
+    factors
+        Of the derivatives in the tangent.
     work
         Made by `contact_workspace`; overwritten.
 
@@ -116,7 +135,8 @@ def contact_force(
     else:
         count, intervals[0, 0], intervals[0, 1] = 1, 0.0, 1.0
     totals = ContactTotals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    wanted = by_position != 0.0 or by_velocity != 0.0
+    wanted = factors.by_position != 0.0 or factors.by_velocity != 0.0
+    flowing = wanted and (factors.by_slope != 0.0 or factors.by_flow != 0.0)
     for interval in range(count):
         start, stop = intervals[interval, 0], intervals[interval, 1]
         moving = wanted and (start > 0.0 or stop < 1.0)
@@ -136,14 +156,19 @@ def contact_force(
             _add_pairs(work.force, work.functions, weight * force.x, weight * force.y)
             totals = _add_point(totals, weight, here, force, pulley)
             if wanted:
-                _spread(weight, here, force, pulley, by_position, by_velocity, work)
+                _spread(weight, here, force, pulley, factors, work)
+            if moving or flowing:
+                fill_bernstein_rates(xi, work.rates)
+                fill_shape_functions(curve.basis, work.rates, work.function_rates)
+            if flowing:
+                _flow(weight / curve.length, curve, here, force, pulley, factors, work)
             if moving:
-                drift = _drift(xi, curve, here, force, pulley, work)
+                drift = _drift(curve, here, force, pulley, work)
                 _add_end(work, 0, -share, weight * (1.0 - place), force, drift)
                 _add_end(work, 1, share, weight * place, force, drift)
         for end, xi in ((0, start), (1, stop)):
             if moving and 0.0 < xi < 1.0:
-                _move_end(curve, pulley, xi, end, by_position, work)
+                _move_end(curve, pulley, xi, end, factors.by_position, work)
     return totals
 
 
@@ -158,6 +183,8 @@ def _clear(work: np.record) -> None:
     work.by_turn[:] = 0.0
     work.moment_by_turn = 0.0
     work.moment[:] = 0.0
+    work.by_flow[:] = 0.0
+    work.moment_by_flow = 0.0
 
 
 @kernel(inline=True)
@@ -182,20 +209,37 @@ def _spread(
     here: Approach,
     force: PointForce,
     pulley: PulleyState,
-    by_position: float,
-    by_velocity: float,
+    factors: ContactFactors,
     work: np.record,
 ) -> None:
     """Give tangent and couplings of a point to the vectors (Eq. 24)."""
-    tangent = point_tangent(here, force, pulley.speed, by_position, by_velocity)
-    turn = point_turn(here, force, pulley.speed, by_position, by_velocity)
+    tangent = point_tangent(here, force, pulley.speed, factors.by_position, factors.by_velocity)
+    turn = point_turn(here, force, pulley.speed, factors.by_position, factors.by_turning)
     _add_pairs(work.by_turn, work.functions, weight * turn.x, weight * turn.y)
     _add_pairs(work.moment, work.functions, weight * tangent.moment_x, weight * tangent.moment_y)
-    _add_block(work.xx, work.functions, weight * tangent.xx)
-    _add_block(work.xy, work.functions, weight * tangent.xy)
-    _add_block(work.yx, work.functions, weight * tangent.yx)
-    _add_block(work.yy, work.functions, weight * tangent.yy)
+    _add_blocks(work, work.functions, tangent, weight)
     work.moment_by_turn += weight * turn.moment
+
+
+@kernel(inline=True)
+def _flow(
+    share: float,
+    curve: Curve,
+    here: Approach,
+    force: PointForce,
+    pulley: PulleyState,
+    factors: ContactFactors,
+    work: np.record,
+) -> None:
+    """Add what changes of the velocity by the belt's flow do, with the weight of the point over the curve's length."""
+    motion, part = point_tangent(here, force, pulley.speed, 0.0, 1.0), share * factors.by_slope
+    _add_blocks(work, work.function_rates, motion, part)
+    _add_pairs(work.moment, work.function_rates, part * motion.moment_x, part * motion.moment_y)
+    rx, ry = combine(curve.control, work.rates)
+    part = share * factors.by_flow
+    fx, fy = motion.xx * rx + motion.xy * ry, motion.yx * rx + motion.yy * ry
+    _add_pairs(work.by_flow, work.functions, part * fx, part * fy)
+    work.moment_by_flow += part * (motion.moment_x * rx + motion.moment_y * ry)
 
 
 @kernel(inline=True)
@@ -207,21 +251,23 @@ def _add_pairs(pairs: FloatArray, shape: FloatArray, x: float, y: float) -> None
 
 
 @kernel(inline=True)
-def _add_block(block: FloatArray, shape: FloatArray, factor: float) -> None:
-    """Add factor shape_a shape_b."""
+def _add_blocks(work: np.record, shape: FloatArray, tangent: PointTangent, factor: float) -> None:
+    """Add factor times the tangent of a point, S_a for the force on vector a, shape_b for the change of vector b."""
     for a in range(shape.size):
-        row = factor * shape[a]
+        part = factor * work.functions[a]
+        xx, xy, yx, yy = part * tangent.xx, part * tangent.xy, part * tangent.yx, part * tangent.yy
         for b in range(shape.size):
-            block[a, b] += row * shape[b]
+            work.xx[a, b] += xx * shape[b]
+            work.xy[a, b] += xy * shape[b]
+            work.yx[a, b] += yx * shape[b]
+            work.yy[a, b] += yy * shape[b]
 
 
 @kernel(inline=True)
 def _drift(
-    xi: float, curve: Curve, here: Approach, force: PointForce, pulley: PulleyState, work: np.record
+    curve: Curve, here: Approach, force: PointForce, pulley: PulleyState, work: np.record
 ) -> tuple[float, float, float]:
-    """Change of force and moment along the curve; the shape functions' own goes to `work.function_rates`."""
-    fill_bernstein_rates(xi, work.rates)
-    fill_shape_functions(curve.basis, work.rates, work.function_rates)
+    """Change of force and moment along the curve, with the rates of the weights of its control points at the point."""
     rx, ry = combine(curve.control, work.rates)
     sx, sy = combine(curve.velocity, work.rates)
     place = point_tangent(here, force, pulley.speed, 1.0, 0.0)

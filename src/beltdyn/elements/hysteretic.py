@@ -29,7 +29,7 @@ class Hysteretic(NamedTuple):
     """By the square of the belt's speed."""
 
 
-@kernel
+@kernel(inline=True)
 def hysteretic(modulus: float, strain: float, rate: float, square: float, length: float) -> Hysteretic:
     """Stress of rate-independent damping (Reid 1956), smoothed at slow rates.
 
@@ -48,7 +48,10 @@ def hysteretic(modulus: float, strain: float, rate: float, square: float, length
     -------
     Hysteretic
     """
-    slow = (square + CREEPING * CREEPING) / (length * length)
+    if modulus == 0.0:
+        return Hysteretic(0.0, 0.0, 0.0, 0.0)
+    passing = square + CREEPING * CREEPING
+    slow = passing / (length * length)
     root = sqrt(rate * rate + slow * strain * strain)
     if root == 0.0:
         return Hysteretic(0.0, 0.0, 0.0, 0.0)
@@ -59,5 +62,5 @@ def hysteretic(modulus: float, strain: float, rate: float, square: float, length
         modulus * size * share,
         modulus * sign * share * fast,
         modulus * size / root * (1.0 - fast),
-        -0.5 * modulus * size * share * (1.0 - fast) / (slow * length * length),
+        -0.5 * modulus * size * share * (1.0 - fast) / passing,
     )

@@ -34,6 +34,7 @@ def no_damping(
     length: float,
     by_position: float,
     by_velocity: float,
+    by_flow: float,
     work: np.record,
 ) -> tuple[float, float]:
     """Add nothing: the `damping` of kinds that have none."""
@@ -81,9 +82,11 @@ class ElementKind:
         Called with (element, e, length, wanted, work); overwrites ``work.gradient`` by dU/de, and ``work.tangent`` by
         d2U/de2 if that is wanted.
     damping : kernel
-        Called with (element, e, velocity, length, by_position, by_velocity, work); adds dR/d(de/dt) of the rate
-        potential R to the gradient, and by_position d/de + by_velocity d/d(de/dt) of it to the tangent. Gives the
-        powers lost in stretch and in bending, W. By default there is none.
+        Called with (element, e, velocity, length, by_position, by_velocity, by_flow, work); adds dR/d(de/dt) of the
+        rate potential R to the gradient, and by_position d/de + by_velocity d/d(de/dt) of it to the tangent. Gives the
+        powers lost in stretch and in bending, W. By default there is none. An element through which the belt flows has
+        vectors D e of dr/dx; with a tangent it adds by_flow d/d(de/dt) D to that, and d/d(de/dt) D e to
+        ``work.by_flow``. For others by_flow is zero.
     tension : kernel
         Tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By default
         `beltdyn.elements.tension.axial_tension`.
@@ -144,7 +147,7 @@ class ElementKind:
     def workspace(self) -> np.dtype[np.void]:
         """Kind of the rows in which `force` and `damping` work and leave what they find."""
         size = 2 * self.dof
-        return record(gradient=f"{size}f8", tangent=f"({size},{size})f8", **self.scratch)
+        return record(gradient=f"{size}f8", by_flow=f"{size}f8", tangent=f"({size},{size})f8", **self.scratch)
 
 
 ELEMENTS: dict[str, ElementKind] = {}

@@ -2,6 +2,9 @@
 
 The centreline is made of vectors of two components, in the order of the coordinates e: first those of node i, its place
 before its derivatives, then as many of node j.
+
+A point's force belongs to z = (q, w), and so does its tangent, which may have columns for u = d3r/dx3 too. Tangents are
+summed in rows that are wider than the coordinates, so that inner loops run in whole vector registers.
 """
 
 from typing import NamedTuple
@@ -10,6 +13,9 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
+
+_LANES = 16
+"""Rows are padded to a multiple of this many numbers; loops over fewer are not taken by vector registers."""
 
 
 class Density(NamedTuple):
@@ -25,15 +31,17 @@ class Density(NamedTuple):
 def curve_scratch(vectors: int) -> dict[str, str]:
     """Fields of ``work`` for `add_density`, with the number of vectors.
 
-    They are the derivatives of G and c by z = (q, w), the force of a point on z and its derivative, and that derivative
-    by the coordinates.
+    They are the derivatives of G and c by z, the force of a point on z and its derivative by q, w and u, that
+    derivative by the coordinates, and the sum of tangents.
     """
+    width = (2 * vectors + _LANES - 1) // _LANES * _LANES
     return {
         "of_metric": "4f8",
         "of_cross": "4f8",
         "point_force": "4f8",
-        "point_tangent": "(4,4)f8",
-        "by_coordinates": f"(4,{2 * vectors})f8",
+        "point_tangent": "(4,6)f8",
+        "by_coordinates": f"(4,{width})f8",
+        "rows": f"({2 * vectors},{width})f8",
     }
 
 
@@ -48,7 +56,7 @@ def combine(e: FloatArray, factors: tuple[float, ...]) -> tuple[float, float]:
     return x, y
 
 
-@kernel
+@kernel(inline=True)
 def add_density(
     density: Density,
     slope: tuple[float, ...],
@@ -58,7 +66,7 @@ def add_density(
     wanted: bool,
     work: np.record,
 ) -> None:
-    """Add a point's part of the elastic force and of its exact tangent.
+    """Add a point's part of the elastic force and of its exact tangent, between `begin_tangent` and `end_tangent`.
 
     Parameters
     ----------
@@ -71,7 +79,7 @@ def add_density(
     wanted
         Whether the tangent is.
     work
-        `gradient` and `tangent` are changed; fields of `curve_scratch`.
+        `gradient` and `rows` are changed; fields of `curve_scratch`.
     """
     fill_slopes(q, w, work)
     for k in range(4):
@@ -80,6 +88,20 @@ def add_density(
     if wanted:
         fill_density_tangent(density, work)
         add_point_tangent(slope, bend, work)
+
+
+@kernel(inline=True)
+def begin_tangent(work: np.record) -> None:
+    """Begin the sum of tangents; arguments as for `add_density`."""
+    work.rows[:] = 0.0
+
+
+@kernel(inline=True)
+def end_tangent(work: np.record) -> None:
+    """Add the sum to the tangent of the element; arguments as for `add_density`."""
+    for row in range(work.tangent.shape[0]):
+        for column in range(work.tangent.shape[1]):
+            work.tangent[row, column] += work.rows[row, column]
 
 
 @kernel(inline=True)
@@ -118,13 +140,21 @@ def add_point_force(slope: tuple[float, ...], bend: tuple[float, ...], work: np.
 @kernel(inline=True)
 def add_point_tangent(slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
     """Give the tangent of a point to the coordinates; arguments as for `add_density`."""
-    by_place, by_coordinates, tangent = work.point_tangent, work.by_coordinates, work.tangent
+    by_place, by_coordinates = work.point_tangent, work.by_coordinates
     for row in range(4):
         for b in range(len(slope)):
             for axis in range(2):
                 by_coordinates[row, 2 * b + axis] = slope[b] * by_place[row, axis] + bend[b] * by_place[row, 2 + axis]
+    spread_rows(slope, bend, work)
+
+
+@kernel(inline=True)
+def spread_rows(slope: tuple[float, ...], bend: tuple[float, ...], work: np.record) -> None:
+    """Add the derivative of a point's force by the coordinates to the sum; arguments as for `add_density`."""
+    by_coordinates, rows = work.by_coordinates, work.rows
     for a in range(len(slope)):
+        along, across = slope[a], bend[a]
         for axis in range(2):
-            for column in range(2 * len(slope)):
-                along, across = by_coordinates[axis, column], by_coordinates[2 + axis, column]
-                tangent[2 * a + axis, column] += slope[a] * along + bend[a] * across
+            for column in range(rows.shape[1]):
+                change = along * by_coordinates[axis, column] + across * by_coordinates[2 + axis, column]
+                rows[2 * a + axis, column] += change

@@ -14,9 +14,9 @@ from beltdyn.elements.hysteretic import Hysteretic, hysteretic
 from beltdyn.elements.planar_curve import (
     Density,
     add_point_force,
-    add_point_tangent,
     fill_density_tangent,
     fill_slopes,
+    spread_rows,
 )
 from beltdyn.kernel import kernel
 
@@ -30,6 +30,8 @@ class CurveMotion(NamedTuple):
     """dr/dx."""
     w: Two
     """d2r/dx2, 1/m."""
+    u: Two
+    """d3r/dx3, 1/m^2."""
     q_rate: Two
     """1/s."""
     w_rate: Two
@@ -51,16 +53,31 @@ class PointDamping(NamedTuple):
     """Of the belt's speed, m^2/s^2."""
     by_position: float
     by_velocity: float
+    by_flow: float
 
 
 def curve_damping_scratch(vectors: int) -> dict[str, str]:
-    """Fields of ``work`` for `add_curve_damping`: derivatives of strains and of their rates by (q, w), by the speed."""
-    return {"strain_slope": "(2,4)f8", "strain_drift": "(2,4)f8", "by_square": f"{2 * vectors}f8"}
+    """Fields of ``work`` for `add_curve_damping`.
+
+    They are derivatives of strains and of their rates by z = (q, w), that of the force by the rate of z, and by the
+    square of the speed.
+    """
+    return {
+        "strain_slope": "(2,4)f8",
+        "strain_drift": "(2,4)f8",
+        "by_rate": "(4,4)f8",
+        "by_square": f"{2 * vectors}f8",
+    }
 
 
-@kernel
+@kernel(inline=True)
 def add_curve_damping(
-    damping: PointDamping, slope: tuple[float, ...], bend: tuple[float, ...], motion: CurveMotion, work: np.record
+    damping: PointDamping,
+    slope: tuple[float, ...],
+    bend: tuple[float, ...],
+    third: tuple[float, ...],
+    motion: CurveMotion,
+    work: np.record,
 ) -> Two:
     """Add a point's part of the damping force, with the opposite sign, and of its exact tangent.
 
@@ -68,13 +85,13 @@ def add_curve_damping(
     ----------
     damping
         Factors.
-    slope, bend : tuple of float
-        Factors of the vectors in q and w.
+    slope, bend, third : tuple of float
+        Factors of the vectors in q, w and u.
     motion
         The point.
     work
-        `gradient`, `tangent` and `by_square`, the derivative of the force by the square of the speed, are changed;
-        fields of `curve_scratch` and `curve_damping_scratch`.
+        `gradient`, `by_square`, the derivative of the force by the square of the speed, and, with a tangent, `rows` and
+        `by_flow` are changed; fields of `curve_scratch` and `curve_damping_scratch`.
 
     Returns
     -------
@@ -87,9 +104,9 @@ def add_curve_damping(
     metric_rate = 2.0 * (q[0] * q_rate[0] + q[1] * q_rate[1])
     cross_rate = q_rate[0] * w[1] - q_rate[1] * w[0] + q[0] * w_rate[1] - q[1] * w_rate[0]
     by_c = 1.0 / sqrt(metric)
-    by_g, by_gc = -0.5 * cross * by_c / metric, -0.5 * by_c / metric
-    by_gg = 0.75 * cross * by_c / (metric * metric)
-    stretch_g, stretch_gg = 0.5 * by_c, -0.25 * by_c / metric
+    cube = by_c * by_c * by_c
+    by_g, by_gc, by_gg = -0.5 * cross * cube, -0.5 * cube, 0.75 * cross * cube * by_c * by_c
+    stretch_g, stretch_gg = 0.5 * by_c, -0.25 * cube
     strain_rate, curvature_rate = stretch_g * metric_rate, by_g * metric_rate + by_c * cross_rate
     law = hysteretic(damping.hysteresis, cross * by_c, curvature_rate, damping.square, damping.passing_length)
     force, moment = damping.axial * strain_rate, damping.bending * curvature_rate + law.stress
@@ -109,13 +126,12 @@ def add_curve_damping(
     if law.by_square != 0.0:
         _add_by_square(law.by_square, slope, bend, work)
     if damping.by_position != 0.0 or damping.by_velocity != 0.0:
-        pull, turn = damping.by_position * force, damping.by_position * moment
         density = Density(
-            pull * stretch_g + turn * by_g, turn * by_c, pull * stretch_gg + turn * by_gg, turn * by_gc, 0.0
+            force * stretch_g + moment * by_g, moment * by_c, force * stretch_gg + moment * by_gg, moment * by_gc, 0.0
         )
         fill_density_tangent(density, work)
         _add_products(damping, law, work)
-        add_point_tangent(slope, bend, work)
+        _spread(damping, slope, bend, third, motion, work)
     return force * strain_rate, moment * curvature_rate
 
 
@@ -130,13 +146,41 @@ def _add_by_square(factor: float, slope: tuple[float, ...], bend: tuple[float, .
 
 @kernel(inline=True)
 def _add_products(damping: PointDamping, law: Hysteretic, work: np.record) -> None:
-    """Add what the strains and their rates contribute to the tangent of a point."""
-    by_strain = damping.by_position * law.by_strain
-    for k, factor, share in ((0, damping.axial, 0.0), (1, damping.bending + law.by_rate, by_strain)):
+    """Add what the strains and their rates contribute to the tangent of a point; overwrite that by the rate of z."""
+    work.by_rate[:] = 0.0
+    for k, factor, share in ((0, damping.axial, 0.0), (1, damping.bending + law.by_rate, law.by_strain)):
         if factor == 0.0:
             continue
         for column in range(4):
             drift, slope = work.strain_drift[k, column], work.strain_slope[k, column]
-            change = factor * damping.by_position * drift + (factor * damping.by_velocity + share) * slope
+            change = factor * drift + share * slope
             for row in range(4):
                 work.point_tangent[row, column] += work.strain_slope[k, row] * change
+                work.by_rate[row, column] += work.strain_slope[k, row] * factor * slope
+
+
+@kernel(inline=True)
+def _spread(
+    damping: PointDamping,
+    slope: tuple[float, ...],
+    bend: tuple[float, ...],
+    third: tuple[float, ...],
+    motion: CurveMotion,
+    work: np.record,
+) -> None:
+    """Give the tangent of a point to the coordinates; the belt's flow changes q and w at the rates w and u."""
+    by_place, by_rate, by_coordinates = work.point_tangent, work.by_rate, work.by_coordinates
+    w, u = motion.w, motion.u
+    for row in range(4):
+        for axis in range(2):
+            of_q, of_w = by_rate[row, axis], by_rate[row, 2 + axis]
+            by_q = damping.by_position * by_place[row, axis] + damping.by_velocity * of_q
+            by_w = damping.by_position * by_place[row, 2 + axis] + damping.by_velocity * of_w + damping.by_flow * of_q
+            by_u = damping.by_flow * of_w
+            for b in range(len(slope)):
+                by_coordinates[row, 2 * b + axis] = slope[b] * by_q + bend[b] * by_w + third[b] * by_u
+        flow = by_rate[row, 0] * w[0] + by_rate[row, 1] * w[1] + by_rate[row, 2] * u[0] + by_rate[row, 3] * u[1]
+        factors = slope if row < 2 else bend
+        for a in range(len(slope)):
+            work.by_flow[2 * a + row % 2] += factors[a] * flow
+    spread_rows(slope, bend, work)

@@ -17,7 +17,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.kind import ElementKind
-from beltdyn.elements.planar_curve import Density, add_density, combine, curve_scratch
+from beltdyn.elements.planar_curve import Density, add_density, begin_tangent, combine, curve_scratch, end_tangent
 from beltdyn.elements.planar_curve_damping import (
     CurveMotion,
     PointDamping,
@@ -55,7 +55,7 @@ class Quintic(NamedTuple):
     elastic: Quadrature
 
 
-@kernel
+@kernel(inline=True)
 def slopes(xi: float, length: float) -> Six:
     """Factors of the six vectors in q, at xi = x / L."""
     chord = 30.0 * xi * xi * (1.0 - xi) * (1.0 - xi) / length
@@ -69,7 +69,7 @@ def slopes(xi: float, length: float) -> Six:
     )
 
 
-@kernel
+@kernel(inline=True)
 def bends(xi: float, length: float) -> Six:
     """Factors of the six vectors in w, at xi = x / L."""
     chord = 60.0 * xi * (1.0 - xi) * (1.0 - 2.0 * xi) / (length * length)
@@ -80,6 +80,20 @@ def bends(xi: float, length: float) -> Six:
         chord,
         -xi * (24.0 - xi * (84.0 - 60.0 * xi)) / length,
         xi * (3.0 - xi * (12.0 - 10.0 * xi)),
+    )
+
+
+@kernel(inline=True)
+def thirds(xi: float, length: float) -> Six:
+    """Factors of the six vectors in u = d3r/dx3, at xi = x / L."""
+    chord, square = 60.0 * (1.0 - xi * (6.0 - 6.0 * xi)) / length**3, length * length
+    return (
+        -chord,
+        -(36.0 - xi * (192.0 - 180.0 * xi)) / square,
+        -(9.0 - xi * (36.0 - 30.0 * xi)) / length,
+        chord,
+        -(24.0 - xi * (168.0 - 180.0 * xi)) / square,
+        (3.0 - xi * (24.0 - 30.0 * xi)) / length,
     )
 
 
@@ -129,6 +143,7 @@ def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, 
     work.gradient[:] = 0.0
     if wanted:
         work.tangent[:] = 0.0
+        begin_tangent(work)
     for k in range(points.size):
         slope, bend = slopes(points[k], length), bends(points[k], length)
         q, w = combine(e, slope), combine(e, bend)
@@ -143,6 +158,8 @@ def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, 
             weight * across.cc,
         )
         add_density(density, slope, bend, q, w, wanted, work)
+    if wanted:
+        end_tangent(work)
 
 
 def quintic_control(length: float) -> FloatArray:
@@ -173,6 +190,7 @@ def quintic_damping(
     length: float,
     by_position: float,
     by_velocity: float,
+    by_flow: float,
     work: np.record,
 ) -> tuple[float, float]:
     """Damping of the strains sqrt(G) - 1 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`.
@@ -183,10 +201,13 @@ def quintic_damping(
     speed = 0.5 * (velocity[0] + velocity[6]), 0.5 * (velocity[1] + velocity[7])
     stretching, turning, square = 0.0, 0.0, speed[0] * speed[0] + speed[1] * speed[1]
     work.by_square[:] = 0.0
+    wanted = by_position != 0.0 or by_velocity != 0.0
+    if wanted:
+        begin_tangent(work)
     for k in range(points.size):
-        slope, bend = slopes(points[k], length), bends(points[k], length)
-        q, w, weight = combine(e, slope), combine(e, bend), weights[k] * length
-        motion = CurveMotion(q, w, combine(velocity, slope), combine(velocity, bend))
+        slope, bend, third = slopes(points[k], length), bends(points[k], length), thirds(points[k], length)
+        q, w, u, weight = combine(e, slope), combine(e, bend), combine(e, third), weights[k] * length
+        motion = CurveMotion(q, w, u, combine(velocity, slope), combine(velocity, bend))
         damping = PointDamping(
             weight * section.axial_damping,
             weight * section.bending_damping,
@@ -195,16 +216,21 @@ def quintic_damping(
             square,
             by_position,
             by_velocity,
+            by_flow,
         )
-        stretch, turn = add_curve_damping(damping, slope, bend, motion, work)
+        stretch, turn = add_curve_damping(damping, slope, bend, third, motion, work)
         stretching += stretch
         turning += turn
-    if by_velocity != 0.0:
-        for axis in range(2):
-            for row in range(e.size):
-                moved = by_velocity * work.by_square[row] * speed[axis]
-                work.tangent[row, axis] += moved
-                work.tangent[row, 6 + axis] += moved
+    if wanted:
+        end_tangent(work)
+        flow = speed[0] * (e[2] + e[8]) + speed[1] * (e[3] + e[9])
+        for row in range(e.size):
+            by_square = work.by_square[row]
+            work.by_flow[row] += by_square * flow
+            for axis in range(2):
+                for node in range(2):
+                    work.tangent[row, 6 * node + axis] += by_velocity * by_square * speed[axis]
+                    work.tangent[row, 6 * node + 2 + axis] += by_flow * by_square * speed[axis]
     return stretching, turning
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
-from beltdyn.contact.contact_force import contact_force
+from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import by_type, kernel
@@ -117,13 +117,14 @@ def _contact(
         drifting = center.unknown >= 0 and factors.by_position != 0.0 and center.turning
         rounds = 2 if drifting else 1
         for last in range(2 - rounds, 2):
+            by_position = factors.by_position if last == 1 else 0.0
+            by_velocity = factors.by_velocity if last == 1 else 1.0
             totals = contact_force(
                 piece,
                 pulley,
                 system.law,
                 system.contact,
-                factors.by_position if last == 1 else 0.0,
-                factors.by_velocity if last == 1 else 1.0,
+                ContactFactors(by_position, by_velocity, by_velocity, 0.0, 0.0),
                 work.contact,
             )
             if last == 0:

@@ -9,8 +9,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from beltdyn.arrays import FloatArray
-from beltdyn.contact.contact_force import contact_force
+from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion, System
@@ -18,6 +17,7 @@ from beltdyn.system.body_forces import add_contact
 from beltdyn.system.coupling import couple_rim, take_contact
 from beltdyn.system.element_state import centreline, loses_in_belt, material_forces
 from beltdyn.system.frame import flow_speed
+from beltdyn.system.hysteresis import add_hysteresis_flow
 from beltdyn.system.moving_center import couple_center, keep_drift, moving_center
 from beltdyn.system.pulley_state import pulley_state
 
@@ -75,39 +75,21 @@ def add_flow_forces(system: System, motion: Motion, element: int, factors: FlowF
     _add_contact(system, motion, element, factors, equations)
 
 
-@kernel(inline=True)
-def _copy(source: FloatArray, target: FloatArray) -> None:
-    for k in range(source.size):
-        target[k] = source[k]
-
-
 @kernel
 def _add_damping(
     system: System, motion: Motion, element: int, factors: FlowFactors, work: np.record
 ) -> tuple[float, float]:
     """Add the losses of the belt's material, with their tangent through velocities; gives the powers lost, W."""
-    own, flow, place, vectors = work.element, work.flow, work.coordinates[0], system.vectors
+    own, flow, derivative = work.element, work.flow, system.frame.derivative[element]
+    by_flow = factors.place * flow_speed(system.frame, motion.velocity)
+    own.by_flow[:] = 0.0
+    lost = material_forces(system, element, factors.place, factors.rate, by_flow, work)
     if factors.place != 0.0 or factors.rate != 0.0:
-        _copy(own.gradient, flow.gradient)
-        _copy(own.tangent.reshape(own.tangent.size), flow.tangent.reshape(own.tangent.size))
-        own.tangent[:] = 0.0
-        material_forces(system, element, 0.0, 1.0, work)
-        convected, derivative = (
-            factors.place * flow_speed(system.frame, motion.velocity),
-            system.frame.derivative[element],
-        )
-        for row in range(place.size):
-            for b in range(len(vectors)):
-                for axis in range(2):
-                    by_rate = 0.0
-                    for k in range(len(vectors)):
-                        by_rate += own.tangent[row, vectors[k] + axis] * derivative[k, b]
-                    direct = own.tangent[row, vectors[b] + axis]
-                    flow.tangent[row, vectors[b] + axis] += convected * by_rate + factors.rate * direct
-                    flow.by_speed[row] += factors.flow * direct * flow.rate[b, axis]
-        _copy(flow.gradient, own.gradient)
-        _copy(flow.tangent.reshape(own.tangent.size), own.tangent.reshape(own.tangent.size))
-    return material_forces(system, element, factors.place, 0.0, work)
+        if system.hysteresis.size > 0:
+            add_hysteresis_flow(system.vectors, derivative, flow.rate, by_flow, work)
+        for row in range(own.by_flow.size):
+            flow.by_speed[row] += factors.flow * own.by_flow[row]
+    return lost
 
 
 @kernel
@@ -116,20 +98,18 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
     work, flow, matrix = equations.work, equations.work.flow, equations.matrix
     law, rule = system.law, system.contact
     wanted, piece = factors.place != 0.0 or factors.rate != 0.0, centreline(system, element, 0, work)
+    by_slope = factors.place * flow_speed(system.frame, motion.velocity)
+    by = ContactFactors(factors.place, factors.rate, factors.turning, by_slope, factors.flow)
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, motion.position, motion.velocity)
         if out_of_reach(piece.control, pulley):
             continue
         center = moving_center(system, p, motion.position, motion.velocity)
         drifting = factors.rate != 0.0 and center.unknown >= 0 and center.turning
-        if wanted:
-            contact_force(piece, pulley, law, rule, 0.0, 1.0, work.contact)
-            _keep_by_velocity(work.contact, flow)
-            if drifting:
-                keep_drift(system, center, work.contact, work.drift)
-        add_contact(equations.forces, p, contact_force(piece, pulley, law, rule, factors.place, 0.0, work.contact))
-        if wanted:
-            _follow_flow(system, motion, element, factors, work.contact, flow)
+        if drifting:
+            contact_force(piece, pulley, law, rule, ContactFactors(0.0, 1.0, 0.0, 0.0, 0.0), work.contact)
+            keep_drift(system, center, work.contact, work.drift)
+        add_contact(equations.forces, p, contact_force(piece, pulley, law, rule, by, work.contact))
         take_contact(system, wanted, work)
         if not wanted:
             continue
@@ -140,57 +120,16 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
             drift = factors.place if drifting else 0.0
             couple_center(system, element, center, drift, work.contact, work.drift, matrix)
         last = matrix.corner.shape[0] - 1
-        moment = x = y = 0.0
+        x = y = 0.0
         for a in range(len(system.vectors)):
-            fx = fy = 0.0
-            for b in range(len(system.vectors)):
-                fx += flow.xx[a, b] * flow.rate[b, 0] + flow.xy[a, b] * flow.rate[b, 1]
-                fy += flow.yx[a, b] * flow.rate[b, 0] + flow.yy[a, b] * flow.rate[b, 1]
-            flow.by_speed[system.vectors[a]] -= factors.flow * fx
-            flow.by_speed[system.vectors[a] + 1] -= factors.flow * fy
-            moment += flow.moment[a, 0] * flow.rate[a, 0] + flow.moment[a, 1] * flow.rate[a, 1]
+            fx, fy = work.contact.by_flow[a, 0], work.contact.by_flow[a, 1]
+            flow.by_speed[system.vectors[a]] -= fx
+            flow.by_speed[system.vectors[a] + 1] -= fy
             x, y = x + system.shift[a] * fx, y + system.shift[a] * fy
         if center.rim >= 0:
-            matrix.corner[center.rim, last] -= factors.flow * moment
+            matrix.corner[center.rim, last] -= work.contact.moment_by_flow
         if center.unknown >= 0:
-            matrix.corner[center.unknown, last] += factors.flow * (x * center.x + y * center.y)
-
-
-@kernel(inline=True)
-def _keep_by_velocity(contact: np.record, flow: np.record) -> None:
-    """Keep the derivatives of a contact by velocity."""
-    count = contact.xx.shape[0]
-    for a in range(count):
-        for b in range(count):
-            flow.xx[a, b], flow.xy[a, b] = contact.xx[a, b], contact.xy[a, b]
-            flow.yx[a, b], flow.yy[a, b] = contact.yx[a, b], contact.yy[a, b]
-        for axis in range(2):
-            flow.moment[a, axis], flow.by_turn[a, axis] = contact.moment[a, axis], contact.by_turn[a, axis]
-    flow.moment_by_turn = contact.moment_by_turn
-
-
-@kernel(inline=True)
-def _follow_flow(
-    system: System, motion: Motion, element: int, factors: FlowFactors, contact: np.record, flow: np.record
-) -> None:
-    """Add to p F_e what goes through velocities, F_v (q + p c D), and the same of pulleys that turn."""
-    convected, derivative = factors.place * flow_speed(system.frame, motion.velocity), system.frame.derivative[element]
-    count = len(system.vectors)
-    for b in range(count):
-        for k in range(count):
-            part = convected * derivative[k, b]
-            if k == b:
-                part += factors.rate
-            for a in range(count):
-                contact.xx[a, b] += flow.xx[a, k] * part
-                contact.xy[a, b] += flow.xy[a, k] * part
-                contact.yx[a, b] += flow.yx[a, k] * part
-                contact.yy[a, b] += flow.yy[a, k] * part
-            contact.moment[b, 0] += flow.moment[k, 0] * part
-            contact.moment[b, 1] += flow.moment[k, 1] * part
-        for axis in range(2):
-            contact.by_turn[b, axis] += factors.turning * flow.by_turn[b, axis]
-    contact.moment_by_turn += factors.turning * flow.moment_by_turn
+            matrix.corner[center.unknown, last] += x * center.x + y * center.y
 
 
 @kernel(inline=True)

@@ -107,19 +107,9 @@ def flow_record(vectors: int, coordinates: int) -> np.dtype[np.void]:
     coordinates
         Number 2 n of its coordinates.
     """
-    square = f"({vectors},{vectors})f8"
     return record(
-        xx=square,  # derivatives of contact forces by velocity, as in `contact_record`
-        xy=square,
-        yx=square,
-        yy=square,
-        moment=f"({vectors},2)f8",
-        by_turn=f"({vectors},2)f8",
-        moment_by_turn="f8",
         rate=f"({vectors},2)f8",  # vectors D e
         by_speed=f"{coordinates}f8",  # derivative of the residual with respect to the unknown of the flow
-        gradient=f"{coordinates}f8",  # residual and tangent of an element without damping
-        tangent=f"({coordinates},{coordinates})f8",
     )
 
 

@@ -54,6 +54,8 @@ def hysteresis_scratch(vectors: int) -> np.dtype[np.void]:
         by_speed=f"{size}f8",
         strain_drift=f"{size}f8",  # derivatives of the rates of strain and curvature by position
         curvature_drift=f"{size}f8",
+        pull_by_rate=f"{size}f8",  # derivatives of both stresses times the length by the rates of the vectors
+        moment_by_rate=f"{size}f8",
         turning="(2,2,2)f8",  # second derivatives of the angles of both ends by their directions
     )
 
@@ -130,8 +132,48 @@ def add_hysteresis(
             pull, moment = stretch.stress * scratch.by_strain[row], bend.stress * scratch.by_curvature[row]
             gradient[vectors[a] + axis] += length * (pull + moment)
     if by_position != 0.0 or by_velocity != 0.0:
-        _add_tangent(own, vectors, stretch, bend, length * by_position, length * by_velocity, work)
+        _fill_rates(stretch, bend, length, scratch)
+        _add_tangent(own, vectors, stretch, bend, length * by_position, by_velocity, work)
     return length * stretch.stress * scratch.strain_rate, length * bend.stress * scratch.curvature_rate
+
+
+@kernel
+def add_hysteresis_flow(
+    vectors: tuple[int, ...], derivative: FloatArray, rate: FloatArray, by_flow: float, work: np.record
+) -> None:
+    """Add what the belt's flow through an element does to the tangent of its hysteresis, after `add_hysteresis`.
+
+    Parameters
+    ----------
+    vectors
+        As there.
+    derivative : ndarray, shape (v, v)
+        D, vectors of dr/dx from those of r, 1/m.
+    rate : ndarray, shape (v, 2)
+        D e.
+    by_flow
+        The tangent is this times d/d(de/dt) D.
+    work
+        As there; d/d(de/dt) D e is added to `element.by_flow`.
+    """
+    scratch, own = work.hysteresis, work.element
+    pull_of_flow = moment_of_flow = 0.0
+    for b in range(len(vectors)):
+        for axis in range(2):
+            pull, moment = 0.0, 0.0
+            for k in range(len(vectors)):
+                pull += scratch.pull_by_rate[2 * k + axis] * derivative[k, b]
+                moment += scratch.moment_by_rate[2 * k + axis] * derivative[k, b]
+            for a in range(len(vectors)):
+                for side in range(2):
+                    change = pull * scratch.by_strain[2 * a + side] + moment * scratch.by_curvature[2 * a + side]
+                    own.tangent[vectors[a] + side, vectors[b] + axis] += by_flow * change
+            pull_of_flow += scratch.pull_by_rate[2 * b + axis] * rate[b, axis]
+            moment_of_flow += scratch.moment_by_rate[2 * b + axis] * rate[b, axis]
+    for a in range(len(vectors)):
+        for side in range(2):
+            pull, moment = scratch.by_strain[2 * a + side], scratch.by_curvature[2 * a + side]
+            own.by_flow[vectors[a] + side] += pull_of_flow * pull + moment_of_flow * moment
 
 
 @kernel
@@ -206,6 +248,15 @@ def _find_curvature(own: np.record, vectors: tuple[int, ...], coordinates: Float
             scratch.curvature = atan2(first_x * y - first_y * x, first_x * x + first_y * y) / own.length
 
 
+@kernel(inline=True)
+def _fill_rates(stretch: Hysteretic, bend: Hysteretic, length: float, scratch: np.record) -> None:
+    """Overwrite the derivatives of both stresses, times the length, by the rates of the vectors."""
+    for c in range(scratch.by_speed.size):
+        by_speed = scratch.by_speed[c]
+        scratch.pull_by_rate[c] = length * (stretch.by_rate * scratch.by_strain[c] + stretch.by_square * by_speed)
+        scratch.moment_by_rate[c] = length * (bend.by_rate * scratch.by_curvature[c] + bend.by_square * by_speed)
+
+
 @kernel
 def _add_tangent(
     own: np.record,
@@ -216,25 +267,18 @@ def _add_tangent(
     by_velocity: float,
     work: np.record,
 ) -> None:
-    """Add the tangent; `by_position` and `by_velocity` are those of `add_hysteresis`, times the length."""
+    """Add the tangent, with `_fill_rates` done before; `by_position` is that of `add_hysteresis` times the length."""
     scratch, tangent = work.hysteresis, work.element.tangent
     stretched = by_position * stretch.stress
     turned = by_position * bend.stress + 2.0 * own.shortening * scratch.curvature * stretched
     for b in range(len(vectors)):
         for axis in range(2):
             c, column = 2 * b + axis, vectors[b] + axis
-            moving = by_velocity * scratch.by_speed[c]
-            pull = (
-                (by_position * stretch.by_strain + by_velocity * stretch.by_rate) * scratch.by_strain[c]
-                + by_position * stretch.by_rate * scratch.strain_drift[c]
-                + stretch.by_square * moving
-            )
-            moment = (
-                (by_position * bend.by_strain + by_velocity * bend.by_rate) * scratch.by_curvature[c]
-                + by_position * bend.by_rate * scratch.curvature_drift[c]
-                + bend.by_square * moving
-                + 2.0 * own.shortening * stretched * scratch.by_curvature[c]
-            )
+            stretching = stretch.by_strain * scratch.by_strain[c] + stretch.by_rate * scratch.strain_drift[c]
+            bending = bend.by_strain * scratch.by_curvature[c] + bend.by_rate * scratch.curvature_drift[c]
+            pull = by_position * stretching + by_velocity * scratch.pull_by_rate[c]
+            moment = by_position * bending + by_velocity * scratch.moment_by_rate[c]
+            moment += 2.0 * own.shortening * stretched * scratch.by_curvature[c]
             for a in range(len(vectors)):
                 first, last = own.ends[0, a] * own.ends[0, b], own.ends[1, a] * own.ends[1, b]
                 for side in range(2):

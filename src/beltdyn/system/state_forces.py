@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.arrays import FloatArray
-from beltdyn.contact.contact_force import contact_force
+from beltdyn.contact.contact_force import NO_CONTACT_TANGENT, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import NO_TANGENT, BodyForces, Motion, System
@@ -103,6 +103,6 @@ def find_body_forces(system: System, motion: Motion, work: np.record, corner: Fl
             for p in range(system.pulleys.size):
                 pulley = pulley_state(system, p, motion.position, motion.velocity)
                 if not out_of_reach(piece.control, pulley):
-                    totals = contact_force(piece, pulley, system.law, system.contact, 0.0, 0.0, work.contact)
+                    totals = contact_force(piece, pulley, system.law, system.contact, NO_CONTACT_TANGENT, work.contact)
                     add_contact(forces, p, totals)
     add_machines(system, motion, NO_TANGENT, corner, forces)

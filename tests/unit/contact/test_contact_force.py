@@ -8,12 +8,19 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
-from beltdyn.contact.contact_force import ContactTotals, contact_force, contact_workspace
+from beltdyn.contact.contact_force import (
+    NO_CONTACT_TANGENT,
+    ContactFactors,
+    ContactTotals,
+    contact_force,
+    contact_workspace,
+)
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.surface import Round
 from beltdyn.quadrature import gauss_points
 
 DEGREES = [1, 3, 5]
+BOTH = ContactFactors(1.0, 300.0, 300.0, 0.0, 0.0)
 RULE = gauss_points(6)
 LENGTH = 0.06
 BLOCKS = ("xx", "xy", "yx", "yy")
@@ -42,7 +49,9 @@ def act(
     """Record of results and sums for vectors of nodal coordinates."""
     work = contact_workspace(*basis.shape)
     curve = Curve(basis @ vectors, basis @ rates, basis, LENGTH)
-    totals = contact_force(curve, pulley, law, RULE, by_position, by_velocity, work)
+    totals = contact_force(
+        curve, pulley, law, RULE, ContactFactors(by_position, by_velocity, by_velocity, 0.0, 0.0), work
+    )
     return work, totals
 
 
@@ -204,7 +213,7 @@ def test_sums_along_a_chord_are_the_integrals_of_its_laws(
     control = np.stack([pulley.center_x + ends, np.full(2, pulley.center_y + height)], axis=1)
     curve = Curve(control, np.tile(velocity, (2, 1)), np.eye(2), 0.8 * float(np.ptp(ends)))
     rule = gauss_points(12)
-    totals = contact_force(curve, pulley, law, rule, 0.0, 0.0, work)
+    totals = contact_force(curve, pulley, law, rule, NO_CONTACT_TANGENT, work)
 
     half = np.sqrt(pulley.surface.radius**2 - height**2)
     if follow_zone:
@@ -272,7 +281,7 @@ def test_a_record_is_used_again(pulley: PulleyState, law: ContactLaw, follow_zon
         for name in set(left.dtype.names or ()) - {"zone"}:
             left[name] = 0.3
     curve = Curve(vectors, rates, np.eye(4), LENGTH)
-    again = contact_force(curve, pulley, law._replace(follow_zone=follow_zone), RULE, 1.0, 300.0, work)
+    again = contact_force(curve, pulley, law._replace(follow_zone=follow_zone), RULE, BOTH, work)
     assert again == totals
     for name in ("force", "by_turn", "moment", "moment_by_turn", *BLOCKS):
         np.testing.assert_array_equal(work[name], first[name])
@@ -285,7 +294,7 @@ def test_a_belt_that_hits_the_rim_meets_the_damper_first(law: ContactLaw, depth:
     control = np.array([[1.0 - depth, -0.01], [1.0 - depth, 0.01]])
     curve = Curve(control, np.tile([-speed, 0.0], (2, 1)), np.eye(2), LENGTH)
     work = contact_workspace(2, 2)
-    totals = contact_force(curve, pulley, law._replace(follow_zone=False), gauss_points(1), 0.0, 0.0, work)
+    totals = contact_force(curve, pulley, law._replace(follow_zone=False), gauss_points(1), NO_CONTACT_TANGENT, work)
     damping = law.normal.damping if depth == 0.0 else 0.0
     assert -totals.hub_x == pytest.approx(damping * speed * LENGTH)
     assert totals.damping_power == pytest.approx(damping * speed**2 * LENGTH)

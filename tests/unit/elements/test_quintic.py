@@ -6,11 +6,12 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.strain_energy import energy_density
 from beltdyn.elements.hysteretic import hysteretic
-from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes
+from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes, thirds
 from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
 from beltdyn.stretch import Green, stretching
+from beltdyn.system.frame import staying
 
 LENGTH, AXIAL, BENDING, QUARTIC, MASS = 0.05, 1e4, 0.02, 2e-6, 0.1
 SECTION = Section(Green(AXIAL), *[0.0] * 7)._replace(bending=BENDING, quartic=QUARTIC, mass=MASS)
@@ -105,7 +106,9 @@ def test_factors_are_the_derivatives_of_the_curve_that_contact_sees() -> None:
     """Derivatives of the Bezier curve by the differences of its control points, at both ends."""
     control = QUINTIC.control(LENGTH)[0]
     first, second = 5.0 * np.diff(control, axis=0) / LENGTH, 20.0 * np.diff(control, 2, axis=0) / LENGTH**2
+    third = 60.0 * np.diff(control, 3, axis=0) / LENGTH**3
     for xi, end in ((0.0, 0), (1.0, -1)):
+        np.testing.assert_allclose(thirds(xi, LENGTH), third[end], atol=1e-12 / LENGTH**3)
         np.testing.assert_allclose(slopes(xi, LENGTH), first[end], atol=1e-12 / LENGTH)
         np.testing.assert_allclose(bends(xi, LENGTH), second[end], atol=1e-12 / LENGTH**2)
 
@@ -120,10 +123,11 @@ def damping(
     velocity: FloatArray,
     by_position: float = 0.0,
     by_velocity: float = 0.0,
+    *,
     element: Quintic = DAMPED,
 ) -> tuple[tuple[float, float], FloatArray, FloatArray]:
     work = blank(QUINTIC.workspace)
-    powers = QUINTIC.damping(element, e, velocity, LENGTH, by_position, by_velocity, work)
+    powers = QUINTIC.damping(element, e, velocity, LENGTH, by_position, by_velocity, 0.0, work)
     return powers, work.gradient, work.tangent
 
 
@@ -147,12 +151,24 @@ def test_tangent_of_damping_is_the_slope_of_the_force(
     """Hysteresis bends sharply where the curvature and its rate are small: its differences err more."""
     found = np.zeros((12, 12))
     for column, move in enumerate(1e-5 * np.diag(SCALE)):
-        ends = [
-            damping(deformed + s * by[0] * move, VELOCITY + s * by[1] * move, 0.0, 0.0, element)[1] for s in (1, -1)
-        ]
+        ends = [damping(deformed + s * by[0] * move, VELOCITY + s * by[1] * move, element=element)[1] for s in (1, -1)]
         found[:, column] = SCALE * (ends[0] - ends[1]) / 2e-5
-    expected = SCALE[:, None] * damping(deformed, VELOCITY, *by, element)[2] * SCALE
+    expected = SCALE[:, None] * damping(deformed, VELOCITY, *by, element=element)[2] * SCALE
     np.testing.assert_allclose(found, expected, atol=accuracy * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("element", [DAMPED, LOSSY])
+def test_tangent_of_damping_in_a_belt_that_flows(deformed: FloatArray, element: Quintic) -> None:
+    """Vectors D e of dr/dx, by the derivative of the curve itself, change velocities: to rounding."""
+    flow = np.kron(staying(QUINTIC.control(LENGTH)[None], np.array([LENGTH]), MASS).derivative[0], np.eye(2))
+    by_velocity = damping(deformed, VELOCITY, 0.0, 1.0, element=element)[2]
+    work = blank(QUINTIC.workspace)
+    QUINTIC.damping(element, deformed, VELOCITY, LENGTH, 0.7, 0.0, 3.0, work)
+    expected = damping(deformed, VELOCITY, 0.7, element=element)[2] + 3.0 * by_velocity @ flow
+    scaled = SCALE[:, None] * expected * SCALE
+    np.testing.assert_allclose(SCALE[:, None] * work.tangent * SCALE, scaled, atol=1e-12 * np.abs(scaled).max())
+    column = SCALE * (by_velocity @ flow @ deformed)
+    np.testing.assert_allclose(SCALE * work.by_flow, column, atol=1e-11 * np.abs(column).max())
 
 
 def test_power_of_hysteresis_is_that_of_the_law_at_points(deformed: FloatArray) -> None:

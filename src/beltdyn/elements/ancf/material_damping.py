@@ -57,6 +57,7 @@ def damping_force(
     length: float,
     by_position: float,
     by_velocity: float,
+    _by_flow: float,
     work: np.record,
 ) -> tuple[float, float]:
     """Add dR/d(de/dt), the damping force with the opposite sign, and its exact tangent.
