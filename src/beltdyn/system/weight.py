@@ -30,8 +30,7 @@ def weight_forces(mesh: Discretization, nodes: int, gravity: tuple[float, float]
     node = np.zeros(dof)
     node[: 2 * mesh.points] = np.tile(gravity, mesh.points)
     by_element = mesh.mass @ np.tile(node, 2)
-    force = np.zeros((nodes, dof))
-    for element, ends in enumerate(by_element):
-        force[element] += ends[:dof]
-        force[(element + 1) % nodes] += ends[dof:]
+    force, element = np.zeros((nodes, dof)), np.arange(len(by_element))
+    force[element] += by_element[:, :dof]
+    force[(element + 1) % nodes] += by_element[:, dof:]
     return force.ravel()

@@ -74,14 +74,14 @@ def search_from(drive: Drive, start: Run, time: float) -> SteadySearch:
     time
         At which speeds, torques and schedules are taken, s.
     """
-    found = start.dataset.isel(time=-1, field_time=-1)
+    found = start.dataset
     lengths = np.diff(found.node_coordinate.values, append=start.drive.belt_length)
-    system, state = carried(drive, start.drive, lengths, found.nodal_coordinates.values.ravel())
+    system, state = carried(drive, start.drive, lengths, found.nodal_coordinates.values[-1].ravel())
     if system.tensioners.size:
-        state.position[-system.tensioners.size :] += found.tensioner_position.values
-    bodies = state.velocity[system.first_body :]
-    bodies[: found.pulley_speed.size] = found.pulley_speed.values
-    take_along(system, bodies, found.shaft_speed.values)
+        state.position[-system.tensioners.size :] += found.tensioner_position.values[-1]
+    bodies, speeds = state.velocity[system.first_body :], found.pulley_speed.values[-1]
+    bodies[: speeds.size] = speeds
+    take_along(system, bodies, found.shaft_speed.values[-1])
     search = SteadySearch(drive, system, state, time)
     faster = _faster(search.constant, bodies)
     bodies *= faster
