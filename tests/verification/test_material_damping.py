@@ -18,6 +18,7 @@ from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.inertia import element_mass
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.ancf.material_damping import damping_force
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.model import Belt
 from beltdyn.quadrature import gauss_points
 from beltdyn.records import blank
@@ -47,7 +48,7 @@ def straight_matrices(belt: Belt) -> tuple[FloatArray, FloatArray, FloatArray]:
     section, length = belt_section(belt), belt.given_length / belt.given_elements
     unloaded = np.array([0, 0, 1, 0, 0, 1, length, 0, 1, 0, 0, 1], dtype=float)
     element, work = Ancf(section, gauss_points(4)), blank(ANCF.workspace)
-    damping_force(element, unloaded, np.zeros(12), length, 0.0, 1.0, 0.0, work)
+    damping_force(element, unloaded, np.zeros(12), length, DampingFactors(0.0, 1.0, 0.0), work)
     damping = work.tangent.copy()
     element_force(element, unloaded, length, True, work)
     stiffness = work.tangent
@@ -101,7 +102,7 @@ def test_energy_of_a_free_flight_is_lost_to_damping_alone(measured: Callable[...
     def rates(_time: float, state: FloatArray) -> FloatArray:
         e, rate = np.ascontiguousarray(state[:12]), np.ascontiguousarray(state[12:24])
         element_force(element, e, length, False, work)
-        lost = sum(damping_force(element, e, rate, length, 0.0, 0.0, 0.0, work))
+        lost = sum(damping_force(element, e, rate, length, DampingFactors(0.0, 0.0, 0.0), work))
         return np.concatenate([rate, -np.linalg.solve(mass, work.gradient), [lost]])
 
     run = solve_ivp(rates, (0.0, 2e-3), np.concatenate([start, velocity, [0.0]]), "DOP853", rtol=1e-11, atol=1e-13)

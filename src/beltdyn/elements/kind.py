@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -26,15 +26,25 @@ class Element(Protocol):
         """Where elastic forces are evaluated along an element."""
 
 
+class DampingFactors(NamedTuple):
+    """The tangent of damping is the sum of these times derivatives; with the first two zero there is none."""
+
+    by_position: float
+    """By the coordinates e."""
+    by_velocity: float
+    """By their rates."""
+    by_flow: float
+    """By the rates that follow the coordinates as D e, the vectors of dr/dx: the belt flows through the element at this
+    speed, m/s. It is zero for elements that travel with the belt."""
+
+
 @kernel
 def no_damping(
     element: Element,
     e: FloatArray,
     velocity: FloatArray,
     length: float,
-    by_position: float,
-    by_velocity: float,
-    by_flow: float,
+    factors: DampingFactors,
     work: np.record,
 ) -> tuple[float, float]:
     """Add nothing: the `damping` of kinds that have none."""
@@ -82,11 +92,10 @@ class ElementKind:
         Called with (element, e, length, wanted, work); overwrites ``work.gradient`` by dU/de, and ``work.tangent`` by
         d2U/de2 if that is wanted.
     damping : kernel
-        Called with (element, e, velocity, length, by_position, by_velocity, by_flow, work); adds dR/d(de/dt) of the
-        rate potential R to the gradient, and by_position d/de + by_velocity d/d(de/dt) of it to the tangent. Gives the
-        powers lost in stretch and in bending, W. By default there is none. An element through which the belt flows has
-        vectors D e of dr/dx; with a tangent it adds by_flow d/d(de/dt) D to that, and d/d(de/dt) D e to
-        ``work.by_flow``. For others by_flow is zero.
+        Called with (element, e, velocity, length, factors, work); adds dR/d(de/dt) of the rate potential R to the
+        gradient, and its derivatives times `DampingFactors` to the tangent. Gives the powers lost in stretch and in
+        bending, W. By default there is none. An element through which the belt flows also adds d/d(de/dt) D e of it to
+        ``work.by_flow``, with a tangent.
     tension : kernel
         Tension that results report, N, from (element, metric, rate): q . q with q = dr/dx, and its rate. By default
         `beltdyn.elements.tension.axial_tension`.

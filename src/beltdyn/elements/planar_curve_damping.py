@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.elements.hysteretic import Hysteretic, hysteretic
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.elements.planar_curve import (
     Density,
     add_point_force,
@@ -39,7 +40,7 @@ class CurveMotion(NamedTuple):
 
 
 class PointDamping(NamedTuple):
-    """Factors of a point, each damping times the length of belt that it stands for, and those of the tangent."""
+    """Factors of a point, dampings times the length of belt that it stands for, and those of the tangent."""
 
     axial: float
     """A, N s m."""
@@ -51,9 +52,7 @@ class PointDamping(NamedTuple):
     """Length over which slow rates are smoothed in it, m."""
     square: float
     """Of the belt's speed, m^2/s^2."""
-    by_position: float
-    by_velocity: float
-    by_flow: float
+    tangent: DampingFactors
 
 
 def curve_damping_scratch(vectors: int) -> dict[str, str]:
@@ -125,7 +124,7 @@ def add_curve_damping(
     add_point_force(slope, bend, work)
     if law.by_square != 0.0:
         _add_by_square(law.by_square, slope, bend, work)
-    if damping.by_position != 0.0 or damping.by_velocity != 0.0:
+    if damping.tangent.by_position != 0.0 or damping.tangent.by_velocity != 0.0:
         density = Density(
             force * stretch_g + moment * by_g, moment * by_c, force * stretch_gg + moment * by_gg, moment * by_gc, 0.0
         )
@@ -170,17 +169,17 @@ def _spread(
 ) -> None:
     """Give the tangent of a point to the coordinates; the belt's flow changes q and w at the rates w and u."""
     by_place, by_rate, by_coordinates = work.point_tangent, work.by_rate, work.by_coordinates
-    w, u = motion.w, motion.u
+    w, u, factors = motion.w, motion.u, damping.tangent
     for row in range(4):
         for axis in range(2):
             of_q, of_w = by_rate[row, axis], by_rate[row, 2 + axis]
-            by_q = damping.by_position * by_place[row, axis] + damping.by_velocity * of_q
-            by_w = damping.by_position * by_place[row, 2 + axis] + damping.by_velocity * of_w + damping.by_flow * of_q
-            by_u = damping.by_flow * of_w
+            by_q = factors.by_position * by_place[row, axis] + factors.by_velocity * of_q
+            by_w = factors.by_position * by_place[row, 2 + axis] + factors.by_velocity * of_w + factors.by_flow * of_q
+            by_u = factors.by_flow * of_w
             for b in range(len(slope)):
                 by_coordinates[row, 2 * b + axis] = slope[b] * by_q + bend[b] * by_w + third[b] * by_u
         flow = by_rate[row, 0] * w[0] + by_rate[row, 1] * w[1] + by_rate[row, 2] * u[0] + by_rate[row, 3] * u[1]
-        factors = slope if row < 2 else bend
+        shape = slope if row < 2 else bend
         for a in range(len(slope)):
-            work.by_flow[2 * a + row % 2] += factors[a] * flow
+            work.by_flow[2 * a + row % 2] += shape[a] * flow
     spread_rows(slope, bend, work)

@@ -16,7 +16,7 @@ import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.kind import ANCF
-from beltdyn.elements.kind import ElementKind
+from beltdyn.elements.kind import DampingFactors, ElementKind
 from beltdyn.elements.planar_curve import Density, add_density, begin_tangent, combine, curve_scratch, end_tangent
 from beltdyn.elements.planar_curve_damping import (
     CurveMotion,
@@ -188,9 +188,7 @@ def quintic_damping(
     e: FloatArray,
     velocity: FloatArray,
     length: float,
-    by_position: float,
-    by_velocity: float,
-    by_flow: float,
+    factors: DampingFactors,
     work: np.record,
 ) -> tuple[float, float]:
     """Damping of the strains sqrt(G) - 1 and c / sqrt(G), as that of the paper's element; see `ElementKind.damping`.
@@ -201,7 +199,7 @@ def quintic_damping(
     speed = 0.5 * (velocity[0] + velocity[6]), 0.5 * (velocity[1] + velocity[7])
     stretching, turning, square = 0.0, 0.0, speed[0] * speed[0] + speed[1] * speed[1]
     work.by_square[:] = 0.0
-    wanted = by_position != 0.0 or by_velocity != 0.0
+    wanted = factors.by_position != 0.0 or factors.by_velocity != 0.0
     if wanted:
         begin_tangent(work)
     for k in range(points.size):
@@ -214,9 +212,7 @@ def quintic_damping(
             weight * section.bending_hysteresis,
             section.passing_length,
             square,
-            by_position,
-            by_velocity,
-            by_flow,
+            factors,
         )
         stretch, turn = add_curve_damping(damping, slope, bend, third, motion, work)
         stretching += stretch
@@ -229,8 +225,8 @@ def quintic_damping(
             work.by_flow[row] += by_square * flow
             for axis in range(2):
                 for node in range(2):
-                    work.tangent[row, 6 * node + axis] += by_velocity * by_square * speed[axis]
-                    work.tangent[row, 6 * node + 2 + axis] += by_flow * by_square * speed[axis]
+                    work.tangent[row, 6 * node + axis] += factors.by_velocity * by_square * speed[axis]
+                    work.tangent[row, 6 * node + 2 + axis] += factors.by_flow * by_square * speed[axis]
     return stretching, turning
 
 

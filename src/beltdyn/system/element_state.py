@@ -6,6 +6,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.bezier import Curve
 from beltdyn.contact.contact_force import contact_record
 from beltdyn.elements.dispatch import damping_force
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.elements.section import is_damped
 from beltdyn.kernel import kernel
 from beltdyn.records import blank, record
@@ -98,7 +99,8 @@ def add_material_damping(
         Changed in place.
     """
     if loses_in_belt(system):
-        stretch, bending = material_forces(system, element, factors.by_position, factors.by_velocity, 0.0, work)
+        by = DampingFactors(factors.by_position, factors.by_velocity, 0.0)
+        stretch, bending = material_forces(system, element, by, work)
         forces.power[STRETCH_LOSS] += stretch
         forces.power[BENDING_LOSS] += bending
 
@@ -110,9 +112,7 @@ def loses_in_belt(system: System) -> bool:
 
 
 @kernel
-def material_forces(
-    system: System, element: int, by_position: float, by_velocity: float, by_flow: float, work: np.record
-) -> tuple[float, float]:
+def material_forces(system: System, element: int, factors: DampingFactors, work: np.record) -> tuple[float, float]:
     """Add damping and hysteresis of the belt to the residual of an element, and their tangent.
 
     Parameters
@@ -121,11 +121,8 @@ def material_forces(
         The system.
     element
         Which one.
-    by_position, by_velocity
-        The tangent is the sum of these times the derivatives with respect to the coordinates and to their rates; with
-        both zero there is none.
-    by_flow
-        As for `ElementKind.damping`; hysteresis of the whole element has its part by `add_hysteresis_flow`.
+    factors
+        Of the tangent; hysteresis of the whole element has its part by the flow from `add_hysteresis_flow`.
     work
         From `element_workspace`, with the coordinates of the element and their rates.
 
@@ -137,11 +134,10 @@ def material_forces(
     stretch, bending = 0.0, 0.0
     if is_damped(system.element.section):
         e, velocity, length = work.coordinates[0], work.coordinates[1], system.length[element]
-        stretch, bending = damping_force(
-            system.element, e, velocity, length, by_position, by_velocity, by_flow, work.element
-        )
+        stretch, bending = damping_force(system.element, e, velocity, length, factors, work.element)
     if system.hysteresis.size > 0:
-        more = add_hysteresis(system.hysteresis[element], system.vectors, by_position, by_velocity, work)
+        own, by_position, by_velocity = system.hysteresis[element], factors.by_position, factors.by_velocity
+        more = add_hysteresis(own, system.vectors, by_position, by_velocity, work)
         stretch, bending = stretch + more[0], bending + more[1]
     return stretch, bending
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.kernel import kernel
 from beltdyn.system.arrays import BENDING_LOSS, STRETCH_LOSS, Equations, Motion, System
 from beltdyn.system.body_forces import add_contact
@@ -83,7 +84,7 @@ def _add_damping(
     own, flow, derivative = work.element, work.flow, system.frame.derivative[element]
     by_flow = factors.place * flow_speed(system.frame, motion.velocity)
     own.by_flow[:] = 0.0
-    lost = material_forces(system, element, factors.place, factors.rate, by_flow, work)
+    lost = material_forces(system, element, DampingFactors(factors.place, factors.rate, by_flow), work)
     if factors.place != 0.0 or factors.rate != 0.0:
         if system.hysteresis.size > 0:
             add_hysteresis_flow(system.vectors, derivative, flow.rate, by_flow, work)

@@ -8,7 +8,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ELEMENTS
 from beltdyn.elements.dispatch import damping_force, elastic_force, strain_energy, tension
-from beltdyn.elements.kind import ElementKind
+from beltdyn.elements.kind import DampingFactors, ElementKind
 from beltdyn.elements.section import Section
 from beltdyn.model import Drive
 from beltdyn.quadrature import gauss_points
@@ -127,7 +127,9 @@ def test_what_a_kind_without_damping_adds(kind: ElementKind, section: Section) -
     section = section._replace(axial_damping=0.0, bending_damping=0.0)
     work, e = blank(kind.workspace), stretched(kind, 1.1)
     work.gradient[:], work.tangent[:] = 3.0, 5.0
-    lost = damping_force(kind.element(section, gauss_points(4)), e, e[::-1].copy(), LENGTH, 1.0, 2.0, 0.0, work)
+    lost = damping_force(
+        kind.element(section, gauss_points(4)), e, e[::-1].copy(), LENGTH, DampingFactors(1.0, 2.0, 0.0), work
+    )
     assert lost == (0.0, 0.0)
     np.testing.assert_array_equal(work.gradient, 3.0)
     np.testing.assert_array_equal(work.tangent, 5.0)

@@ -6,6 +6,7 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.ancf.strain_energy import energy_density
 from beltdyn.elements.hysteretic import hysteretic
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.elements.quintic import QUINTIC, Quintic, bending_of, bends, slopes, thirds
 from beltdyn.elements.section import Section
 from beltdyn.quadrature import gauss_points
@@ -127,7 +128,7 @@ def damping(
     element: Quintic = DAMPED,
 ) -> tuple[tuple[float, float], FloatArray, FloatArray]:
     work = blank(QUINTIC.workspace)
-    powers = QUINTIC.damping(element, e, velocity, LENGTH, by_position, by_velocity, 0.0, work)
+    powers = QUINTIC.damping(element, e, velocity, LENGTH, DampingFactors(by_position, by_velocity, 0.0), work)
     return powers, work.gradient, work.tangent
 
 
@@ -163,7 +164,7 @@ def test_tangent_of_damping_in_a_belt_that_flows(deformed: FloatArray, element: 
     flow = np.kron(staying(QUINTIC.control(LENGTH)[None], np.array([LENGTH]), MASS).derivative[0], np.eye(2))
     by_velocity = damping(deformed, VELOCITY, 0.0, 1.0, element=element)[2]
     work = blank(QUINTIC.workspace)
-    QUINTIC.damping(element, deformed, VELOCITY, LENGTH, 0.7, 0.0, 3.0, work)
+    QUINTIC.damping(element, deformed, VELOCITY, LENGTH, DampingFactors(0.7, 0.0, 3.0), work)
     expected = damping(deformed, VELOCITY, 0.7, element=element)[2] + 3.0 * by_velocity @ flow
     scaled = SCALE[:, None] * expected * SCALE
     np.testing.assert_allclose(SCALE[:, None] * work.tangent * SCALE, scaled, atol=1e-12 * np.abs(scaled).max())

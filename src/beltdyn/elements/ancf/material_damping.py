@@ -19,6 +19,7 @@ from beltdyn.elements.ancf.cross_section import add_shear_curvature, nodal_shear
 from beltdyn.elements.ancf.elastic_force import centreline
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.shape_functions import Four, bends, slopes
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.kernel import kernel
 from beltdyn.records import record
 
@@ -55,9 +56,7 @@ def damping_force(
     e: FloatArray,
     velocity: FloatArray,
     length: float,
-    by_position: float,
-    by_velocity: float,
-    _by_flow: float,
+    factors: DampingFactors,
     work: np.record,
 ) -> tuple[float, float]:
     """Add dR/d(de/dt), the damping force with the opposite sign, and its exact tangent.
@@ -70,9 +69,8 @@ def damping_force(
         Nodal coordinates r (m), r_x, r_y of node i, then of node j (Eq. 6), and their rates.
     length
         Reference length L, m.
-    by_position, by_velocity
-        The tangent is the sum of these times the derivatives with respect to e and to its rate; with both zero there
-        is none.
+    factors
+        Of the tangent; the belt does not flow through this element.
     work
         The force is added to its `gradient`, N for the rows of r and N m for those of the gradients, and the tangent to
         its `tangent`. `damping` is scratch.
@@ -84,6 +82,7 @@ def damping_force(
     """
     points, weights, section = element.elastic.points, element.elastic.weights, element.section
     scratch, gradient, tangent = work.damping, work.gradient, work.tangent
+    by_position, by_velocity = factors.by_position, factors.by_velocity
     wanted = by_position != 0.0 or by_velocity != 0.0
     scratch.pull[:] = 0.0
     shear, shear_rate = _shear_rates(e, velocity, length, scratch)

@@ -8,6 +8,7 @@ from beltdyn.elements.ancf.elastic_force import element_energy, element_force
 from beltdyn.elements.ancf.element import Ancf
 from beltdyn.elements.ancf.kind import ANCF
 from beltdyn.elements.ancf.material_damping import damping_force
+from beltdyn.elements.kind import DampingFactors
 from beltdyn.elements.section import Section
 from beltdyn.elements.tension import damping_tension
 from beltdyn.quadrature import gauss_points
@@ -46,7 +47,7 @@ def damping(length: float) -> Damping:
     ) -> tuple[float, FloatArray, FloatArray]:
         work = blank(ANCF.workspace)
         element = Ancf(section, gauss_points(4))
-        powers = damping_force(element, e, velocity, length, by_position, by_velocity, 0.0, work)
+        powers = damping_force(element, e, velocity, length, DampingFactors(by_position, by_velocity, 0.0), work)
         return sum(powers), work.gradient, work.tangent
 
     return values
@@ -165,7 +166,7 @@ def test_adds_to_what_is_there(
     work = blank(ANCF.workspace)
     work.gradient[:], work.tangent[:] = 1.0, 1.0
     for _ in range(2):
-        damping_force(Ancf(damped(section), gauss_points(4)), e, velocity, length, 0.5, 2.0, 0.0, work)
+        damping_force(Ancf(damped(section), gauss_points(4)), e, velocity, length, DampingFactors(0.5, 2.0, 0.0), work)
     np.testing.assert_allclose(work.gradient, 1.0 + 2.0 * force, rtol=1e-12, atol=1e-12)
     np.testing.assert_allclose(work.tangent, 1.0 + 2.0 * tangent, rtol=1e-12, atol=1e-12)
 
