@@ -135,7 +135,10 @@ def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) ->
 
 @pytest.mark.parametrize(
     "document",
-    ["README.md", "docs/index.md", "docs/machines.md", "docs/step_by_step.md", "docs/studies.md", "docs/tutorial.md"],
+    [
+        *("README.md", "docs/fmu.md", "docs/index.md", "docs/machines.md", "docs/step_by_step.md", "docs/studies.md"),
+        "docs/tutorial.md",
+    ],
 )
 def test_python_blocks_run_one_after_another(
     document: str, new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
