@@ -11,7 +11,16 @@ class BeltdynError(Exception):
 
 
 class ModelError(BeltdynError, ValueError):
-    """The input cannot be used: a drive file, a result file or an output path."""
+    """The input cannot be used: a drive file, a result file or an output path.
+
+    Examples
+    --------
+    >>> try:
+    ...     bd.Step(time="1 kg", value=2.0)
+    ... except bd.ModelError as error:
+    ...     print(error)
+    step.time = "1 kg" must be in units of s, not "kg". Give the instant of the step, in s.
+    """
 
     exit_code = 2
 

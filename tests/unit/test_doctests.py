@@ -37,5 +37,95 @@ def test_example(example: doctest.DocTest, run: bd.Run, tmp_path: Path, monkeypa
     assert failed == 0
 
 
-def test_there_are_examples() -> None:
-    assert len(EXAMPLES) >= 20
+WITHOUT = {
+    "AngleSpeedTable",
+    "Balance",
+    "BatchProgress",
+    "BeltdynError",
+    "CalibrationStudy",
+    "Compared",
+    "ConvergenceError",
+    "Ending",
+    "Entry",
+    "Equilibrium",
+    "Finding",
+    "GeneralizedAlpha",
+    "Installation",
+    "InteractiveFigures",
+    "MovingTensioner",
+    "OptimizationStudy",
+    "ParameterStudy",
+    "Profile",
+    "Progress",
+    "PulleySummary",
+    "Resolution",
+    "Rest",
+    "SpanSummary",
+    "StandardIntegrator",
+    "StaticResult",
+    "StepError",
+    "Stepwise",
+    "TensionerBalance",
+    "TensionerSummary",
+    "Variable",
+    "advise",
+    "build_result",
+    "derived.balance",
+    "derived.orders",
+    "elements_needed",
+    "find_equilibrium",
+    "layer_lengths",
+    "mesh_errors",
+    "plot.animate",
+    "plot.animate_modes",
+    "plot.campbell",
+    "plot.capstan_margins",
+    "plot.configuration",
+    "plot.contact_forces",
+    "plot.contact_pressure",
+    "plot.efficiency_map",
+    "plot.hub_load_sizes",
+    "plot.hub_loads",
+    "plot.losses",
+    "plot.mode_damping",
+    "plot.mode_shape",
+    "plot.operating_points",
+    "plot.optimization",
+    "plot.orders",
+    "plot.parallel_coordinates",
+    "plot.powers",
+    "plot.response",
+    "plot.save_all",
+    "plot.save_layout",
+    "plot.save_stretch",
+    "plot.sensitivity",
+    "plot.sobol_indices",
+    "plot.stretch",
+    "plot.study_contour",
+    "plot.study_lines",
+    "plot.tension_spectrum",
+    "plot.tensioner_sheet",
+    "plot.tensioners",
+    "plot.tolerances",
+    "plot.tornado",
+    "plot.traction_curve",
+    "plot.waterfall",
+    "plot.wear_by_arc",
+    "plot.wear_by_belt",
+    "power_balance",
+    "simulate_all",
+    "write_csv",
+}
+"""Public names whose docstrings have no example yet: records that analyses give, figures, and studies."""
+
+
+def test_public_names_have_examples() -> None:
+    """A new name brings one; whoever writes one of those that lack takes the name off the list."""
+    public = {"": bd, "derived.": bd.derived, "plot.": bd.plot}
+    lacking = {
+        f"{prefix}{name}"
+        for prefix, package in public.items()
+        for name in (package.__all__ if prefix else dir(bd))
+        if callable(one := getattr(package, name)) and ">>>" not in (one.__doc__ or "")
+    }
+    assert lacking == WITHOUT

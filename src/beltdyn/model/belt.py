@@ -48,6 +48,12 @@ class Belt(Part):
 
     `stretch_law` is ``"linear"`` for belts given so, ``"measured"`` for belts with a `stretch_curve`, and ``"green"``,
     as published, for belts given by their material, unless it is given.
+
+    Examples
+    --------
+    >>> belt = bd.Belt(profile="PJ", ribs=6, installed_tension="300 N")
+    >>> round(belt.mass_per_length, 4), belt.installed_tension
+    (0.054, 300.0)
     """
 
     model_config = ConfigDict(json_schema_extra=lambda schema: describe_forms(schema))

@@ -75,6 +75,11 @@ class Contact(_Laws, Penalty):
     `creep_ratio`, the slip velocity over the speed of the rim at which friction is fully used. ``"coefficient_slope"``
     takes this velocity itself, `creep_velocity`, and ``"force_slope"`` (as published) `creep_rate_factor`, the slope of
     the friction force over the slip velocity.
+
+    Examples
+    --------
+    >>> drive.replace(contact=drive.contact.replace(friction=0.5)).contact.friction
+    0.5
     """
 
     if TYPE_CHECKING:  # the fields that the laws make

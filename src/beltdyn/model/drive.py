@@ -45,6 +45,13 @@ class Drive(Part):
     the drive: `belt_length`, also of a belt of given tension; `path` and `centers`, where fixed tensioners hold their
     pulleys; `elements`, `contact_stiffness`, `contact_damping` and `friction_parameters`, also where the numbers of
     computation are left open. `completed.choices` has their values and the reasons.
+
+    Examples
+    --------
+    >>> drive.title, drive.belt_length, [pulley.name for pulley in drive.pulleys]
+    ('Belt drive', 1.2727, ['driver', 'driven'])
+    >>> drive.replace(name="Fan drive").title
+    'Fan drive'
     """
 
     fills_a_file: ClassVar[bool] = True

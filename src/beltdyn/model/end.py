@@ -72,7 +72,13 @@ class End(Part):
 
 
 class FixedEnd(End):
-    """An end that is fixed at a point."""
+    """An end that is fixed at a point.
+
+    Examples
+    --------
+    >>> bd.FixedEnd(name="anchor", kind="fixed", point=["0 mm", "200 mm"]).point
+    (0.0, 0.2)
+    """
 
     kind: Literal["fixed"] = Field(description="the kind of end")
     point: tuple[Coordinate, Coordinate] = Field(description="the point at which the belt is fixed, as [x, y], in m")
@@ -96,7 +102,13 @@ class FixedEnd(End):
 
 
 class PulledEnd(End):
-    """An end that a constant force pulls."""
+    """An end that a constant force pulls.
+
+    Examples
+    --------
+    >>> bd.PulledEnd(name="lever", kind="pulled", direction=[0, -1], tension="50 N").tension
+    50.0
+    """
 
     kind: Literal["pulled"] = Field(description="the kind of end")
     direction: Direction = Field(description="the direction of the force, away from the belt, as [x, y]")
@@ -109,7 +121,13 @@ class PulledEnd(End):
 
 
 class WeightEnd(End):
-    """An end at which a weight hangs."""
+    """An end at which a weight hangs.
+
+    Examples
+    --------
+    >>> bd.WeightEnd(name="weight", kind="weight", mass="5 kg").mass
+    5.0
+    """
 
     kind: Literal["weight"] = Field(description="the kind of end")
     mass: Mass = Field(gt=0, description="the mass that hangs at the end, which gravity pulls, in kg")

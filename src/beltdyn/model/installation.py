@@ -118,6 +118,11 @@ def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[
     -------
     tuple of tuples of TensionerBalance
         For each tensioner, in ascending order of the positions; without bending stiffness and weight.
+
+    Examples
+    --------
+    >>> bd.tensioner_balances(drive, bd.install(drive))  # it has no tensioners
+    ()
     """
     belt, contact = drive.loaded_belt, drive.completed.contact
     return all_balances(drive.path, belt, contact, drive.carriers, installation.tensioner_positions)

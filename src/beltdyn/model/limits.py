@@ -9,7 +9,13 @@ from beltdyn.parts.quantity import Force, Ratio
 
 
 class Limits(Part):
-    """What a drive must keep to. Nothing that is computed depends on it; reports judge results by it."""
+    """What a drive must keep to. Nothing that is computed depends on it; reports judge results by it.
+
+    Examples
+    --------
+    >>> bd.Limits(largest_hub_load="0.8 kN", largest_slip=0.01).largest_hub_load
+    800.0
+    """
 
     largest_slip: Ratio | None = Field(
         None, gt=0, lt=1, description="the largest slip of a pulley against the first one, over that one's speed"

@@ -35,6 +35,13 @@ class Path:
     ------
     ValueError
         If no straight line touches two successive pulleys, because one holds or meets the other.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> two = bd.Path(np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([0.1, 0.1]))
+    >>> round(two.length, 4)  # two spans of a metre, and a circle
+    2.6283
     """
 
     centers: FloatArray

@@ -49,6 +49,11 @@ class Pulley(Part):
     `torque` and its loads. The shaft is the rim itself, or the last body of the hub chain behind the rim. Speeds and
     torques are positive counter-clockwise, and `torque` is what is applied to the shaft: a load that opposes a
     counter-clockwise motion is negative.
+
+    Examples
+    --------
+    >>> bd.Pulley(name="fan", center=["300 mm", 0.0], diameter="100 mm", inertia="12 kg cm^2").radius
+    0.05
     """
 
     model_config = ConfigDict(json_schema_extra=lambda schema: _describe_diameter(schema))

@@ -16,7 +16,13 @@ _FIELDS = 100
 
 
 class Simulation(Part):
-    """Settings of a transient simulation, from time zero or from a later instant on."""
+    """Settings of a transient simulation, from time zero or from a later instant on.
+
+    Examples
+    --------
+    >>> drive.replace(simulation=drive.simulation.replace(duration="200 ms")).simulation.duration
+    0.2
+    """
 
     duration: Time = Field(gt=0, description="the simulated time, in s")
     output_interval: Time = Field(gt=0, description="the time between two outputs, in s")

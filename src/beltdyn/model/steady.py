@@ -9,7 +9,13 @@ from beltdyn.parts.quantity import Ratio
 
 
 class Steady(Part):
-    """The mesh of steady running, of maps and of all other analyses that begin with it."""
+    """The mesh of steady running, of maps and of all other analyses that begin with it.
+
+    Examples
+    --------
+    >>> bd.Steady(force_tolerance=0.02).force_tolerance
+    0.02
+    """
 
     mesh: Literal["auto", "uniform"] = Field(
         "auto",

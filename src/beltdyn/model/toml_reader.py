@@ -146,5 +146,14 @@ def json_schema() -> dict[str, Any]:
     Returns
     -------
     dict
+
+    Examples
+    --------
+    >>> bd.json_schema()["title"]
+    'Drive'
     """
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Drive.model_json_schema()}
+    schema = Drive.model_json_schema()
+    for part in (schema, *schema["$defs"].values()):
+        if "description" in part:  # examples are those of Python
+            part["description"] = part["description"].partition("\n\nExamples\n")[0]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -12,6 +12,8 @@ from pydantic import BaseModel, BeforeValidator
 from pydantic.fields import FieldInfo
 
 _WIDTH = 100
+_EXAMPLES = "\n\nExamples\n--------\n"
+"""Stands last in a docstring."""
 _NAMES = {float: "float", int: "int", bool: "bool", str: "str"}
 
 
@@ -31,8 +33,8 @@ def document(part: type[BaseModel], others: Mapping[str, FieldInfo]) -> str:
         The docstring.
     """
     fields = {field.alias or name: field for name, field in part.model_fields.items()}
-    told = inspect.cleandoc(part.__doc__ or "")
-    return told + _section("Parameters", fields) + _section("Other Parameters", others)
+    told, heading, examples = inspect.cleandoc(part.__doc__ or "").partition(_EXAMPLES)
+    return told + _section("Parameters", fields) + _section("Other Parameters", others) + heading + examples
 
 
 def signature(part: type[BaseModel], others: Mapping[str, FieldInfo]) -> inspect.Signature:

@@ -42,6 +42,11 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> bd.plot.speeds(run).get_ylabel()
+    'Pulley speed [rad/s]'
     """
     ax = lines(run.dataset["pulley_speed"], axes_or_new(ax))
     shafts = run.dataset["shaft_speed"]
@@ -71,6 +76,11 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> bd.plot.torques(run).get_ylabel()
+    'Torque of the belt on the pulley [N·m]'
     """
     return lines(run.dataset["pulley_torque"], axes_or_new(ax))
 
@@ -90,6 +100,11 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> bd.plot.span_tensions(run).get_ylabel()
+    'Span tension [N]'
     """
     ax = axes_or_new(ax)
     if not run.resolution.resolves("tension"):
@@ -117,6 +132,11 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.energy(run).get_ylabel()
+    'Energy [J]'
     """
     run.require_output()
     ax = axes_or_new(ax)

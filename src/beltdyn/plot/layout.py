@@ -48,6 +48,11 @@ def layout(drive: Drive, installation: Installation | None = None, ax: Axes | No
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> bd.plot.layout(drive).get_aspect()
+    1.0
     """
     if installation is None:
         drive, installation = _at_rest(drive)

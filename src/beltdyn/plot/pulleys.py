@@ -45,6 +45,11 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.slip(run).get_ylabel()
+    'Slip [%]'
     """
     parts, summary = derived.slips(run), summarize(run)
     names = [f"{one.name} {one.slip:z.3%}" if np.isfinite(one.slip) else one.name for one in summary.pulleys]

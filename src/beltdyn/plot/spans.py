@@ -33,6 +33,11 @@ def mid_spans(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.mid_spans(run).get_ylabel()
+    'Mid-span displacement [mm]'
     """
     displacement = derived.mid_span_displacements(run)
     return lines((1e3 * displacement).assign_attrs(displacement.attrs | {"units": "mm"}), axes_or_new(ax))

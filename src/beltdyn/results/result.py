@@ -28,6 +28,11 @@ class Result:
         The drive that was analysed.
     path : Path or None
         The file that it was read from, or None for a result in memory.
+
+    Examples
+    --------
+    >>> run.kind, run.drive.title
+    ('run', 'Belt drive')
     """
 
     def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:

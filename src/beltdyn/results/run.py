@@ -35,6 +35,11 @@ class Run(Result):
         The drive that was simulated.
     path : Path or None
         The result file, or None for a run in memory.
+
+    Examples
+    --------
+    >>> run.status, run.dataset["pulley_speed"].dims
+    ('completed', ('time', 'pulley'))
     """
 
     def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:

@@ -74,6 +74,11 @@ class Summary:
         Time taken by compilation, s; NaN when the run's end was not recorded.
     warnings : tuple of str
         What a reader of the results has to know.
+
+    Examples
+    --------
+    >>> [pulley.name for pulley in bd.summarize(run).pulleys]
+    ['driver', 'driven']
     """
 
     status: str

@@ -30,7 +30,13 @@ def friction_clutch(constants: np.record, scale: float, _twist: float, rate: flo
 
 
 class FrictionClutch(HubLink):
-    """A clutch that transmits a torque up to its capacity, and slips beyond it."""
+    """A clutch that transmits a torque up to its capacity, and slips beyond it.
+
+    Examples
+    --------
+    >>> bd.FrictionClutch(kind="friction_clutch", capacity="20 N m", locking_damping=1.0).capacity
+    20.0
+    """
 
     constants = FRICTION_CLUTCH
     torque_at = friction_clutch

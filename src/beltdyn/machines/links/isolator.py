@@ -31,7 +31,13 @@ def isolator(constants: np.record, _scale: float, twist: float, rate: float) -> 
 
 
 class Isolator(HubLink):
-    """A torsional spring and damper in parallel."""
+    """A torsional spring and damper in parallel.
+
+    Examples
+    --------
+    >>> bd.Isolator(kind="isolator", stiffness="200 N m/rad", damping=0.5).stiffness
+    200.0
+    """
 
     constants = ISOLATOR
     torque_at = isolator

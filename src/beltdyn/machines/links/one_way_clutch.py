@@ -37,6 +37,11 @@ class OneWayClutch(HubLink):
     """An overrunning clutch: it drives the body behind it in one sense only, and lets it run ahead.
 
     It creeps while it drives: the torque is `locking_damping` times the slip speed.
+
+    Examples
+    --------
+    >>> bd.OneWayClutch(kind="one_way_clutch", locking_damping=1.0, inertia="20 kg cm^2").inertia
+    0.002
     """
 
     constants = ONE_WAY_CLUTCH

@@ -196,6 +196,11 @@ class AngleTable(_OverAngle):
 
     Both are counter-clockwise positive. The points are `angles` and `torques`, or the two columns of the CSV file
     `file`, which is read when the table is made: a relative path starts at the folder of the drive file.
+
+    Examples
+    --------
+    >>> bd.AngleTable(kind="angle_table", angles=["0 deg", "90 deg", "180 deg"], torques=[0.0, 5.0, 1.0]).torques
+    (0.0, 5.0, 1.0)
     """
 
     model_config = ConfigDict(

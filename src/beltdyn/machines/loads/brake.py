@@ -52,7 +52,13 @@ def standstill(constants: np.record, _numbers: FloatArray, shaft: ShaftState, ri
 
 
 class Brake(Load):
-    """A brake with disc, shoes or plates, clamped over time: its torque opposes any motion."""
+    """A brake with disc, shoes or plates, clamped over time: its torque opposes any motion.
+
+    Examples
+    --------
+    >>> bd.Brake(kind="brake", torque={"kind": "step", "time": 0.5, "value": 20.0}).torque.at([0.0, 1.0])
+    array([ 0., 20.])
+    """
 
     constants = BRAKE
     torque_at = braking_torque
@@ -76,7 +82,17 @@ class Brake(Load):
 
 
 class BandBrake(Load):
-    """A brake with a band around a drum on the shaft, one end of it fixed, the other pulled over time."""
+    """A brake with a band around a drum on the shaft, one end of it fixed, the other pulled over time.
+
+    Examples
+    --------
+    >>> load = bd.BandBrake(
+    ...     kind="band_brake", force={"kind": "constant", "value": 50.0}, radius="80 mm",
+    ...     friction=0.3, wrap="270 deg"
+    ... )
+    >>> load.wrap
+    4.71238898038469
+    """
 
     constants = BRAKE
     torque_at = braking_torque

@@ -14,7 +14,13 @@ from beltdyn.parts.quantity import AngularSpeed, Power, Ratio
 
 
 class Fan(Load):
-    """A fan, blower or centrifugal pump: its torque grows with the square of the speed, from that of friction on."""
+    """A fan, blower or centrifugal pump: its torque grows with the square of the speed, from that of friction on.
+
+    Examples
+    --------
+    >>> bd.Fan(kind="fan", rated_power="2 kW", rated_speed="1500 rpm").rated_power
+    2000.0
+    """
 
     constants = RESISTANCE
     torque_at = resistance

@@ -60,7 +60,17 @@ def next_end_of_regulation(constants: np.record, _numbers: FloatArray, shaft: Sh
 
 
 class Generator(Load):
-    """A generator or alternator whose voltage is regulated: it takes the power that is asked for, at any speed."""
+    """A generator or alternator whose voltage is regulated: it takes the power that is asked for, at any speed.
+
+    Examples
+    --------
+    >>> load = bd.Generator(
+    ...     kind="generator", power={"kind": "constant", "value": 1000.0}, efficiency=0.7,
+    ...     cut_in_speed="1500 rpm", full_field_power="2 kW"
+    ... )
+    >>> load.full_field_power
+    2000.0
+    """
 
     constants = GENERATOR
     torque_at = generator_torque

@@ -106,6 +106,15 @@ class InductionMotor(Load):
 
     Its torque is that of steady running at each speed; electrical transients, of some periods of the supply, are left
     out.
+
+    Examples
+    --------
+    >>> load = bd.InductionMotor(
+    ...     kind="induction_motor", rated_power="1.5 kW", rated_speed="1430 rpm",
+    ...     locked_rotor_ratio=2.2, breakdown_ratio=2.6
+    ... )
+    >>> load.rated_power
+    1500.0
     """
 
     constants = INDUCTION_MOTOR

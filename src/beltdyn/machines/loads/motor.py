@@ -47,7 +47,17 @@ def kloss(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> Load
 
 
 class Motor(Load):
-    """An induction motor after Kloss: it drives below its synchronous speed, and brakes above it."""
+    """An induction motor after Kloss: it drives below its synchronous speed, and brakes above it.
+
+    Examples
+    --------
+    >>> load = bd.Motor(
+    ...     kind="motor", breakdown_torque="20 N m",
+    ...     breakdown_slip=0.2, synchronous_speed="1500 rpm"
+    ... )
+    >>> load.breakdown_torque
+    20.0
+    """
 
     constants = MOTOR
     torque_at = kloss

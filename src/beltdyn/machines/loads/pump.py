@@ -17,7 +17,17 @@ from beltdyn.parts.quantity import AngularSpeed, Ratio, quantity
 
 
 class Pump(Load):
-    """A displacement pump, as with gears, vanes or pistons: its torque follows the pressure, at any speed."""
+    """A displacement pump, as with gears, vanes or pistons: its torque follows the pressure, at any speed.
+
+    Examples
+    --------
+    >>> load = bd.Pump(
+    ...     kind="pump", displacement="10 cm^3",
+    ...     pressure={"kind": "constant", "value": 1e6}, efficiency=0.9
+    ... )
+    >>> load.efficiency
+    0.9
+    """
 
     constants = BRAKE
     torque_at = braking_torque

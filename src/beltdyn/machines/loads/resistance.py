@@ -39,7 +39,13 @@ def resistance(constants: np.record, _numbers: FloatArray, shaft: ShaftState) ->
 
 
 class Resistance(Load):
-    """A torque that opposes the motion of the shaft: constant (as dry friction), linear, quadratic in the speed."""
+    """A torque that opposes the motion of the shaft: constant (as dry friction), linear, quadratic in the speed.
+
+    Examples
+    --------
+    >>> bd.Resistance(kind="resistance", constant="2 N m", linear=0.1).constant
+    2.0
+    """
 
     constants = RESISTANCE
     torque_at = resistance

@@ -64,7 +64,17 @@ def servo_rate(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> 
 
 
 class ServoMotor(Load):
-    """A servo motor, or any motor with a speed controller: it holds a set speed as far as its torque allows."""
+    """A servo motor, or any motor with a speed controller: it holds a set speed as far as its torque allows.
+
+    Examples
+    --------
+    >>> load = bd.ServoMotor(
+    ...     kind="servo_motor", speed={"kind": "constant", "value": 100.0}, proportional_gain=0.5,
+    ...     integral_time="50 ms", torque_limit="10 N m"
+    ... )
+    >>> load.integral_time
+    0.05
+    """
 
     constants = SERVO_MOTOR
     torque_at = servo_torque

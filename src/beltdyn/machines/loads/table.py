@@ -66,6 +66,11 @@ class LoadTable(Load):
 
     Both are counter-clockwise positive. The points are `speeds` and `torques`, or the two columns of the CSV file
     `file`, which is read when the table is made: a relative path starts at the folder of the drive file.
+
+    Examples
+    --------
+    >>> bd.LoadTable(kind="table", speeds=[0.0, 100.0], torques=[0.0, -5.0]).torques
+    (0.0, -5.0)
     """
 
     constants = LOAD_TABLE

@@ -10,7 +10,13 @@ from beltdyn.records import Records, records
 
 
 class Constant(Profile[Value], Generic[Value]):
-    """The same value at all times."""
+    """The same value at all times.
+
+    Examples
+    --------
+    >>> bd.Constant(value=3.0).at([0.0, 1.0])
+    array([3., 3.])
+    """
 
     kind: Literal["constant"] = Field("constant", description="the kind of profile")
     value: Value = Field(description="the value at all times")

@@ -11,7 +11,13 @@ from beltdyn.records import Records, records
 
 
 class CosineRamp(Rise[Value], Generic[Value]):
-    """A smooth rise from zero at `start` to `value` at `end`, along half a cosine from start to end."""
+    """A smooth rise from zero at `start` to `value` at `end`, along half a cosine from start to end.
+
+    Examples
+    --------
+    >>> bd.CosineRamp(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
+    array([ 0.,  5., 10.])
+    """
 
     kind: Literal["cosine_ramp"] = Field("cosine_ramp", description="the kind of profile")
 

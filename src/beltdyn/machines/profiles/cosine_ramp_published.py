@@ -11,7 +11,13 @@ from beltdyn.records import Records, records
 
 
 class CosineRampPublished(Rise[Value], Generic[Value]):
-    """The rise of Eq. (29) as printed: its cosine runs from time zero to `end`, so it jumps at `start`."""
+    """The rise of Eq. (29) as printed: its cosine runs from time zero to `end`, so it jumps at `start`.
+
+    Examples
+    --------
+    >>> bd.CosineRampPublished(start=0.0, end=2.0, value=10.0).at([0.0, 1.0, 2.0]).round(6)
+    array([ 0.,  5., 10.])
+    """
 
     multiplies: ClassVar[bool] = False
 

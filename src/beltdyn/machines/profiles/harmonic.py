@@ -20,7 +20,13 @@ HARMONIC = record(
 
 
 class Harmonic(Part):
-    """A wave over the angle theta of a shaft: amplitude cos(order theta + phase)."""
+    """A wave over the angle theta of a shaft: amplitude cos(order theta + phase).
+
+    Examples
+    --------
+    >>> bd.Harmonic(order=2, amplitude=0.01).order
+    2.0
+    """
 
     order: Ratio = Field(gt=0, description="the number of waves in a turn of the shaft, such as 2 or 0.5")
     amplitude: Ratio = Field(description="the amplitude, over the value without harmonics")

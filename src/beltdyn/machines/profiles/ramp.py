@@ -11,7 +11,13 @@ from beltdyn.records import Records, records
 
 
 class Ramp(Rise[Value], Generic[Value]):
-    """A linear rise from zero at `start` to `value` at `end`, Eq. (28)."""
+    """A linear rise from zero at `start` to `value` at `end`, Eq. (28).
+
+    Examples
+    --------
+    >>> bd.Ramp(start=0.0, end=2.0, value=10.0).at([0.5, 1.0, 3.0])
+    array([ 2.5,  5. , 10. ])
+    """
 
     kind: Literal["ramp"] = Field("ramp", description="the kind of profile")
 

@@ -11,7 +11,13 @@ from beltdyn.records import Records, records
 
 
 class Step(Profile[Value], Generic[Value]):
-    """The value `before` until `time`, and `value` after it."""
+    """The value `before` until `time`, and `value` after it.
+
+    Examples
+    --------
+    >>> bd.Step(time="500 ms", value=2.0).at([0.0, 1.0])
+    array([0., 2.])
+    """
 
     kind: Literal["step"] = Field("step", description="the kind of profile")
     time: Time = Field(description="the instant of the step, in s")

@@ -16,6 +16,11 @@ class Table(Profile[Value], Generic[Value]):
 
     The points are `times` and `values`, or the two columns of the CSV file `file`, which is read when the
     table is made: a relative path starts at the folder of the drive file.
+
+    Examples
+    --------
+    >>> bd.Table(times=[0.0, 1.0], values=[0.0, 5.0]).at([0.5])
+    array([2.5])
     """
 
     model_config = ConfigDict(

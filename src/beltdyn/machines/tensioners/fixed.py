@@ -10,7 +10,13 @@ from beltdyn.parts.quantity import Coordinate
 
 
 class FixedTensioner(Tensioner):
-    """A pulley that is moved along a line before the drive runs, and held there."""
+    """A pulley that is moved along a line before the drive runs, and held there.
+
+    Examples
+    --------
+    >>> bd.FixedTensioner(kind="fixed", pulley="idler", direction=[0, 2], take_up="10 mm").take_up
+    0.01
+    """
 
     kind: Literal["fixed"] = Field(description="the kind of tensioner")
     direction: Direction = Field(description="the direction in which the take-up moves the pulley, as [x, y]")

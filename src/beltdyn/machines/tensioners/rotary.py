@@ -47,7 +47,13 @@ def rotary_center(constants: np.record, q: float) -> Center:
 
 
 class RotaryTensioner(MovingTensioner):
-    """A pulley on an arm, pressed against the belt by a torsional spring about the pivot of the arm."""
+    """A pulley on an arm, pressed against the belt by a torsional spring about the pivot of the arm.
+
+    Examples
+    --------
+    >>> bd.RotaryTensioner(kind="rotary", pulley="idler", pivot=["100 mm", "50 mm"], preload="20 N m").pivot
+    (0.1, 0.05)
+    """
 
     turns: ClassVar[bool] = True
     constants = ARM

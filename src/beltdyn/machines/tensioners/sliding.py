@@ -30,7 +30,13 @@ def sliding_center(constants: np.record, q: float) -> Center:
 
 
 class SlidingTensioner(MovingTensioner):
-    """A pulley that slides along a line, pressed by a spring in `direction`."""
+    """A pulley that slides along a line, pressed by a spring in `direction`.
+
+    Examples
+    --------
+    >>> bd.SlidingTensioner(kind="sliding", pulley="idler", direction=[0, 1], preload="300 N", rate="2 N/mm").rate
+    2000.0
+    """
 
     constants = SLIDE
     center_at = sliding_center

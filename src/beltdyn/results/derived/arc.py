@@ -34,6 +34,12 @@ def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None =
     ------
     ModelError
         If there is no such pulley, or the run holds no output.
+
+    Examples
+    --------
+    >>> arc = bd.derived.contact_arc(run, "driver")
+    >>> sorted(arc)
+    ['friction_force', 'normal_force', 'pressure', 'shear', 'sliding', 'slip_velocity']
     """
     number, drive = pulley_number(run, pulley), run.drive
     instant = run.fields_at(time)

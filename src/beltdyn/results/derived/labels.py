@@ -71,6 +71,11 @@ def pulley_number(run: Result, pulley: str | int) -> int:
     ------
     ModelError
         If there is no such pulley.
+
+    Examples
+    --------
+    >>> bd.derived.pulley_number(run, "driven")
+    1
     """
     if isinstance(pulley, int) and 0 <= pulley < len(run.drive.pulleys):
         return pulley

@@ -28,6 +28,11 @@ def pulley_powers(run: Run, start: float | None = None, end: float | None = None
         W, time and pulley: ``power_in`` = shaft torque * shaft speed, from the shaft; ``power_out`` = - torque of the
         belt * pulley speed - losses in contact, to the belt; ``power_lost`` = ``friction_power`` +
         ``contact_damping_power``; and these two.
+
+    Examples
+    --------
+    >>> sorted(bd.derived.pulley_powers(run))
+    ['contact_damping_power', 'friction_power', 'power_in', 'power_lost', 'power_out']
     """
     dataset = window(run, start, end)
     lost = dataset["friction_power"] + dataset["contact_damping_power"]

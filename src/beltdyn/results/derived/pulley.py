@@ -24,6 +24,11 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
     xarray.Dataset
         ``hub_force`` (time, pulley, axis) and ``hub_load``, its magnitude, in N; ``hub_direction``, its direction
         from the x axis, counter-clockwise from -pi to pi, rad.
+
+    Examples
+    --------
+    >>> bd.derived.hub_loads(run)["hub_load"][0].values.round(2)  # N, at rest
+    array([69.39, 69.39])
     """
     force = window(run, start, end)["hub_force"]
     x, y = force.sel(axis="x", drop=True), force.sel(axis="y", drop=True)
@@ -52,6 +57,11 @@ def capstan_margins(run: Run, start: float | None = None, end: float | None = No
     -------
     DataArray
         Time and pulley; NaN where a span is missing because the belt has left a pulley.
+
+    Examples
+    --------
+    >>> bd.derived.capstan_margins(run).dims
+    ('time', 'pulley')
     """
     dataset = window(run, start, end)
     tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
@@ -72,6 +82,11 @@ def tension_ratios(run: Run, start: float | None = None, end: float | None = Non
     -------
     DataArray
         Time and pulley, at least 1; NaN where a span is slack.
+
+    Examples
+    --------
+    >>> bd.derived.tension_ratios(run)[0].values.round(3)  # at rest
+    array([1., 1.])
     """
     dataset = window(run, start, end)
     before, after = across(dataset["span_tension"].values, run.drive)

@@ -46,6 +46,11 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     xarray.Dataset
         ``slip``, ``creep``, ``elastic_creep``, ``regularisation`` and ``sliding`` in %, with the dimensions time and
         pulley; NaN while the first pulley stands still.
+
+    Examples
+    --------
+    >>> bd.derived.slips(run)["slip"].dims
+    ('time', 'pulley')
     """
     dataset = window(run, start, end)
     dataset = run.dataset if turns else dataset
@@ -82,6 +87,11 @@ def sliding_arcs(run: Run, start: float | None = None, end: float | None = None)
     -------
     xarray.Dataset
         ``sliding_share`` of the arc of contact, and ``sliding_arc`` = share * wrap angle, rad; time and pulley.
+
+    Examples
+    --------
+    >>> sorted(bd.derived.sliding_arcs(run))
+    ['sliding_arc', 'sliding_share']
     """
     dataset = window(run, start, end)
     wrap, share = dataset["wrap_angle"], dataset["sliding_share"].values

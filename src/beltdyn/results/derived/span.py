@@ -20,6 +20,11 @@ def span_tensions(run: Run, start: float | None = None, end: float | None = None
     -------
     xarray.Dataset
         ``mean``, ``min`` and ``max``, N, by span.
+
+    Examples
+    --------
+    >>> bd.derived.span_tensions(run, end=0.0)["mean"].values.round(2)  # N, at rest
+    array([28.19, 28.19])
     """
     tension = window(run, start, end)["span_tension"]
     numbers = {
@@ -56,6 +61,11 @@ def mid_span_displacements(run: Run, start: float | None = None, end: float | No
     ------
     ModelError
         If it was not recorded.
+
+    Examples
+    --------
+    >>> bd.derived.mid_span_displacements(run).dims
+    ('time', 'span')
     """
     run.require("mid_span_displacement")
     return window(run, start, end)["mid_span_displacement"]

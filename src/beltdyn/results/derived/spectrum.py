@@ -49,6 +49,17 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     ------
     ModelError
         If there are too few outputs, or the variable is unknown for a time.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> time = np.arange(0.0, 2.0, 1e-3)
+    >>> force = 3.0 * np.sin(2.0 * np.pi * 10.0 * time)
+    >>> swing = xr.DataArray(force, {"time": time}, attrs={"units": "N", "long_name": "Force"})
+    >>> spectrum = bd.derived.amplitude_spectrum(swing)
+    >>> spectrum.sel(frequency=10.0, method="nearest").round(2).item()  # N, of 3 N
+    3.0
     """
     from scipy.signal import periodogram
 
@@ -92,6 +103,17 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
     ------
     ModelError
         If there are too few outputs, or the speed stays the same.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> time = np.arange(0.0, 2.0, 1e-3)
+    >>> force = 3.0 * np.sin(2.0 * np.pi * 10.0 * time)
+    >>> swing = xr.DataArray(force, {"time": time}, attrs={"units": "N", "long_name": "Force"})
+    >>> speed = 10.0 + 5.0 * xr.DataArray(time, {"time": time})
+    >>> bd.derived.waterfall(swing, speed).dims
+    ('speed', 'frequency')
     """
     time, even = _even(instants_of(values), values.values)
     transform = _transform(max(_FEWEST, _OVERLAP * (len(time) // pieces)), (len(time) - 1) / (time[-1] - time[0]))
@@ -114,6 +136,18 @@ def overall_level(amplitude: xr.DataArray) -> xr.DataArray:
     DataArray
         In the unit of the variable, over ``speed``; a sinusoid of amplitude A gives A over the square root of 2. Each
         spectrum's sum of squares is divided by the noise bandwidth of its window, 1.5 lines of a Hann window.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> time = np.arange(0.0, 2.0, 1e-3)
+    >>> force = 3.0 * np.sin(2.0 * np.pi * 10.0 * time)
+    >>> swing = xr.DataArray(force, {"time": time}, attrs={"units": "N", "long_name": "Force"})
+    >>> speed = 10.0 + 5.0 * xr.DataArray(time, {"time": time})
+    >>> level = bd.derived.overall_level(bd.derived.waterfall(swing, speed))
+    >>> level.mean().round(1).item()  # N: 3 N over the square root of 2
+    2.1
     """
     squares = 0.5 * np.sum(amplitude.values[:, 1:] ** 2, axis=1)
     attributes = {"units": amplitude.attrs["units"], "long_name": "Overall level (RMS)"}
@@ -191,6 +225,11 @@ def element_order(drive: Drive, pulley: int) -> float:
         The drive.
     pulley : int
         Number of the pulley.
+
+    Examples
+    --------
+    >>> round(bd.derived.element_order(drive, 0), 2)
+    8.0
     """
     if drive.simulation.frame == "staying":
         return float("inf")

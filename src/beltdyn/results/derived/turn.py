@@ -24,6 +24,11 @@ def turn_means(run: Run, variable: xr.DataArray) -> xr.DataArray:
         The same variable averaged over whole windows with their middles at the instants: NaN before that of the first
         window, the mean over the last one after its middle. NaN where a value in the window is NaN. Unchanged where the
         belt does not even run by an element.
+
+    Examples
+    --------
+    >>> bd.derived.turn_means(run, run.dataset.pulley_speed).dims
+    ('time', 'pulley')
     """
     window = turn_window(run.dataset, run.drive)
     rows = np.searchsorted(window.time, variable["time"].values)

@@ -37,6 +37,11 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
     ------
     ModelError
         If there are no two outputs of fields between them, or the work was not recorded.
+
+    Examples
+    --------
+    >>> bd.derived.wear_by_arc(run).dims
+    ('pulley', 'share')
     """
     dataset, work = _work(run, "friction_work_on_arc", start, end)
     _, wrap = arc_ends(run.drive, dataset["pulley_center"].values.mean(axis=0))
@@ -76,6 +81,11 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     ------
     ModelError
         If there are no two outputs of fields between them, or the work was not recorded.
+
+    Examples
+    --------
+    >>> bd.derived.wear_by_belt(run).dims
+    ('pulley', 'element')
     """
     dataset, work = _work(run, "friction_work_on_belt", start, end)
     coordinates = {"pulley": dataset["pulley"], "element_coordinate": dataset["element_coordinate"]}

@@ -105,6 +105,11 @@ class FixedSteps:
         s; steps that end on a breakpoint may be shorter.
     missed : float
         See `StepControl`.
+
+    Examples
+    --------
+    >>> bd.FixedSteps(1e-4).length
+    0.0001
     """
 
     length: float
@@ -132,6 +137,11 @@ class ErrorControl:
         s.
     first : float
         Length of the first step, s.
+
+    Examples
+    --------
+    >>> bd.ErrorControl(rtol=1e-4).rtol
+    0.0001
     """
 
     rtol: float

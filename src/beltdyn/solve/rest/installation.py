@@ -107,6 +107,12 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
     ------
     ConvergenceError
         If there is no equilibrium in which the belt touches every pulley, or none with the tension asked for.
+
+    Examples
+    --------
+    >>> rest = bd.bring_to_rest(drive)
+    >>> rest._fields
+    ('drive', 'system', 'state', 'seen', 'unstable')
     """
     given, drive = drive, on_equal_elements(drive)
     system = drive_system(drive)
