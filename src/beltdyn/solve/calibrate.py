@@ -23,6 +23,9 @@ from beltdyn.solve.studies.residuals import MOST, Residuals
 _UNLIKELY = 1e-3
 """Probability of residuals so large, below which deviations or the drive are doubtful."""
 
+_CORRELATED = 0.99
+"""Correlation of errors with which an interval is seven times as long as if the other number were known."""
+
 _NUMBER, _MEASURED = ("number",), ("measured",)
 _VARIABLES = {
     "residual_deviation": Variable((), "1", "Deviation of residuals, over that of measurements or relative"),
@@ -175,10 +178,25 @@ def _warnings(numbers: Sequence[Free], fitting: Residuals, found: Fit) -> Iterat
     from scipy import stats
 
     yield from dict.fromkeys(failure for series in fitting.series for failure in series.designs.failed)
+    paths = [one.path for one in numbers]
     if not found.told:
+        untold = [paths[number] for number in found.untold]
+        fault = (
+            f"the measurements do not tell {untold[0]}: no measured result changes with it"
+            if len(untold) == 1
+            else f"the measurements do not tell {', '.join(untold)} apart: they change the same results in the same way"
+        )
+        yield f"{fault}. Fit fewer numbers, or measure something else."
+    wide = [path for path, error in zip(paths, found.errors, strict=True) if 1.0 < 2.0 * found.reach * error < np.inf]
+    if wide:
         yield (
-            "the measurements do not tell all numbers: some change the same results in the same way. Fit fewer "
-            "numbers, or measure something else."
+            f"{', '.join(wide)}: the interval is wider than the bounds, so that the measurements hardly tell it. "
+            "Measure more, or something that changes with it."
+        )
+    for one, other in zip(*np.nonzero(np.triu(np.abs(found.correlation) > _CORRELATED, 1)), strict=True):
+        yield (
+            f"errors of {paths[one]} and {paths[other]} are correlated by {found.correlation[one, other]:.3f}: the "
+            "measurements tell little more than what both together do. Measure something else that one of them changes."
         )
     at_bounds = [one.path for one, part in zip(numbers, found.numbers, strict=True) if min(part, 1.0 - part) < 1e-6]
     if at_bounds:

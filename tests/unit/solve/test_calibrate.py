@@ -1,6 +1,7 @@
 """Calibrations find the numbers with which measurements were made."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,11 @@ from beltdyn.errors import ModelError
 from beltdyn.model import CalibrationStudy, Drive, loads
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, open_result, summarize
-from beltdyn.solve.calibrate import calibrate
+from beltdyn.solve.calibrate import _warnings, calibrate
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.studies.designs import Free
+from beltdyn.solve.studies.fitting import fit
 from beltdyn.solve.studies.found_state import Resting
 
 TRUE_MODULUS = 1.08e9
@@ -101,6 +104,25 @@ def test_what_measurements_do_not_tell(drive: Drive, slips: FloatArray, tmp_path
     errors = found.dataset.standard_error.values
     assert not np.all(np.isfinite(errors)) or errors[1] > 0.1
     assert np.all(found.dataset.upper > found.dataset.lower)
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        ([[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]], "do not tell b: no measured result changes with it"),
+        ([[1.0, 2.0, 3.0], [2.0, 4.0, 6.0]], "do not tell a, b apart: they change the same results"),
+        ([[100.0, 200.0, 300.0], [100.0, 200.0, 301.0]], "errors of a and b are correlated by -1.000"),
+        ([[100.0, 0.0, 0.0], [0.0, 0.1, 0.0]], "b: the interval is wider than the bounds"),
+    ],
+)
+def test_numbers_that_are_not_told_are_named(columns: list[list[float]], said: str) -> None:
+    """Straight residuals of two numbers, of deviation 1."""
+    jacobian = np.array(columns).T
+    numbers = [Free(path, "", 0.0, 1.0, 0.5) for path in ("a", "b")]
+    middle = np.array([0.5, 0.5])
+    found = fit(lambda x: jacobian @ (x - middle), lambda x: jacobian, middle, 0.95, known=True)
+    fitting: Any = SimpleNamespace(series=[], known=True)
+    assert any(said in warning for warning in _warnings(numbers, fitting, found))
 
 
 @pytest.mark.slow

@@ -14,8 +14,10 @@ from beltdyn.arrays import FloatArray
 
 _TOLERANCE = 1e-8
 """Of numbers, goal and gradient, at which the search ends."""
-_LEAST_SINGULAR = 1e-8
-"""Singular value over the largest one, below which numbers cannot be told apart."""
+_LEAST_SINGULAR = 1e-5
+"""Singular value over the largest one, below which numbers cannot be told apart: derivatives are no more exact."""
+_INVOLVED = 0.1
+"""Part of a number in a change of all that measurements do not notice, from which it is one of those not told."""
 
 
 class Fit(NamedTuple):
@@ -31,8 +33,13 @@ class Fit(NamedTuple):
     residuals: FloatArray
     spread: float
     """Root mean square of residuals with the degrees of freedom that are left; NaN where none is left."""
-    told: bool
-    """Whether measurements tell all numbers."""
+    untold: tuple[int, ...]
+    """Which numbers measurements do not tell, alone or from each other."""
+
+    @property
+    def told(self) -> bool:
+        """Whether measurements tell all numbers."""
+        return not self.untold
 
 
 def fit(
@@ -72,7 +79,9 @@ def fit(
     sizes = np.linalg.norm(found.jac, axis=0)
     scaled = found.jac / np.where(sizes > 0.0, sizes, 1.0)
     _, singular, rows = np.linalg.svd(scaled, full_matrices=False)
-    told = bool(sizes.min() > 0.0 and left >= 0 and singular.min() > _LEAST_SINGULAR * singular.max())
+    unnoticed = rows[singular <= _LEAST_SINGULAR * singular.max()]
+    untold = tuple(np.flatnonzero((sizes == 0.0) | (left < 0) | (np.abs(unnoticed) > _INVOLVED).any(axis=0)).tolist())
+    told = not untold
     inverse = (
         rows.T / np.maximum(singular, np.finfo(float).tiny) if told else np.full((start.size, singular.size), np.inf)
     )
@@ -83,4 +92,4 @@ def fit(
     half = 0.5 * (1.0 + confidence)
     reach = float(stats.norm.ppf(half) if known else stats.t.ppf(half, left)) if known or left > 0 else np.inf
     errors = factor * deviations / np.where(sizes > 0.0, sizes, 1.0)
-    return Fit(found.x, errors, correlation, reach, found.fun, spread, told)
+    return Fit(found.x, errors, correlation, reach, found.fun, spread, untold)

@@ -65,5 +65,22 @@ def test_errors_are_those_of_the_normal_equations() -> None:
 def test_numbers_that_cannot_be_told_apart() -> None:
     jacobian = np.column_stack([ROWS, 2.0 * ROWS])
     found = fit(lambda x: jacobian @ (x - TRUE), lambda x: jacobian, np.array([0.5, 0.5]), 0.95, known=True)
+    assert found.untold == (0, 1)
     assert not found.told
     assert np.all(np.isinf(found.errors))
+
+
+def test_a_number_that_changes_nothing_is_named() -> None:
+    jacobian = np.column_stack([ROWS, 0.0 * ROWS, np.ones(ROWS.size)])
+    true = np.array([0.4, 0.5, 0.6])
+    found = fit(lambda x: jacobian @ (x - true), lambda x: jacobian, np.full(3, 0.5), 0.95, known=True)
+    assert found.untold == (1,)
+
+
+def test_derivatives_with_errors_do_not_tell_apart_what_is_alike() -> None:
+    """Derivatives are exact to 1e-5, so that two columns alike differ by as much."""
+    noise = 1e-6 * np.random.default_rng(5).standard_normal(ROWS.size)
+    jacobian = np.column_stack([ROWS, 2.0 * ROWS + noise, np.ones(ROWS.size)])
+    true = np.array([0.4, 0.5, 0.6])
+    found = fit(lambda x: jacobian @ (x - true), lambda x: jacobian, np.full(3, 0.5), 0.95, known=True)
+    assert found.untold == (0, 1)
