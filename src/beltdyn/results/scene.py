@@ -115,8 +115,14 @@ class Ribbon:
         return np.asarray((1.0 - self._share) * values[:, self._before] + self._share * values[:, self._after])
 
 
+_LEAST = 0.5
+"""Drawn radius of a pulley over its own, at least."""
+
+
 class Cylinders:
     """Pulleys as wide as the belt, with a marked sector that begins on the x axis when their angle is zero.
+
+    They end below the ribbon, which shows the centreline, by half of the belt's thickness at least: it is seen on arcs.
 
     Parameters
     ----------
@@ -125,8 +131,10 @@ class Cylinders:
     """
 
     def __init__(self, run: Run) -> None:
-        self._radii = np.array([pulley.radius for pulley in run.drive.pulleys])
-        self._width = run.drive.belt.width
+        drive = run.drive
+        own, below = np.array([pulley.radius for pulley in drive.pulleys]), drive.radii - 0.5 * drive.belt.thickness
+        self._radii = np.minimum(own, np.maximum(below, _LEAST * own))
+        self._width = drive.belt.width
         corners, self._mark = _cylinder()
         size = 2 * (SECTORS + 1)
         self._each = len(corners)

@@ -65,7 +65,7 @@ def test_pulleys_turn_by_their_angle_about_their_centers(run: Run) -> None:
     centers = fields["pulley_center"].values
     np.testing.assert_allclose(pulleys[:, :, :, 0, :2], np.stack([centers, centers], axis=2), atol=1e-15)
     arm = pulleys[:, :, 0, 1, :2] - centers
-    radii = [pulley.radius for pulley in run.drive.pulleys]
+    radii = [pulley.radius - 0.5 * run.drive.belt.thickness for pulley in run.drive.pulleys]  # it has no offset
     np.testing.assert_allclose(np.linalg.norm(arm, axis=-1), np.tile(radii, (3, 1)), rtol=1e-12)
     turned = np.arctan2(arm[..., 1], arm[..., 0]) - fields["pulley_angle"].values
     np.testing.assert_allclose(np.exp(1j * turned), 1.0, atol=1e-12)

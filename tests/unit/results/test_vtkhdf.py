@@ -75,7 +75,7 @@ def test_the_pulleys_at_an_instant(written: list[Read], run: Run, number: int) -
     places = vtk_to_numpy(pulleys.GetPoints().GetData()).reshape(2, 2, SECTORS + 1, 3)
     for pulley, (center, angle) in enumerate(zip(fields["pulley_center"].values, fields["pulley_angle"], strict=True)):
         direction = np.array([np.cos(angle), np.sin(angle)])
-        rim = center + run.drive.pulleys[pulley].radius * direction
+        rim = center + (run.drive.pulleys[pulley].radius - 0.5 * run.drive.belt.thickness) * direction
         np.testing.assert_allclose(places[pulley, :, 1, :2], [rim, rim], rtol=SINGLE, atol=1e-8)
         one = values(pulleys, "pulley") == pulley
         np.testing.assert_allclose(values(pulleys, "pulley_angle")[one], angle, rtol=SINGLE)
