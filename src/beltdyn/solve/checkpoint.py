@@ -139,8 +139,9 @@ def read_checkpoint(path: Path) -> Checkpoint:
             head, content = file.readline(_LONGEST_HEAD), file.read()
     except OSError as error:
         raise ModelError(
-            f"there is no checkpoint {path} to go on from: the run is complete, or ended before the first one. "
-            "Run the drive again."
+            f"there is no checkpoint {path} to go on from: the run is complete, ended before the first one, or is a "
+            "run-up, which writes none. Run the drive again, or begin another run where this one ended, by "
+            "simulation.start = { file = ... }."
         ) from error
     made_by = head.decode(errors="replace").removeprefix(_HEAD).strip()
     if made_by != _made_by():

@@ -171,6 +171,16 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
     if output is None:
         raise ModelError("a run goes on in its result file, and none is named. Name it as output.")
     path = Path(output)
+    if drive.simulation.integrator != GeneralizedAlpha.name or has_functions(drive):
+        why = (
+            'has a load of kind "function", which no file holds'
+            if has_functions(drive)
+            else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not kept'
+        )
+        raise ModelError(
+            f"this drive {why}: its runs write no checkpoints, and cannot be resumed. Begin another run where this one "
+            f'ended, by simulation.start = {{ file = "{path}" }}, or run it again.'
+        )
     point = read_checkpoint(checkpoint_file(path))
     if drive not in (point.drive, point.recording["_drive"]):
         raise ModelError(

@@ -109,8 +109,11 @@ def test_a_new_run_forgets_the_checkpoint_of_an_earlier_one(travelling: Drive, s
 
 
 def test_a_run_without_a_checkpoint_cannot_go_on(travelling: Drive, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="there is no checkpoint"):
+    with pytest.raises(ModelError, match=r"there is no checkpoint .* by simulation\.start"):
         simulate(travelling, tmp_path / "run.nc", resume=True)
+    other = travelling.with_({"simulation.integrator": "bdf"})
+    with pytest.raises(ModelError, match=r'"bdf", whose state is not kept.* cannot be resumed.*file = ".*run.nc"'):
+        simulate(other, tmp_path / "run.nc", resume=True)
     with pytest.raises(ModelError, match="none is named"):
         simulate(travelling, resume=True)
     with pytest.raises(ModelError, match=r"checkpoint = 0 s must be above zero"):

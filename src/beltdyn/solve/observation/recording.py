@@ -43,21 +43,9 @@ _GROUP = 64
 """Of these that are filtered together."""
 
 
-_KEPT = (
-    *(
-        "statistics",
-        "watch",
-        "integrator",
-        "_drive",
-        "_system",
-        "_title",
-        "_about",
-        "_instants",
-        "_filter",
-        "_filtered",
-    ),
-    *("_observer", "_findings", "_before", "_done", "_written", "_step", "_channels"),
-)
+_GIVEN = ("_drive", "_system", "_title", "_about", "_instants", "statistics", "watch", "integrator")
+_GROWING = ("_filter", "_filtered", "_observer", "_findings", "_before", "_done", "_written", "_step", "_channels")
+_KEPT = _GIVEN + _GROWING
 """What a recording that is gone on with takes over."""
 
 
