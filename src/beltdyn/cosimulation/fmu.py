@@ -16,7 +16,6 @@ from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outp
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps
 from beltdyn.model.earlier_run import EarlierRun
-from beltdyn.model.earlier_run import EarlierRun
 from beltdyn.results.atomic import atomic_path, is_marked, require_replaceable
 from beltdyn.solve.progress import Report
 
@@ -73,7 +72,7 @@ def fmu(
     Raises
     ------
     ModelError
-        If a name or the version is unknown, the drive holds functions of Python, begins in a result file, or asks for another integrator than
+        If a name or the version is unknown, the drive holds functions of Python or asks for another integrator than
         "generalized_alpha", pythonfmu is missing, or the file cannot be written or would replace one that is not ours.
     ConvergenceError
         If there is no state to begin with.
@@ -89,11 +88,6 @@ def fmu(
         raise ModelError(f"{path} must end in .fmu, by which other programs know such files. Rename it.")
     require_replaceable(path, is_marked, overwrite)
     text, settings = dumps(drive), drive.simulation
-    if isinstance(settings.start, EarlierRun):
-        raise ModelError(
-            f"simulation.start = {settings.start} is in a result file, which an FMU does not hold. Begin in "
-            '"equilibrium", "laid" or "steady".'
-        )
     if isinstance(settings.start, EarlierRun):
         raise ModelError(
             f"simulation.start = {settings.start}: a functional mock-up unit goes to other machines, where that file "

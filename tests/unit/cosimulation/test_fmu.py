@@ -263,8 +263,6 @@ def test_what_cannot_be_written_is_told(short: Drive, tmp_path: Path, monkeypatc
         fmu(short, tmp_path / "drive.zip")
     with pytest.raises(ModelError, match=r"fmi = '1.0' is not a version of FMI that can be written. Take 2.0 or 3.0."):
         fmu(short, file, fmi="1.0")
-    with pytest.raises(ModelError, match="is in a result file, which an FMU does not hold"):
-        fmu(short.with_({"simulation.start": {"file": "run.nc"}}), file)
     with pytest.raises(ModelError, match="Did you mean"):
         fmu(short, file, ["pulley[driver].spead"])
     with pytest.raises(ModelError, match="steps by generalized_alpha"):
