@@ -13,17 +13,15 @@ from beltdyn.results import Run, mesh_error_attribute
 from beltdyn.solve.integrators.trajectory import Chunk
 from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.rest.staying import FINER, bring_to_stand, stand
+from beltdyn.solve.rest.staying import FINER, Standing, bring_to_stand
 from beltdyn.solve.steady_running.neighbour import require_neighbour, search_from, with_length_of
 from beltdyn.solve.steady_running.newton import SteadyWork
-from beltdyn.solve.steady_running.refinement import MeshRule, against_coarser, is_fine, refine
+from beltdyn.solve.steady_running.refinement import MeshRule, against_coarser, is_fine, refine, steady_from_rest
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
-_MOST_STARTS = 4
-"""Meshes at rest from which steady running is sought."""
 _TOLERANCE = 0.01
 """Error of contact forces unless another one is asked for."""
 _TURNS = 2.2
@@ -226,19 +224,12 @@ class _Found(NamedTuple):
 def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None, *, bands: bool) -> _Found:
     """Find steady running from the belt at rest, on a finer mesh where that on a coarse one leads to no other."""
     rest, begun = bring_to_stand(drive, elements), time.perf_counter()
-    for trial in range(1, _MOST_STARTS + 1):
-        search = SteadySearch(rest.drive, rest.system, rest.state, instant)
-        search.run(rest)
-        band = search.friction_band() if bands else {}
-        rule = MeshRule(rest.layer, rest.fineness) if elements is None else MeshRule(0.0, elements=elements)
-        try:
-            errors, rule = refine(search, rule, force_tolerance)
-            break
-        except ConvergenceError:
-            if elements is not None or trial == _MOST_STARTS:
-                raise
-            rest = stand(rest.drive, fineness=FINER * rest.fineness)
-    return _Found(search, band, errors, rule, time.perf_counter() - begun)
+
+    def rule(standing: Standing) -> MeshRule:
+        return MeshRule(0.0, elements=elements) if elements else MeshRule(standing.layer, standing.fineness)
+
+    found = steady_from_rest(rest, instant, rule, force_tolerance, bands=bands)
+    return _Found(found.search, found.band, found.errors, found.rule, time.perf_counter() - begun)
 
 
 def _continued(drive: Drive, start: Run, instant: float, force_tolerance: float, *, bands: bool) -> _Found | None:

@@ -14,7 +14,7 @@ from beltdyn.results import mesh_error_attribute
 from beltdyn.solve.integrators.settling import with_angles
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import FINER, Standing, anchor_at, bring_to_stand, stand
-from beltdyn.solve.steady_running.refinement import MeshRule, errors_at_rest, refine, refine_at_rest
+from beltdyn.solve.steady_running.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
 from beltdyn.system.build_staying import flowing_system, on_other_mesh, smoothed_over_time
@@ -107,14 +107,19 @@ def _meshed(drive: Drive) -> _Meshed:
 
 def _running(meshed: _Meshed, force_tolerance: float | None) -> _Meshed:
     """Steady running at the beginning, on the same mesh, or on one that is refined up to a tolerance."""
-    rest = meshed.rest
-    search = SteadySearch(rest.drive, rest.system, rest.state, rest.drive.simulation.begin)
-    search.run(rest)
-    system, errors = rest.system, meshed.errors
-    if force_tolerance is not None:
-        errors, _ = refine(search, MeshRule(rest.layer, rest.fineness / FINER), force_tolerance)
+    rest, time = meshed.rest, meshed.drive.simulation.begin
+    if force_tolerance is None:
+        search, system, errors = SteadySearch(rest.drive, rest.system, rest.state, time), rest.system, meshed.errors
+        search.run(rest)
+    else:
+        search, rest, _, errors, _ = steady_from_rest(rest, time, _same_mesh, force_tolerance, bands=False)
         system = on_other_mesh(rest.drive, rest.system, search.constant.length)
-    return meshed._replace(system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
+    return meshed._replace(rest=rest, system=system, state=search.running(), speed=search.belt_parameter, errors=errors)
+
+
+def _same_mesh(rest: Standing) -> MeshRule:
+    """The rule of which the next finer mesh is that at rest, refined already."""
+    return MeshRule(rest.layer, rest.fineness / FINER)
 
 
 def with_passage(system: System, state: State, speed: float) -> State:

@@ -1,6 +1,6 @@
 """Meshes finer and finer, until contact forces, tensions and slip no longer depend on them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from typing import NamedTuple
 
@@ -18,6 +18,8 @@ from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
+_MOST_STARTS = 4
+"""Meshes at rest from which steady running is sought."""
 _OF_TENSION = 0.3
 """Change of tensions that is small enough, over that of contact forces."""
 _POINTS = 200
@@ -50,6 +52,56 @@ class MeshRule(NamedTuple):
     def finer(self, factor: float = FINER) -> "MeshRule":
         """The rule of a mesh with so many times the elements."""
         return self._replace(fineness=factor * self.fineness)
+
+
+class Refined(NamedTuple):
+    """Steady running on a mesh that was refined."""
+
+    search: SteadySearch
+    rest: Standing
+    """The same drive at rest, on the mesh from which the search has begun."""
+    band: Mapping[str, FloatArray]
+    """Where dry friction holds tensioners, on that mesh, on which forces as a whole are known."""
+    errors: Mapping[str, float]
+    """Of the mesh, relative; as from `refine`."""
+    rule: MeshRule
+
+
+def steady_from_rest(
+    rest: Standing, time: float, rule: Callable[[Standing], MeshRule], tolerance: float, *, bands: bool
+) -> Refined:
+    """Find steady running from a belt at rest, on a finer mesh where that on a coarse one leads to no other.
+
+    Parameters
+    ----------
+    rest
+        The drive at rest.
+    time
+        At which speeds, torques and schedules are taken, s.
+    rule
+        Gives the rule of the mesh, of which the next finer one is the first to be compared, from the drive at rest.
+    tolerance
+        As for `refine`.
+    bands
+        Whether to find where dry friction holds tensioners, which takes further solutions.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is none.
+    """
+    for trial in range(1, _MOST_STARTS + 1):
+        search = SteadySearch(rest.drive, rest.system, rest.state, time)
+        search.run(rest)
+        band, given = search.friction_band() if bands else {}, rule(rest)
+        try:
+            errors, found = refine(search, given, tolerance)
+            break
+        except ConvergenceError:
+            if given.elements or trial == _MOST_STARTS:
+                raise
+            rest = stand(rest.drive, fineness=FINER * rest.fineness)
+    return Refined(search, rest, band, errors, found)
 
 
 def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict[str, float], MeshRule]:

@@ -190,7 +190,7 @@ class SteadySearch:
         if not (self._try(soft) and self._reach(target) if other.hysteresis.size else self._try(target)):
             raise ConvergenceError(
                 f"steady running is found with fewer elements, but not with the {other.nodes} that force_tolerance "
-                "asks for. Raise force_tolerance, such as to 0.05."
+                "asks for. Give a larger force_tolerance."
             )
 
     def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:

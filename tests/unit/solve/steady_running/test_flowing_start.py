@@ -1,12 +1,13 @@
 """Runs over time on a mesh that stays: they begin at rest or in steady running, and end where steady running says."""
 
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 import pytest
 
 import beltdyn as bd
-from beltdyn.errors import ModelError
+from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Pulley
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import summarize
@@ -14,6 +15,8 @@ from beltdyn.results.curve import centerline
 from beltdyn.results.derived import wear_by_arc, wear_by_belt
 from beltdyn.results.mechanics import element_lengths, recorded_kind
 from beltdyn.solve.integrators.standard import StandardIntegrator
+from beltdyn.solve.steady_running import refinement
+from beltdyn.solve.steady_running.search import SteadySearch
 
 
 @pytest.fixture(scope="module")
@@ -171,3 +174,25 @@ def test_the_belt_that_passed_a_pulley_is_worn_by_it(constant: Drive) -> None:
     assert float(wear.max()) == pytest.approx(work / passed, rel=1e-3)
     worn = float(lengths[wear.values > 1e-3 * work / passed].sum())
     assert passed < worn < passed + run.drive.path.wrap_angles[0] * run.drive.radii[0] + 2.0 * lengths.max()
+
+
+def test_a_mesh_that_leads_to_no_finer_one_is_made_finer_at_rest(
+    constant: Drive, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As the accessory drive with a tolerance of 10 %: the search begins again, on more elements, and is right."""
+    refine, begun = refinement.refine, list[int]()
+
+    def stubborn(search: SteadySearch, *rest: Any) -> Any:
+        begun.append(search.constant.nodes)
+        if len(begun) == 1:
+            raise ConvergenceError("not with so many elements")
+        return refine(search, *rest)
+
+    settings = constant.simulation.replace(duration=1e-3, force_tolerance=0.05)
+    drive = constant.replace(simulation=settings)
+    straight = bd.simulate(drive).dataset
+    monkeypatch.setattr(refinement, "refine", stubborn)
+    found = bd.simulate(drive).dataset
+    assert len(begun) == 2
+    assert begun[1] > begun[0]
+    np.testing.assert_allclose(found.pulley_speed.values[0], straight.pulley_speed.values[0], rtol=1e-4)
