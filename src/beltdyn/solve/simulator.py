@@ -1,5 +1,6 @@
 """A drive that is simulated step by step, with inputs set and outputs read between: for control, coupling, teaching."""
 
+from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 from math import isfinite
@@ -9,20 +10,23 @@ import numpy as np
 
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
-from beltdyn.machines.profiles.functions import Profiles, go_on, profile_integral, profile_value
+from beltdyn.machines.profiles.functions import go_on, profile_integral, profile_value
 from beltdyn.model import Drive, Pulley
 from beltdyn.parts.number_range import number_in
 from beltdyn.results.balance import STORED
 from beltdyn.solve.beginning import begin_on, mesh_of
 from beltdyn.solve.earlier_run import with_instant
 from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
-from beltdyn.solve.integrators.integrator_state import IntegratorState
+from beltdyn.solve.integrators.integrator_state import IntegratorState, grown
 from beltdyn.solve.integrators.trajectory import Statistics, drive_task
 from beltdyn.solve.progress import Report
 from beltdyn.solve.simulate import choose_integrator
 from beltdyn.system.arrays import ENERGY_WORKS
 from beltdyn.system.build_machines import profile_arrays
+from beltdyn.system.moved_center import moving_to, with_movers
 from beltdyn.system.observe import observe_motion
+from beltdyn.system.pulley_state import pulley_center
+from beltdyn.system.state import State
 from beltdyn.system.state_forces import body_forces_at
 
 _OF_PULLEYS = (
@@ -30,6 +34,10 @@ _OF_PULLEYS = (
     *("hub_load", "wrap_angle"),
 )
 """Outputs of each pulley."""
+_CHANGED = ("profiles", "pulleys", "tensioners", "bodies")
+"""Arrays of a system that inputs change."""
+_PLANE = 2
+"""Coordinates of a point."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +45,11 @@ class SimulatorState:
     """Where a simulator was, from `Simulator.save`; it can be pickled, for a simulator of the same drive elsewhere."""
 
     integrator: IntegratorState
+    changed: dict[str, Any]
+    """Arrays of the system that inputs change."""
     pulleys: tuple[Pulley, ...]
-    profiles: Profiles
     anew: bool
+    moves: bool
 
     def __getstate__(self) -> dict[str, Any]:
         return vars(self) | {"pulleys": [pulley.model_dump(mode="json", exclude_none=True) for pulley in self.pulleys]}
@@ -90,7 +100,8 @@ class Simulator:
         self._integration = integrator.begin(drive_task(begin.drive, begin.system, begin.state, Statistics()))
         self._pulleys: tuple[Pulley, ...] = tuple(begin.drive.pulleys)
         self._wanted: dict[int, float] = {}
-        self._anew = True
+        self._centers: dict[int, tuple[float, float]] = {}
+        self._anew, self._moves = True, False
 
     @property
     def time(self) -> float:
@@ -137,6 +148,51 @@ class Simulator:
             raise ModelError(f"pulley = {pulley!r} has a prescribed speed, whatever its torque. Set its speed.")
         self._wanted[number] = number_in("torque", torque, "N*m")
 
+    def set_center(self, pulley: str, center: Sequence[float | str]) -> None:
+        """Let the center of a pulley move on a straight line over the next step, and stay there.
+
+        What moves it does work against the force of the belt on the pulley, which is in ``driver_work`` of the outputs.
+        On the mesh that stays the mesh does not follow: its fine parts stay at the ends of the arcs of the beginning.
+
+        Parameters
+        ----------
+        pulley : str
+            Name of a pulley that no tensioner with a spring carries.
+        center : sequence of 2 float or str
+            At the end of the next step, m, or texts with units.
+
+        Raises
+        ------
+        ModelError
+            If there is no such pulley, a spring holds it, or the place is none.
+        """
+        number = self.drive.number_of(pulley)
+        if any(one.pulley == pulley for one in self.drive.moving_tensioners):
+            raise ModelError(
+                f"pulley = {pulley!r} is carried by a tensioner with a spring, which moves its center. Set the centers "
+                "of other pulleys, or give it a fixed tensioner in the drive file."
+            )
+        if isinstance(center, str) or len(center) != _PLANE:
+            raise ModelError(f"center = {center!r} must be two lengths, [x, y]. Give both.")
+        x, y = (number_in("center", one, "m") for one in center)
+        self._centers[number] = x, y
+
+    def center(self, pulley: str) -> tuple[float, float]:
+        """Where the center of a pulley is, m.
+
+        Parameters
+        ----------
+        pulley : str
+            Its name.
+
+        Raises
+        ------
+        ModelError
+            If there is no such pulley.
+        """
+        number = self.drive.number_of(pulley)
+        return pulley_center(self._integration.system, number, self._integration.state.position)
+
     def step(self, until: float) -> None:
         """Simulate up to an instant.
 
@@ -156,6 +212,8 @@ class Simulator:
             raise ModelError(f"until = {until:g} s is not after the present time, {self.time:g} s. Give a later one.")
         if self._wanted:
             self._take_inputs(until)
+        if self._centers or self._moves:
+            self._move_centers(until)
         kinks = sorted({kink for kink in self._kinks() if self.time < kink < until})
         for stop in (*kinks, until):
             if self._anew:
@@ -189,6 +247,17 @@ class Simulator:
         self._integration.system = self._integration.system._replace(profiles=after)
         self._anew = True
 
+    def _move_centers(self, until: float) -> None:
+        """Set centers in motion that are to be elsewhere at an instant (s), and stop the others."""
+        now, state, own = self._integration.system, self._integration.state, len(self.drive.moving_tensioners)
+        new = [number for number in self._centers if now.pulleys.carrier[number] < 0]
+        system = with_movers(now, new)
+        places = State(*(np.pad(one, (0, len(new))) for one in (state.position, state.velocity, state.acceleration)))
+        system, places = moving_to(system, places, own, self._centers, until - self.time)
+        self._integration.exchange(system, grown(state, places.position, places.velocity))
+        self._moves, self._anew = bool(self._centers), True
+        self._centers.clear()
+
     def outputs(self) -> dict[str, float]:
         """Outputs at the present time by their names, in SI units.
 
@@ -216,15 +285,17 @@ class Simulator:
             "hub_load": np.hypot(*seen.hub_force[0].T),
             "wrap_angle": seen.wrap_angle[0],
         }
-        tensioners = position[0, position.shape[1] - len(system.tensioners) :]
+        first = position.shape[1] - len(system.tensioners)
+        tensioners = position[0, first : first + len(self.drive.moving_tensioners)]
         stored = np.concatenate([getattr(seen, name) for name in STORED])
         rows = [*(of_pulleys[name] for name in _OF_PULLEYS), seen.span_tension[0], tensioners, stored, state.work]
         return dict(zip(output_names(self.drive), map(float, np.concatenate(rows)), strict=True))
 
     def save(self) -> SimulatorState:
         """Keep where it is, to which `restore` goes back; inputs that wait for the next step are not kept."""
-        profiles = deepcopy(self._integration.system.profiles)
-        return SimulatorState(deepcopy(self._integration.state), self._pulleys, profiles, self._anew)
+        system = self._integration.system
+        changed = deepcopy({name: getattr(system, name) for name in _CHANGED})
+        return SimulatorState(deepcopy(self._integration.state), changed, self._pulleys, self._anew, self._moves)
 
     def restore(self, saved: SimulatorState) -> None:
         """Go back to where it was; what follows is the same to the last bit.
@@ -234,10 +305,11 @@ class Simulator:
         saved : SimulatorState
             From `save` of this simulator.
         """
-        self._integration.state = deepcopy(saved.integrator)
-        self._integration.system = self._integration.system._replace(profiles=deepcopy(saved.profiles))
-        self._pulleys, self._anew = saved.pulleys, saved.anew
+        system = self._integration.system._replace(**deepcopy(saved.changed))
+        self._integration.exchange(system, deepcopy(saved.integrator))
+        self._pulleys, self._anew, self._moves = saved.pulleys, saved.anew, saved.moves
         self._wanted.clear()
+        self._centers.clear()
 
 
 def output_names(drive: Drive) -> list[str]:

@@ -137,7 +137,9 @@ def _add_tensioners(
         forces.power[TENSIONER_LOSS] += own.loss
         forces.stored[SPRING_ENERGY] += own.energy
         unknown = system.bodies[at - first].unknown
-        if unknown >= 0 and differentiates_forces(factors):
+        if unknown < 0:  # what moves it holds the balance
+            forces.power[DRIVER_WORK] -= forces.force[at - first] * motion.velocity[at]
+        elif differentiates_forces(factors):
             by_place = own.by_position + x * center.ddx + y * center.ddy
             corner[unknown, unknown] -= factors.by_position * by_place + factors.by_velocity * own.by_velocity
 

@@ -53,3 +53,19 @@ def tensioner_row(tensioner: MovingTensioner, pulley: int, center: FloatArray, g
     made = row(TENSIONER, pulley=pulley, kind=list(_MOVING).index(tensioner.kind))
     fill(made[tensioner.kind], tensioner.values(center, gradient))
     return made
+
+
+def free_slide(pulley: int, center: tuple[float, float]) -> np.record:
+    """Row of `TENSIONER` of a carrier that slides along a line without spring, friction and stops.
+
+    Parameters
+    ----------
+    pulley
+        Number of the pulley that it carries.
+    center
+        Where that is at coordinate zero, m.
+    """
+    made = row(TENSIONER, pulley=pulley, kind=list(_MOVING).index("sliding"))
+    spring = {"creep_speed": 1.0, "lower": -np.inf, "upper": np.inf}
+    fill(made["sliding"], {"center": center, "direction": (1.0, 0.0), "spring": spring})
+    return made

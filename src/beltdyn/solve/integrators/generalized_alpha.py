@@ -114,6 +114,11 @@ class AlphaIntegration:
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in vars(self).items() if name != "_equations"}
 
+    def exchange(self, system: System, state: IntegratorState) -> None:
+        """Go on with another system and state; after more than an exchange of numbers `restart` is needed."""
+        self.system, self.state = system, state
+        vars(self).pop("_equations", None)
+
     def chunks(self) -> Iterator[Chunk]:
         """Integrate from where it is to the end; see `Integrator`."""
         task = self.task

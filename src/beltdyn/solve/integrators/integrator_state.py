@@ -151,6 +151,31 @@ def empty_steps(system: System, count: int) -> Steps:
     )
 
 
+def grown(state: IntegratorState, position: FloatArray, velocity: FloatArray) -> IntegratorState:
+    """The same integration with other places and speeds, of which there may be more at the end.
+
+    Parameters
+    ----------
+    state
+        Where it is; copied where it grows.
+    position, velocity : ndarray, shape (n N + D,)
+        The new ones.
+    """
+    more = position.size - state.position.size
+
+    def longer(vector: FloatArray) -> FloatArray:
+        return np.pad(vector, [(0, 0)] * (vector.ndim - 1) + [(0, more)])
+
+    return state._replace(
+        position=position.copy(),
+        velocity=velocity.copy(),
+        acceleration=longer(state.acceleration),
+        auxiliary=longer(state.auxiliary),
+        impulse=longer(state.impulse),
+        trial=Trial(*map(longer, state.trial)),
+    )
+
+
 def new_state(system: System, time: float, step: float, position: FloatArray, velocity: FloatArray) -> IntegratorState:
     """Begin an integration.
 
