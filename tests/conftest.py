@@ -100,6 +100,7 @@ def layout(drive: Drive) -> Layout:
         element_coordinate=(np.arange(elements) + 0.5) * length / elements,
         belt_coordinate=(np.arange(5 * elements) + 0.5) * length / (5 * elements),
         coordinate_names=drive.belt.element_kind.coordinates,
+        bodies=("driver", "driven"),
     )
 
 

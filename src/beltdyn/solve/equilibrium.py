@@ -36,11 +36,12 @@ def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult
     >>> rest.dataset.span_tension.values.round().tolist()  # N
     [27.0, 27.0]
     """
-    drive = on_equal_elements(drive)
+    given, drive = drive.text, on_equal_elements(drive)
     rest = bring_to_rest(drive, progress)
     system = standing(rest.system)
     recording = Recording(drive, system, None, f"{drive.title} at rest, in static equilibrium", progress)
     recording.start(rest.drive, system, rest.unstable)
+    recording.note(drive_as_given=given)
     recording.take(Chunk.start(system, rest.state), "equilibrium")
     recording.end("completed")
     return static_result(recording.run())
