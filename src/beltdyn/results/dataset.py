@@ -123,16 +123,17 @@ def read_dataset(path: Path) -> "xr.Dataset":
     Raises
     ------
     ModelError
-        If the file cannot be read, is not a result of beltdyn, or has a format that is not known yet.
+        If the file cannot be read, is not a result of beltdyn, or has a format that is not known yet; later, where
+        values are read, if they are damaged.
     """
-    import xarray as xr
+    from beltdyn.results.stored_values import open_values
 
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise ValueError("it is not a file")
         with h5py.File(path, "r"):
             pass  # h5netcdf complains on standard error where HDF5 cannot open a file
-        dataset = xr.open_dataset(path, engine="h5netcdf", decode_times=False)
+        dataset = open_values(path)
     except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
         raise ModelError(unreadable(path, error)) from error
     try:
