@@ -31,10 +31,10 @@ from beltdyn.solve import simulate
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
-MACHINES = ROOT / "docs" / "machines.md"
+MACHINES = ROOT / "docs" / "machines"
 DRIVE_FILE = ROOT / "docs" / "drive_file.md"
 CATALOGUE = ROOT / "docs" / "catalogue.md"
-RESULTS = ROOT / "docs" / "results.md"
+RESULTS = ROOT / "docs" / "results"
 
 
 def kinds_of(family: ModuleType) -> list[type[Part]]:
@@ -46,6 +46,11 @@ PARTS: dict[Path, list[type[Part]]] = {
     DRIVE_FILE: [Belt, Pulley, Contact, Simulation, Steady, Limits],
     MACHINES: [Harmonic, *(kind for family in (loads_, links, tensioners) for kind in kinds_of(family))],
 }
+
+
+def pages(chapter: Path) -> list[Path]:
+    """A page, and those below it where there are any."""
+    return [chapter.with_suffix(".md"), *sorted(chapter.with_suffix("").glob("*.md"))]
 
 
 def blocks(file: Path, language: str) -> list[str]:
@@ -70,7 +75,7 @@ def test_the_readmes_drive_is_the_papers(drive: Drive) -> None:
 
 @pytest.mark.parametrize(("document", "part"), [(file, part) for file, parts in PARTS.items() for part in parts])
 def test_every_key_is_documented(document: Path, part: type[Part]) -> None:
-    text = document.read_text(encoding="utf-8")
+    text = "".join(page.read_text(encoding="utf-8") for page in pages(document))
     for key, field in part.model_fields.items():
         description = re.escape(str(field.description)[1:])
         assert key == "kind" or re.search(rf"\| `{key}` \| .{description} \|", text)
@@ -80,9 +85,9 @@ def test_every_key_is_documented(document: Path, part: type[Part]) -> None:
 def test_every_key_of_a_machine_stands_under_its_kind(part: type[Part]) -> None:
     """The keys that all loads share stand above their kinds."""
     kind = part.model_json_schema()["properties"]["kind"]["const"]
-    group = "Tensioners" if "pulley" in part.model_fields else "Loads" if "harmonics" in part.model_fields else "Hub"
-    chapter = re.split(r"^## ", MACHINES.read_text(encoding="utf-8"), flags=re.MULTILINE)
-    sections = next(text for text in chapter if text.startswith(group)).split("\n### ")
+    fields = part.model_fields
+    group = "tensioners" if "pulley" in fields else "loads" if "harmonics" in fields else "hub_chains"
+    sections = (MACHINES / f"{group}.md").read_text(encoding="utf-8").split("\n## ")
     (section,) = [text for text in sections if f'`kind = "{kind}"`' in text.splitlines()[0]]
     missing = [key for key in part.model_fields if key != "kind" and f"| `{key}` |" not in section]
     shared = [key for key in missing if f"| `{key}` |" in sections[0]]
@@ -122,7 +127,7 @@ def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: P
         assert loads(dumps(drive)) == drive
 
 
-@pytest.mark.parametrize("example", blocks(MACHINES, "toml"))
+@pytest.mark.parametrize("example", [block for page in pages(MACHINES) for block in blocks(page, "toml")])
 def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) -> None:
     """Their pulleys say only what differs; what a motor drives has no other torque."""
     data, changes = tomllib.loads(new_drive), tomllib.loads(example)
@@ -136,7 +141,14 @@ def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) ->
 @pytest.mark.parametrize(
     "document",
     [
-        *("README.md", "docs/fmu.md", "docs/index.md", "docs/machines.md", "docs/step_by_step.md", "docs/studies.md"),
+        *(
+            "README.md",
+            "docs/fmu.md",
+            "docs/index.md",
+            "docs/machines/loads.md",
+            "docs/step_by_step.md",
+            "docs/studies.md",
+        ),
         "docs/tutorial.md",
     ],
 )
@@ -213,11 +225,11 @@ def test_formulas_of_all_pages_are_written_without_leftovers() -> None:
     assert count > 1000
 
 
-def test_python_of_the_results_page_runs(new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_python_of_the_pages_on_results_runs(new_drive: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its drive has an alternator, and runs longer."""
     monkeypatch.chdir(tmp_path)
     simulate(loads(new_drive), "drive.nc")
-    code = "\n".join(blocks(RESULTS, "python"))
+    code = "\n".join(block for page in pages(RESULTS) for block in blocks(page, "python"))
     assert {"alternator", "start=0.9"} <= set(re.findall(r"alternator|start=0.9", code))
     exec(code.replace("alternator", "driven").replace("start=0.9", "start=0.05"), {})
 
@@ -279,10 +291,9 @@ def test_the_map_names_every_folder_and_files_that_exist() -> None:
     assert [name for name in named if not (source / name).exists()] == []
 
 
-def test_the_results_page_names_every_figure() -> None:
+def test_the_page_on_figures_names_every_one() -> None:
     """Those that are drawn where none is chosen, and those on request; and which show a drive at rest."""
-    text = RESULTS.read_text(encoding="utf-8")
-    section = text[text.index("## Figures") :]
+    section = (RESULTS / "figures.md").read_text(encoding="utf-8")
     essential, others = section.split("Others are drawn")[:2]
     for name, figure in FIGURES.items():
         assert name in (others if figure.by_default is on_request else essential), name
