@@ -12,8 +12,8 @@ from cyclopts.validators import Number
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.batch import analyse_several
+from beltdyn.cli.given import read_given, takes_runs
 from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output, write_extras
-from beltdyn.errors import ModelError
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
@@ -74,17 +74,14 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         extras = Extras(csv, report)
         if more:
             return analyse_several(analysis, files, output, jobs, extras, strict=strict, force=force, **options)
-        from beltdyn.model import load
         from beltdyn.results import open_result
         from beltdyn.results.dataset import is_result
 
         drive: Drive | Run
         if options.get("resume") and output is None and is_result(file):
             drive, path, files = open_result(file).drive, file, ()
-        elif _takes_runs(analysis) and is_result(file):
-            drive, path = _run_of(file), output or analysis.result_file(file)
         else:
-            drive, path = load(file), output or analysis.result_file(file)
+            drive, path = read_given(analysis, file), output or analysis.result_file(file)
         require_output(path, files, extras, force)
         result = analyse_to(analysis, drive, path, force, **options)
         write_extras(result, path, extras, force)
@@ -104,33 +101,6 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
     return command
 
 
-def _takes_runs(analysis: Analysis) -> bool:
-    """Whether a run may stand in place of the drive: the first parameter of the function may be one."""
-    from beltdyn.results import Run
-
-    first = next(iter(signature(analysis.function, eval_str=True).parameters.values()))
-    return Run in get_args(first.annotation)
-
-
-def _run_of(file: Path) -> "Run":
-    """The run of a result file.
-
-    Raises
-    ------
-    ModelError
-        If it holds other results.
-    """
-    from beltdyn.results import Run, open_result
-
-    found = open_result(file)
-    if not isinstance(found, Run):
-        raise ModelError(
-            f"{file} holds results of {found.kind}, and no run. Give the result file of `beltdyn run` or "
-            "`beltdyn steady`, or a drive file."
-        )
-    return found
-
-
 def _in_words(annotation: Any) -> Any:
     """The type of an option, without results and studies in a union, which no word of a command line gives."""
     from beltdyn.parts.part import Part
@@ -146,6 +116,6 @@ def _help(analysis: Analysis, own: dict[str, Parameter]) -> str:
     summary, _, rest = text.partition("\n\nParameters\n----------\n")
     entries = [entry for entry in re.split(r"\n(?=\S)", rest.partition("\n\n")[0]) if entry.partition("\n")[0] in own]
     shared = _PARAMETERS.strip().format(file=analysis.result_file(Path("FILE.toml")))
-    run = " Or the result file of a run, which stands for its drive." if _takes_runs(analysis) else ""
-    files = ["file", f"    The drive file, TOML.{run}", "more", "    More drive files."]
+    run = " Or the result file of a run, which stands for its drive." if takes_runs(analysis) else ""
+    files = ["file", f"    The drive file, TOML.{run}", "more", "    More of them."]
     return f"{summary}\n{_ABOUT}\nParameters\n----------\n" + "\n".join([*files, *entries, shared]) + "\n"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import lines_of_file, show, show_error, show_table, show_warnings
+from beltdyn.cli.given import read_given
 from beltdyn.cli.output import Extras, doubt, require_output, show_leftovers, write_extras
 from beltdyn.cli.progress import runs_bar
 from beltdyn.errors import ModelError, SimulationError
@@ -14,6 +15,7 @@ from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
+    from beltdyn.results import Run
     from beltdyn.solve import Ending
 
 
@@ -35,7 +37,7 @@ def analyse_several(
     analysis
         The analysis.
     files
-        Drive files.
+        Drive files, or result files of runs where the analysis takes them.
     folder
         Where to write the result files; by default beside the drive files.
     jobs
@@ -60,7 +62,7 @@ def analyse_several(
         Before anything is computed, if a drive file cannot be used, two drives would share a result file, or other
         files than earlier results would be replaced.
     """
-    drives = _load_all(files)
+    given = _read_all(analysis, files)
     results = _result_files(analysis, files, folder)
     for path in results.values():
         require_output(path, files, extras, force)
@@ -71,7 +73,7 @@ def analyse_several(
     from beltdyn.solve.batch import analyse_all
 
     with runs_bar() as report:
-        wanted = {results[file]: drives[file] for file in files}
+        wanted = {results[file]: given[file] for file in files}
         endings = analyse_all(analysis, wanted, report, jobs, force, **options)
     ends = {file: endings[results[file]] for file in files}
     _show_endings(ends, results)
@@ -87,20 +89,18 @@ def analyse_several(
     return doubt([warning for end in ends.values() for warning in end.warnings]) if strict else 0
 
 
-def _load_all(files: Sequence[Path]) -> dict[Path, "Drive"]:
-    """Read drive files, or say what is wrong with all of them."""
-    from beltdyn.model import load
-
-    drives: dict[Path, Drive] = {}
+def _read_all(analysis: Analysis, files: Sequence[Path]) -> "dict[Path, Drive | Run]":
+    """Read drive files and runs, or say what is wrong with all of them."""
+    given: dict[Path, Drive | Run] = {}
     wrong: list[str] = []
     for file in files:
         try:
-            drives[file] = load(file)
+            given[file] = read_given(analysis, file)
         except ModelError as error:
             wrong += lines_of_file(file, error)
     if wrong:
         raise ModelError("\n".join(wrong))
-    return drives
+    return given
 
 
 def _result_files(analysis: Analysis, files: Sequence[Path], folder: Path | None) -> dict[Path, Path]:

@@ -58,7 +58,7 @@ def simulate_all(
 
 def analyse_all(
     analysis: Analysis,
-    drives: Mapping[Path, Drive] | Mapping[str, Drive],
+    drives: Mapping[Path, Drive | Run] | Mapping[str, Drive | Run],
     progress: Callable[[BatchProgress], None] | None = None,
     jobs: int | None = None,
     overwrite: bool = False,
@@ -71,7 +71,9 @@ def analyse_all(
     ----------
     analysis : Analysis
         The analysis.
-    drives, progress, jobs, overwrite, finish
+    drives : mapping
+        Result file -> drive, or a run where the analysis takes one in place of it.
+    progress, jobs, overwrite, finish
         As for `simulate_all`.
     **options
         Those of the analysis.
@@ -90,7 +92,7 @@ def analyse_all(
     files = {Path(file): drive for file, drive in drives.items()}
     for file, drive in files.items():
         rule = f"{file.name} is computed by another process, which a function of Python does not reach"
-        refuse_functions(drive, rule, "call `simulate` or another analysis for this drive by itself.")
+        refuse_functions(_drive_of(drive), rule, "call `simulate` or another analysis for this drive by itself.")
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
     stop = SPAWN.Event()
 
@@ -100,18 +102,22 @@ def analyse_all(
 
     tell({}, 0)
     if waiting:
-        _compile(waiting[0][1], stop)
+        _compile(_drive_of(waiting[0][1]), stop)
     while waiting and not stop.is_set():
         endings |= _run_pool(waiting, min(jobs or usable_cores(), len(waiting)), stop, tell, work)
         waiting = [(file, drive) for file, drive in waiting if file not in endings]
     return {file: endings.get(file, Ending("not started")) for file in files}
 
 
-def _longest_first(drives: Mapping[Path, Drive]) -> list[tuple[Path, Drive]]:
+def _drive_of(given: Drive | Run) -> Drive:
+    return given.drive if isinstance(given, Run) else given
+
+
+def _longest_first(drives: Mapping[Path, Drive | Run]) -> list[tuple[Path, Drive | Run]]:
     """Order drives so that no long run is left to the end: by number of contact points and simulated time."""
 
-    def size(item: tuple[Path, Drive]) -> float:
-        drive = item[1]
+    def size(item: tuple[Path, Drive | Run]) -> float:
+        drive = _drive_of(item[1])
         return drive.elements * drive.contact.quadrature_points * drive.simulation.duration
 
     return sorted(drives.items(), key=size, reverse=True)
@@ -126,7 +132,7 @@ def _compile(drive: Drive, stop: SharedEvent) -> None:
 
 
 def _run_pool(
-    drives: Sequence[tuple[Path, Drive]],
+    drives: Sequence[tuple[Path, Drive | Run]],
     jobs: int,
     stop: SharedEvent,
     tell: Callable[[Mapping[Path, float], int], None],

@@ -151,7 +151,7 @@ def heeding(tell: Callable[[Progress], None] | None = None) -> Callable[[Progres
     return heed
 
 
-def analyse(place: int, file: Path, drive: Drive, work: Work) -> Ending:
+def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
     """Analyse a drive into a file, and finish what is complete.
 
     Parameters
@@ -161,7 +161,7 @@ def analyse(place: int, file: Path, drive: Drive, work: Work) -> Ending:
     file
         The result file.
     drive
-        The drive.
+        The drive, or a run in place of it.
     work
         What is asked of it.
 
@@ -193,10 +193,10 @@ def analyse(place: int, file: Path, drive: Drive, work: Work) -> Ending:
         return Ending("failed", f"{type(error).__name__}: {error}")
 
 
-def _kept(drive: Drive, file: Path, error: str) -> Ending:
+def _kept(drive: Drive | Run, file: Path, error: str) -> Ending:
     """How a simulation ended that could not go on, with what it left."""
     try:
-        return replace(_ended(Run(None, drive, file)), error=error)
+        return replace(_ended(Run(None, drive.drive if isinstance(drive, Run) else drive, file)), error=error)
     except (BeltdynError, OSError):  # its file was taken away
         return Ending("failed", error)
 
