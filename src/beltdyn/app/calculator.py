@@ -5,14 +5,36 @@ import multiprocessing
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
-from beltdyn.app.computing import Answer, Asked, answer, prepare
+from beltdyn.app.computing import Answer, Asked, Preparations, answer, begin, look_ahead
 
 
 class Calculator:
     """A process that answers one question after the other; it is started with the first."""
 
     def __init__(self) -> None:
+        self._spawning = multiprocessing.get_context("spawn")
+        self._preparations = Preparations(self._spawning.Event(), self._spawning.Event())
         self._pool: ProcessPoolExecutor | None = None
+
+    @property
+    def preparing(self) -> bool:
+        """Whether kernels are compiled, which answers may wait for."""
+        return any(flag.is_set() for flag in self._preparations)
+
+    def look_ahead(self, asked: Asked) -> None:
+        """Start the process before there is a question, with a drive for which it makes its kernels ready.
+
+        Parameters
+        ----------
+        asked : Asked
+            A question about a drive at rest.
+        """
+        self._process().submit(look_ahead, asked)
+
+    def _process(self) -> ProcessPoolExecutor:
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(1, self._spawning, begin, (self._preparations,))
+        return self._pool
 
     async def ask(self, asked: Asked) -> Answer:
         """Compute what a tab wants to know.
@@ -27,11 +49,8 @@ class Calculator:
         Answer
             Of a process that ended before it was done, as for want of memory, it says so; the next one is asked anew.
         """
-        if self._pool is None:
-            spawning = multiprocessing.get_context("spawn")
-            self._pool = ProcessPoolExecutor(max_workers=1, mp_context=spawning, initializer=prepare)
         try:
-            return await asyncio.get_running_loop().run_in_executor(self._pool, answer, asked)
+            return await asyncio.get_running_loop().run_in_executor(self._process(), answer, asked)
         except BrokenProcessPool:
             self.close()
             return Answer(
@@ -46,3 +65,5 @@ class Calculator:
             pool.shutdown(wait=False, cancel_futures=True)
             for process in processes:
                 process.kill()
+        for flag in self._preparations:
+            flag.clear()

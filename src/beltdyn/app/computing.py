@@ -6,9 +6,11 @@ import signal
 import threading
 import time
 import warnings
+from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
+from beltdyn.app.preparing import tell_of_compilation
 from beltdyn.errors import BeltdynError
 from beltdyn.model import Drive, advise, install, loads, unstable_balance
 from beltdyn.results import Run
@@ -16,9 +18,14 @@ from beltdyn.results.rest_sheet import rest_sheet
 from beltdyn.results.sheet import sheet
 from beltdyn.results.sheet_parts import Facts, Table
 
+if TYPE_CHECKING:
+    from beltdyn.solve.progress import Progress
+
 _MODES = 6
 _MOST_TABS = 8
 """Tabs whose last steady running is remembered."""
+_YIELDING = 10
+"""How far the process that compiles ahead gives way to others, of 19."""
 
 
 class Asked(NamedTuple):
@@ -78,11 +85,60 @@ class _Known(NamedTuple):
 _known: dict[str, _Known] = {}
 
 
+class Preparations(NamedTuple):
+    """What is set while kernels are compiled.
+
+    Attributes
+    ----------
+    here, ahead : multiprocessing Event
+        By the process that answers, and by that which compiles what will be needed later.
+    """
+
+    here: SharedEvent
+    ahead: SharedEvent
+
+
+_preparations: Preparations | None = None
+
+
 def prepare() -> None:
     """Make the process ready: it leaves Ctrl-C to the server, and ends with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore")
     threading.Thread(target=_follow_parent, daemon=True).start()
+
+
+def begin(preparations: Preparations) -> None:
+    """Make the process that answers ready."""
+    global _preparations
+    prepare()
+    _preparations = preparations
+    _tell_by(preparations.here)
+
+
+def _tell_by(flag: SharedEvent) -> None:
+    tell_of_compilation(lambda compiles: flag.set() if compiles else flag.clear())
+
+
+def look_ahead(asked: Asked) -> None:
+    """Load or compile what answers need, before there is a question.
+
+    What a drive at rest needs is loaded here; running and modes are left to a process of its own, which gives way to
+    others.
+    """
+    answer(asked)
+    if _preparations is not None:
+        spawning = multiprocessing.get_context("spawn")
+        spawning.Process(target=_compile_ahead, args=(asked, _preparations.ahead), daemon=True).start()
+
+
+def _compile_ahead(asked: Asked, flag: SharedEvent) -> None:
+    prepare()
+    if hasattr(os, "nice"):
+        os.nice(_YIELDING)
+    _tell_by(flag)
+    for what in ("running", "modes"):
+        answer(asked._replace(what=what))
 
 
 def _follow_parent() -> None:
@@ -100,6 +156,9 @@ def answer(asked: Asked) -> Answer:
         return Answer(parts, told, "", time.perf_counter() - begun)
     except BeltdynError as error:
         return Answer((), (), str(error), time.perf_counter() - begun)
+    finally:
+        if _preparations is not None:
+            _preparations.here.clear()
 
 
 Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...]]
@@ -110,10 +169,16 @@ def _rest(asked: Asked) -> Shown:
     from beltdyn.solve import bring_to_rest
 
     given = loads(asked.text, asked.folder)
-    rest = bring_to_rest(given)
+    rest = bring_to_rest(given, _hear)
     unstable = [str(unstable_balance(rest.unstable))] if rest.unstable else []
     told = (*unstable, *advise(given, install(given)))
     return rest_sheet(given, rest.drive, rest.installation).parts, told
+
+
+def _hear(progress: "Progress") -> None:
+    """Tell of compilation in processes that the search for equilibrium starts, too."""
+    if _preparations is not None:
+        (_preparations.here.set if progress.phase == "compiling" else _preparations.here.clear)()
 
 
 def _running(asked: Asked) -> Shown:

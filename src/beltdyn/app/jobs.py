@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, get_args
 
 from beltdyn.analyses import ANALYSES
 from beltdyn.app.computing import prepare
+from beltdyn.app.preparing import PREPARING, tell_of_compilation
 from beltdyn.errors import BeltdynError, ModelError
 from beltdyn.model import loads
 from beltdyn.parts.error_location import shorten
@@ -53,6 +54,9 @@ class Step(NamedTuple):
     phase: str
     remaining: float
     glimpse: "Glimpse | None" = None
+
+
+_STARTING = Step(0.0, "starting", math.nan)
 
 
 class Outcome(NamedTuple):
@@ -185,7 +189,7 @@ class Job:
             target=_analyse, args=(name, text, folder, result, dict(options), told, self._stop), daemon=True
         )
         self.name = name
-        self.step = Step(0.0, "starting", float("nan"))
+        self.step = _STARTING
         self.outcome: Outcome | None = None
         self._ending: Outcome | None = None
         self._process.start()
@@ -234,6 +238,7 @@ def _analyse(
     os.environ.setdefault("OMP_NUM_THREADS", "1")
 
     teller = _Teller(told, result)
+    tell_of_compilation(teller.tell_of_compilation)
 
     def heed(progress: Any) -> None:
         teller.tell(progress)
@@ -257,6 +262,7 @@ class _Teller:
         self._told, self._result = told, result
         self._watcher: Any = None
         self._glimpse: Glimpse | None = None
+        self._step = _STARTING
         self._last = -math.inf
         self._begun: dict[str, tuple[float, float]] = {}
 
@@ -269,7 +275,13 @@ class _Teller:
         if progress.phase == "integrating":
             self._look()
         part = progress.time / progress.duration
-        self._told.send(Step(part, progress.phase, self._remaining(progress, part, now), self._glimpse))
+        phase = PREPARING if progress.phase == "compiling" else progress.phase
+        self._step = Step(part, phase, self._remaining(progress, part, now), self._glimpse)
+        self._told.send(self._step)
+
+    def tell_of_compilation(self, compiles: bool) -> None:
+        """Tell when the analysis waits for its kernels, and when it goes on."""
+        self._told.send(self._step._replace(phase=PREPARING) if compiles else self._step)
 
     def _remaining(self, progress: Any, part: float, now: float) -> float:
         """Time that is left, s, by the pace that the analysis tells, or else by that of this phase until now."""

@@ -1,11 +1,13 @@
 """Numbers below the canvas: the drive at rest, in steady running, and its modes, which follow each change."""
 
+import time
 from uuid import uuid4
 
 from nicegui import background_tasks, ui
 
 from beltdyn.app.calculator import Calculator
 from beltdyn.app.computing import Answer, Asked
+from beltdyn.app.preparing import PREPARING
 from beltdyn.app.session import Session
 from beltdyn.app.sheet_view import show_parts
 from beltdyn.errors import BeltdynError
@@ -14,6 +16,8 @@ from beltdyn.results.rest_sheet import rest_sheet
 
 _TITLES = {"rest": "At rest", "running": "Running", "modes": "Modes"}
 _PERCENT, _MINUTE = 0.01, 60.0
+_OFTEN, _SOON = 0.5, 2.0
+"""Time between two looks at what an answer waits for, and time after which that is said, s."""
 
 
 class NumbersView:
@@ -43,6 +47,8 @@ class NumbersView:
                     self._load = self._slider("load", 0, 200)
                 self._state = ui.label().classes("text-caption").props('role="status"').mark("state")
         self._box = ui.column().classes("w-full gap-2 bd-tables").mark("numbers")
+        self._begun = 0.0
+        self._timer = ui.timer(_OFTEN, self._say_why, active=False)
 
     def _slider(self, name: str, low: int, high: int) -> ui.slider:
         label = ui.label().classes("text-caption").style("min-width: 7em")
@@ -75,7 +81,7 @@ class NumbersView:
             self._wanted = asked
             self._say("computing …")
             if not self._busy:
-                self._busy = True
+                self._busy = self._timer.active = True
                 background_tasks.create(self._work(self._calculator))
 
     def _estimate(self) -> None:
@@ -92,14 +98,21 @@ class NumbersView:
         """Answer the latest question, until there is none."""
         try:
             while (asked := self._wanted) is not None:
-                self._wanted = None
+                self._wanted, self._begun = None, time.perf_counter()
                 answer = await calculator.ask(asked)
                 if asked == self._shown and not self._box.is_deleted:
                     self._show(answer)
                     seconds = f"{answer.seconds:.2g}" if answer.seconds < _MINUTE else f"{answer.seconds:.0f}"
                     self._say(f"{_TITLES[asked.what].lower()}, computed in {seconds} s")
         finally:
-            self._busy = False
+            self._busy = self._timer.active = False
+
+    def _say_why(self) -> None:
+        """Say what an answer waits for that is not there soon."""
+        waited = time.perf_counter() - self._begun
+        if self._busy and self._calculator is not None and self._shown is not None and waited > _SOON:
+            what = PREPARING if self._calculator.preparing else "computing …"
+            self._say(f"{what}: {waited:.0f} s")
 
     def _say(self, text: str) -> None:
         if self._calculator is not None:

@@ -23,6 +23,7 @@ duration = 0.5
 output_interval = "1 ms"
 """
 """The drive file to begin with: a belt without pulleys."""
+_USUAL = "alternator_drive"
 
 
 class Example(NamedTuple):
@@ -59,6 +60,13 @@ class Workspace:
         if self._results is None:
             self._results = TemporaryDirectory(prefix="beltdyn-app-", ignore_cleanup_errors=True)
         return Path(self._results.name)
+
+    @property
+    def usual_drive(self) -> str:
+        """The drive file that a new tab opens, or else an example: most drives need the kernels that it needs."""
+        if self.first is not None:
+            return self.folder.read(self.first)
+        return next(one.text for one in examples() if one.name == _USUAL)
 
     def close(self) -> None:
         """End what works for the tabs."""

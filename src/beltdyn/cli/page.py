@@ -42,11 +42,18 @@ def app(
             f'{error.name} is not installed, which the page needs. Install it: pip install "beltdyn[app]"'
         ) from None
     from beltdyn.app.calculator import Calculator
+    from beltdyn.app.computing import Asked
     from beltdyn.app.folder import Folder
     from beltdyn.app.workspace import Workspace
 
     folder = Folder(Path() if file is None else file.parent)
     if file is not None:
         folder.read(file.name)  # what cannot be read is told here
-    workspace = Workspace(folder, None if file is None else file.name, Calculator())
-    serve(workspace, port, show, lambda address: write(f"The page is at {address}\nCtrl-C ends it."))
+    calculator = Calculator()
+    workspace = Workspace(folder, None if file is None else file.name, calculator)
+
+    def begin(address: str) -> None:
+        write(f"The page is at {address}\nCtrl-C ends it.")
+        calculator.look_ahead(Asked("rest", "", workspace.usual_drive, folder.root))
+
+    serve(workspace, port, show, begin)

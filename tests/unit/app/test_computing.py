@@ -3,6 +3,7 @@
 import asyncio
 from pathlib import Path
 
+import psutil
 import pytest
 
 from beltdyn.app.calculator import Calculator
@@ -61,6 +62,26 @@ def test_a_process_answers_and_one_that_was_killed_is_replaced(drive_text: str) 
             assert "belt = 3" in (await calculator.ask(Asked("rest", "d", "belt = 3", HERE))).error
         finally:
             calculator.close()
+
+    asyncio.run(ask())
+
+
+def test_what_a_drive_needs_is_made_ready_before_there_is_a_question(drive_text: str) -> None:
+    """A second process begins with it when the drive is at rest, and ends with the one that answers."""
+
+    async def ask() -> None:
+        calculator = Calculator()
+        try:
+            calculator.look_ahead(Asked("rest", "", drive_text, HERE))
+            found = await calculator.ask(Asked("rest", "e", drive_text, HERE))
+            assert table(found, "Pulleys at rest")["driver"][0] == "prescribed"
+            assert calculator._pool is not None
+            (process,) = (psutil.Process(one) for one in calculator._pool._processes or {})
+            (ahead,) = (one for one in process.children() if "resource_tracker" not in " ".join(one.cmdline()))
+        finally:
+            calculator.close()
+        assert psutil.wait_procs([process, ahead], timeout=60.0)[1] == []
+        assert not calculator.preparing
 
     asyncio.run(ask())
 

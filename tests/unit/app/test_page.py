@@ -12,6 +12,7 @@ pytest.importorskip("nicegui")
 from nicegui import ui
 from nicegui.testing import User, user_simulation
 
+from beltdyn.app import numbers_view
 from beltdyn.app.calculator import Calculator
 from beltdyn.app.canvas import Canvas
 from beltdyn.app.computing import Answer, Asked
@@ -25,6 +26,7 @@ class Told(Calculator):
     """Answers at once, with what it was asked."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.asked: list[Asked] = []
 
     async def ask(self, asked: Asked) -> Answer:
@@ -244,6 +246,29 @@ def test_numbers_follow_speed_and_load(workspace: Workspace) -> None:
         await user.should_see("overlap")
         await user.should_not_see(kind=ui.html, content="1.5")
         assert len(calculator.asked) == asked
+
+    go(workspace, journey)
+
+
+def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Kernels are compiled once on a machine, which takes longer than any answer."""
+    monkeypatch.setattr(numbers_view, "_SOON", 0.0)
+    monkeypatch.setattr(numbers_view, "_OFTEN", 0.05)
+    compiled = asyncio.Event()
+
+    class Compiles(Told):
+        async def ask(self, asked: Asked) -> Answer:
+            self._preparations.here.set()
+            await compiled.wait()
+            self._preparations.here.clear()
+            return await super().ask(asked)
+
+    workspace.calculator = Compiles()
+
+    async def journey(user: User) -> None:
+        await user.should_see("preparing kernels (compiled once on a machine, for up to a minute): 0 s")
+        compiled.set()
+        await user.should_see("at rest, computed in 0.12 s")
 
     go(workspace, journey)
 
