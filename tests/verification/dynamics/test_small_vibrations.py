@@ -112,6 +112,24 @@ def test_rotor_behind_its_rim(kind: str) -> None:
         assert found["shaft_speed"][1] / found["pulley_speed"][1] == pytest.approx(expected, rel=1e-6)
 
 
+def test_rotor_behind_a_decoupler() -> None:
+    """A locked one-way clutch and an isolator in one chain: two bodies behind the rim, each in balance of moments."""
+    part = 1e-3
+    links = [HUBS["decoupler"] | {"inertia": part}, HUBS["isolator"]]
+    driver, driven = better(loaded_two_pulley()).pulleys
+    drive = better(loaded_two_pulley()).replace(pulley=[driver, driven.replace(hub=links, inertia=0.05)])
+    motion = ForcedMotion(steady_state(drive), stuck=False)
+    for frequency in np.sqrt(STIFFNESS / ROTOR) * np.array([0.3, 0.9, 1.0, 1.1, 1.5, 2.0, 3.0]):
+        found = motion.answer(float(frequency), {0: 1e-3}, {})
+        clutch, spring = 1j * frequency * HUBS["decoupler"]["locking_damping"], STIFFNESS + 1j * frequency * DAMPING
+        balance = [
+            [clutch + spring - frequency**2 * part, -spring],
+            [-spring, spring - frequency**2 * ROTOR],
+        ]
+        rotor = np.linalg.solve(np.array(balance), np.array([clutch, 0.0]))[1]
+        assert found["shaft_speed"][1] / found["pulley_speed"][1] == pytest.approx(rotor, rel=1e-6)
+
+
 @pytest.fixture(scope="module")
 def motions() -> SmallMotions:
     """Case 2 in steady running."""
