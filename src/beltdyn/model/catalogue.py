@@ -34,6 +34,12 @@ class Entry(Part):
     `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses (that of contact too) and the mass.
     A profile sold by diameter is a round belt; its `width` and `thickness` are the diameter. A belt n times as thick
     has n² times the axial stiffness and the mass, n⁴ times the bending stiffness, and the same contact stiffness.
+
+    Examples
+    --------
+    >>> entry = bd.read_catalogue()["PK"]
+    >>> entry.title, entry.axial_stiffness  # of a rib, N
+    ('V-ribbed belt PK, polyester cord', 20000.0)
     """
 
     title: str = Field(description="the name of the profile in words, as text")

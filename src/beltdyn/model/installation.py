@@ -36,6 +36,12 @@ class Installation:
         Force of the belt on each pulley; without weight T (u_out - u_in), of size 2 T sin(wrap angle / 2).
     span_frequencies : ndarray, shape (s,), Hz
         Lowest frequency at which each span swings across, with the bending stiffness of the belt and its sag.
+
+    Examples
+    --------
+    >>> installed = bd.install(drive)
+    >>> print(f"{installed.tension:.2f} N, {installed.span_frequencies[0]:.1f} Hz")
+    26.56 N, 21.0 Hz
     """
 
     strain: float

@@ -32,6 +32,13 @@ class ParameterStudy(Part):
     """Many drives that differ in some numbers, what is found of each, and which results are kept.
 
     The constructor's arguments are the keys and groups of a study file.
+
+    Examples
+    --------
+    >>> width = {"path": "belt.width", "values": "10, 12, 14 mm"}
+    >>> study = bd.ParameterStudy(analysis="static", results=["hub_load"], number=[width])
+    >>> study.sampling
+    'factorial'
     """
 
     fills_a_file: ClassVar[bool] = True

@@ -103,6 +103,14 @@ class OptimizationStudy(Part):
     """What to improve in a drive: numbers that may change, a goal, and what must be kept.
 
     The constructor's arguments are the groups of a study file, each a part or a mapping of its arguments.
+
+    Examples
+    --------
+    >>> tension = {"path": "belt.installed_tension", "least": "200 N", "largest": "900 N"}
+    >>> safe = {"result": "slip_safety", "at_least": 1.5}
+    >>> study = bd.OptimizationStudy(number=[tension], goal={"result": "hub_load"}, requirement=[safe])
+    >>> study.goal
+    Goal(result='hub_load', sense='minimize', over='worst')
     """
 
     fills_a_file: ClassVar[bool] = True
@@ -148,6 +156,13 @@ class CalibrationStudy(Part):
     """Which numbers of a drive to fit, and what was measured.
 
     The constructor's arguments are the groups of a study file, each a part or a mapping of its arguments.
+
+    Examples
+    --------
+    >>> friction = {"path": "contact.friction", "least": 0.2, "largest": 0.8}
+    >>> study = bd.CalibrationStudy(number=[friction], measurement=[{"table": "slip.csv"}])
+    >>> study.confidence
+    0.95
     """
 
     fills_a_file: ClassVar[bool] = True

@@ -43,6 +43,11 @@ def configuration(run: Run | StaticResult, time: float | None = None, ax: Axes |
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.configuration(run).get_xlabel()
+    'x [m]'
     """
     instant = run.fields_at(time)
     ax = axes_or_new(ax, size_of(run.drive))

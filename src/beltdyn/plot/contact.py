@@ -72,6 +72,11 @@ def contact_forces(
     ------
     ModelError
         If there is no such pulley, or the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.contact_forces(run, pulley="driver").get_xlabel()
+    'Belt coordinate from entry to exit [m]'
     """
     number = derived.pulley_number(run, pulley)
     instant = run.fields_at(time)
@@ -126,6 +131,11 @@ def contact_pressure(
     ------
     ModelError
         If there is no such pulley, or the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.contact_pressure(run, pulley="driver").get_xlabel()
+    'Angle from the inlet [°]'
     """
     number = derived.pulley_number(run, pulley)
     arc = derived.contact_arc(run, number, time)

@@ -63,6 +63,11 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.losses(run).get_xlabel().partition(" and ")[0]
+    'Power lost [W]'
     """
     run.require_output()
     ax = axes_or_new(ax)

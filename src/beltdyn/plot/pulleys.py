@@ -99,6 +99,11 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.capstan_margins(run).get_ylabel()
+    'Capstan margin'
     """
     margins = derived.capstan_margins(run)
     loaded = margins.median("time") < _LARGEST_MARGIN
@@ -128,6 +133,11 @@ def powers(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.powers(run).get_ylabel()
+    'Power from the shaft [W]'
     """
     return lines(derived.pulley_powers(run)["power_in"], axes_or_new(ax))
 
@@ -163,6 +173,11 @@ def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None)
     ------
     ModelError
         If there is no such pulley, the axes are not polar, or the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.hub_loads(run).name
+    'polar'
     """
     ax = polar_or_new(ax)
     if not isinstance(ax, PolarAxes):
@@ -206,6 +221,11 @@ def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.hub_load_sizes(run).get_ylabel()
+    'Hub load [N]'
     """
     run.require_output()
     loads = derived.hub_loads(run)["hub_load"]

@@ -40,6 +40,12 @@ class Balance:
         Power lost, by cause, such as "friction".
     stored : float
         Rate at which the energy held by the drive grows: kinetic, strain, penalty, spring and potential energy.
+
+    Examples
+    --------
+    >>> balance = bd.derived.balance(run)
+    >>> sorted(balance.losses)[:3]
+    ['belt bending', 'belt compression', 'belt stretch']
     """
 
     pulleys: tuple[float, ...]

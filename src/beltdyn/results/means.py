@@ -51,6 +51,12 @@ class PulleySummary:
         Wrap angle, rad.
     hub_load : float
         Magnitude of the mean force of the belt on the pulley, N.
+
+    Examples
+    --------
+    >>> driver = bd.summarize(run).pulleys[0]
+    >>> print(f"{driver.name}: {driver.hub_load:.1f} N")
+    driver: 54.3 N
     """
 
     name: str
@@ -104,6 +110,12 @@ class SpanSummary:
         Least and largest tension, N.
     belt_speed : float
         Mean speed of the belt, m/s.
+
+    Examples
+    --------
+    >>> span = bd.summarize(run).spans[0]
+    >>> print(f"{span.name}: {span.lowest:.1f} to {span.highest:.1f} N")
+    driver-driven: 27.8 to 27.8 N
     """
 
     name: str

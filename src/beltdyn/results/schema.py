@@ -33,6 +33,12 @@ class Variable:
         Whether a file without it is no result: summary, warnings and the essential figures need it.
     at_rest : bool
         Whether a drive in static equilibrium has it, too.
+
+    Examples
+    --------
+    >>> tension = bd.results.VARIABLES["span_tension"]
+    >>> tension.long_name, tension.units, tension.dims
+    ('Span tension', 'N', ('time', 'span'))
     """
 
     dims: tuple[str, ...]

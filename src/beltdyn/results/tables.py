@@ -118,6 +118,11 @@ def write_csv(run: Result, folder: Path | str, overwrite: bool = False) -> list[
     ------
     ModelError
         If the run holds no output, a file cannot be written, or would replace one that is no such table.
+
+    Examples
+    --------
+    >>> [path.name for path in bd.write_csv(run, "tables")][:4]
+    ['pulleys.csv', 'spans.csv', 'energy.csv', 'contact.csv']
     """
     require_tables(folder, overwrite)
     tables = tables_of(run)

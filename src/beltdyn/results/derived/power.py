@@ -59,6 +59,12 @@ def balance(run: Run, start: float | None = None, end: float | None = None) -> B
     -------
     Balance
         Mean powers; the efficiency leaves out what is being stored or given back.
+
+    Examples
+    --------
+    >>> balance = bd.derived.balance(run)
+    >>> sorted(balance.losses)[:3]
+    ['belt bending', 'belt compression', 'belt stretch']
     """
     part = window(run, start, end)
     return power_balance(part, plain_window(part["time"].values))

@@ -49,6 +49,11 @@ class GeneralizedAlpha:
         Local error per unit of time over the velocity scale of the task; less for long steps.
     max_step : float or None
         s.
+
+    Examples
+    --------
+    >>> bd.GeneralizedAlpha(spectral_radius=0.9, rtol=1e-4)
+    GeneralizedAlpha(spectral_radius=0.9, rtol=0.0001, max_step=None)
     """
 
     spectral_radius: float

@@ -43,6 +43,11 @@ class StandardIntegrator:
         millisecond.  A single step may make a fiftieth of it.
     max_step : float or None
         s.
+
+    Examples
+    --------
+    >>> bd.StandardIntegrator("radau", rtol=1e-4)
+    StandardIntegrator(name='radau', rtol=0.0001, max_step=None)
     """
 
     name: Name
