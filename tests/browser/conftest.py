@@ -1,4 +1,7 @@
-"""A server and a real browser: Chromium as the system has it, driven by Playwright (`make browser`)."""
+"""A server and a real browser: Chromium as the system has it, driven by Playwright (`make browser`).
+
+With BELTDYN_PICTURES=FOLDER pictures are kept there, to be looked at.
+"""
 
 import os
 import re
@@ -31,6 +34,19 @@ def browser() -> Iterator[Any]:
         launched = started.chromium.launch(executable_path=found, args=["--no-sandbox"])
         yield launched
         launched.close()
+
+
+@pytest.fixture(scope="session")
+def shoot() -> Callable[[Any, str], None]:
+    """Keep a picture of a page, if a folder for pictures is named."""
+    folder = os.environ.get("BELTDYN_PICTURES")
+
+    def keep(page: Any, name: str) -> None:
+        if folder:
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            page.screenshot(path=str(Path(folder) / f"{name}.png"))
+
+    return keep
 
 
 class Server:

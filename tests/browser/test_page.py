@@ -1,9 +1,5 @@
-"""The page in a real browser, drag by drag; run by `make browser`.
+"""The page in a real browser, drag by drag; run by `make browser`."""
 
-With BELTDYN_PICTURES=FOLDER pictures of the page are kept there, to be looked at.
-"""
-
-import os
 import random
 import re
 import tomllib
@@ -17,13 +13,7 @@ playwright = pytest.importorskip("playwright.sync_api", reason="pip install play
 pytestmark = pytest.mark.browser
 
 Open = Callable[..., Any]
-
-
-def shoot(page: Any, name: str) -> None:
-    """Keep a picture of the page, if a folder for pictures is named."""
-    if folder := os.environ.get("BELTDYN_PICTURES"):
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        page.screenshot(path=str(Path(folder) / f"{name}.png"))
+Shoot = Callable[[Any, str], None]
 
 
 def middle(page: Any, selector: str) -> tuple[float, float]:
@@ -83,7 +73,7 @@ def analyse(page: Any, name: str, **options: str) -> None:
     page.get_by_text(f"{name}: completed").wait_for()
 
 
-def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(open_page: Open, folder: Path) -> None:
+def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(shoot: Shoot, open_page: Open, folder: Path) -> None:
     expect, page = playwright.expect, open_page()
     begin_empty(page)
     place(page, 0.3, 0.6)
@@ -203,7 +193,7 @@ requirement = [{ result = "slip_safety", at_least = 3.0 }]
 """
 
 
-def test_an_optimisation_finds_a_drive_file(open_page: Open, folder: Path) -> None:
+def test_an_optimisation_finds_a_drive_file(shoot: Shoot, open_page: Open, folder: Path) -> None:
     """The least hub load is that at which slip is just as safe as it has to be."""
     (folder / "drive.toml").write_text(FAN, encoding="utf-8")
     (folder / "study.toml").write_text(STUDY, encoding="utf-8")
@@ -226,7 +216,7 @@ def test_an_optimisation_finds_a_drive_file(open_page: Open, folder: Path) -> No
     page.frame_locator("iframe.bd-report").get_by_role("heading", name="Where it comes from").wait_for()
 
 
-def test_wrong_values_and_layouts_are_told_and_undone(open_page: Open) -> None:
+def test_wrong_values_and_layouts_are_told_and_undone(shoot: Shoot, open_page: Open) -> None:
     page = open_page()
     page.locator('[data-pulley="alternator"]').click()
     enter(page, "radius [m]", "28 kg")
@@ -278,7 +268,7 @@ def test_the_keyboard_is_enough(open_page: Open) -> None:
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1600, 1000, 480])
-def test_it_fits_at_three_widths(open_page: Open, width: int, scheme: str) -> None:
+def test_it_fits_at_three_widths(shoot: Shoot, open_page: Open, width: int, scheme: str) -> None:
     page = open_page(width, 900, scheme)
     page.locator('[data-pulley="tensioner"]').click()
     page.wait_for_timeout(500)
@@ -336,7 +326,9 @@ def test_two_tabs_do_not_mix_and_a_page_loaded_again_has_its_drive(open_page: Op
     one.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
 
 
-def test_a_server_that_is_killed_is_told_of_and_the_drive_can_be_kept(open_page: Open, server: Any) -> None:
+def test_a_server_that_is_killed_is_told_of_and_the_drive_can_be_kept(
+    shoot: Shoot, open_page: Open, server: Any
+) -> None:
     page = open_page()
     page.locator('[data-pulley="tensioner"]').focus()
     page.keyboard.press("Delete")

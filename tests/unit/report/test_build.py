@@ -20,8 +20,17 @@ from beltdyn.results import Result, Run
 
 _EMPTY = {"meta", "img", "input", "link", "br", "hr", "circle", "path"}
 LARGEST = 5_000_000
+COARSE = "6\nelements = 40"
+"""Ribs of a belt on a coarse mesh."""
 MARK = "# A line that the user wrote.\n"
 EXAMPLES = files("beltdyn").joinpath("examples")
+TENSION: dict[str, Any] = {"path": "belt.installed_tension", "least": "250 N", "largest": "400 N"}
+OPTIMIZATION = bd.OptimizationStudy(
+    number=[TENSION], goal={"result": "hub_load"}, requirement=[{"result": "slip_safety", "at_least": 1.1}]
+)
+STUDY = bd.ParameterStudy(
+    analysis="static", results=["hub_load"], number=[{"path": "belt.installed_tension", "values": "280, 320 N"}]
+)
 MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[str, ...]]] = {
     "static": (bd.equilibrium, ("Largest hub load", "Wrap angle"), ("contact_pressure-0",)),
     "steady": (bd.steady_state, ("Least capstan margin", "steady, completed", "efficiency"), ("contact_forces-0",)),
@@ -50,6 +59,33 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
     ),
     "sensitivity": (
         lambda drive: bd.sensitivity(drive, about="rest", numbers="belt.installed_tension"),
+        ("belt.installed_tension",),
+        (),
+    ),
+    "run": (
+        lambda _: bd.simulate(_given(ribs=COARSE, duration="0.02")),
+        ("Least capstan margin", "run, completed", "energy"),
+        ("speeds-0", "span_tensions-0"),
+    ),
+    "sweep": (
+        lambda _: bd.sweep(
+            _given(ribs=COARSE), pulley="crank", from_="1400 rpm", to="1500 rpm", duration=0.04, settling=0.01
+        ),
+        ("Least capstan margin", "sweep, completed"),
+        ("speeds-0",),
+    ),
+    "optimize": (
+        lambda drive: bd.optimize(drive, study=OPTIMIZATION, most=2),
+        ("slip_safety at least 1.1", "belt.installed_tension"),
+        (),
+    ),
+    "calibrate": (
+        lambda drive: bd.calibrate(drive, study=_calibration()),
+        ("belt.installed_tension", "Standard error"),
+        (),
+    ),
+    "study": (
+        lambda drive: bd.study(STUDY, drive, jobs=1),
         ("belt.installed_tension",),
         (),
     ),
@@ -229,18 +265,34 @@ def _table() -> Path:
     return path
 
 
+def _calibration() -> Path:
+    """A study that fits the installed tension to slips."""
+    folder = Path(mkdtemp())
+    lines = ("alternator torque [N m],pulley_slip[alternator] [%]", "-3,0.09", "-7,0.2", "-9,0.26")
+    (folder / "slip.csv").write_text("\n".join(lines), encoding="utf-8")
+    number = "".join(f'{key} = "{value}"\n' for key, value in TENSION.items())
+    study = folder / "study.toml"
+    study.write_text(f'[[number]]\n{number}[[measurement]]\ntable = "slip.csv"\n', encoding="utf-8")
+    return study
+
+
+def _given(**settings: str) -> bd.Drive:
+    """The drive of an alternator with limits and ripple, some numbers of which are changed in its file."""
+    text = _text("alternator_drive").replace(
+        "speed = {", "harmonics = [{ order = 2, amplitude = 0.001 }]\nspeed = {", 1
+    )
+    for key, value in settings.items():
+        text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
+    return bd.loads(f"{MARK}{text}\n[limits]\nleast_margin = 1.5\nlargest_hub_load = 10\n")
+
+
 Reported = Callable[[str], tuple[Result, str]]
 
 
 @pytest.fixture(scope="module")
 def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     """A result of a kind, with its report."""
-    harmonics, limits = (
-        "harmonics = [{ order = 2, amplitude = 0.001 }]\n",
-        "least_margin = 1.5\nlargest_hub_load = 10\n",
-    )
-    given = _text("alternator_drive").replace("speed = {", f"{harmonics}speed = {{", 1)
-    drive = bd.loads(f"{MARK}{given}\n[limits]\n{limits}")
+    drive = _given()
 
     @cache
     def of(kind: str) -> tuple[Result, str]:
@@ -251,7 +303,9 @@ def reported(tmp_path_factory: pytest.TempPathFactory) -> Reported:
     return of
 
 
-@pytest.mark.parametrize("kind", MAKERS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.slow if kind in ("run", "sweep") else ()) for kind in MAKERS]
+)
 def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
     _, words, charts = MAKERS[kind]
     result, text = reported(kind)
@@ -269,9 +323,10 @@ def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
     moving = data(text, "motions").values()
     assert [sorted(one.keys() & {"modes", "time"}) for one in moving] == {
         "modes": [["modes"]],
-        "steady": [["time"]],
+        **{key: [["time"]] for key in ("run", "steady", "sweep")},
     }.get(kind, [])
-    limited = {"static": "0 of 1", "steady": "1 of 2", "map": "1 of 2", "duty": "1 of 2"}.get(kind)
+    kept = {"static": "0 of 1", **dict.fromkeys(("run", "sweep", "steady", "map", "duty"), "1 of 2")}
+    limited = kept.get(kind)
     assert ("limits are kept" in text) == (limited is not None)
     assert limited is None or f"{limited} limits are kept" in text
     assert ('id="numbers"' in text) == (limited is not None or kind == "open")

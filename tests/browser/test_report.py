@@ -1,0 +1,60 @@
+"""Reports in a real browser: on screens of three widths, and printed; run by `make browser`."""
+
+import os
+import re
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import beltdyn as bd
+
+playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
+pytestmark = pytest.mark.browser
+
+PAPER_WIDTH, PAPER_HEIGHT = 688, 1002
+"""What the margins of a report leave of A4, 182 by 265 mm, at 96 to the inch as browsers lay out paper."""
+WIDER = """() => [...document.querySelectorAll("main *, body *")].filter(one => {
+    for (let outer = one.parentElement; outer; outer = outer.parentElement)
+        if (getComputedStyle(outer).overflowX === "auto" && matchMedia("screen").matches) return false;
+    const box = one.getBoundingClientRect();
+    return box.width > 0 && getComputedStyle(one).position !== "absolute" && box.right > innerWidth + 1;
+}).map(one => one.tagName + "." + one.className).slice(0, 5)"""
+"""Elements that go past the right edge; on a screen tables may be moved sideways, on paper they may not."""
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report")
+    drive = bd.loads(files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8"))
+    return bd.write_report(bd.steady_state(drive), folder / "steady.html")
+
+
+def opened(browser: Any, report: Path, width: int) -> Any:
+    page = browser.new_context(viewport={"width": width, "height": 900}).new_page()
+    page.set_default_timeout(300_000)
+    page.goto(report.as_uri())
+    page.locator(".bk-Figure").first.wait_for()
+    return page
+
+
+@pytest.mark.parametrize("width", [1600, 1000, 420])
+def test_a_report_fits_screens(browser: Any, report: Path, width: int, shoot: Callable[[Any, str], None]) -> None:
+    page = opened(browser, report, width)
+    shoot(page, f"report_{width}")
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    page.context.close()
+
+
+def test_a_report_is_printed_whole(browser: Any, report: Path, tmp_path: Path) -> None:
+    """Every section is on paper, nothing goes past its edge, and no page is empty for want of a place to break."""
+    page = opened(browser, report, PAPER_WIDTH)
+    page.emulate_media(media="print")
+    assert page.evaluate(WIDER) == []
+    height = page.evaluate("document.documentElement.scrollHeight")
+    printed = page.pdf(path=str(Path(os.environ.get("BELTDYN_PICTURES", tmp_path)) / "steady.pdf"), format="A4")
+    count = len(re.findall(rb"/Type\s*/Page\b", printed))
+    assert height / PAPER_HEIGHT <= count <= 2.0 * height / PAPER_HEIGHT + 1.0
+    page.context.close()
