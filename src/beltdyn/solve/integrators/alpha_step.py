@@ -23,15 +23,14 @@ from beltdyn.system.motion import subtract_multipliers, subtract_solution
 from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 
-_MAX_ITERATIONS: Final = 10
-_OVERSHOOT: Final = 0.5
+_MAX_ITERATIONS: Final = 16
+_OVERSHOOT: Final = 0.1
 """Imbalance along a change, over that before it and against it, from which on a part of the change is taken back."""
-_CUTS: Final = 2
+_CUTS: Final = 6
 _SHORTEST: Final = 0.1
-_DAMPED_FROM: Final = 4
-_STAGNATION: Final = 0.8
-_GROWING: Final = 2
-"""So many changes that are no smaller than the ones before, and the step is given up: hardly one of these converges."""
+"""Least part of where the balance may be by which it is looked for."""
+_GROWING: Final = 4
+"""So many changes with no less imbalance along them than the one before, and the step is given up."""
 _QUICK: Final = 0.3
 """A tangent serves for several iterations of a step as long as each change is below this part of the one before."""
 _SAME: Final = 1e-11
@@ -85,8 +84,9 @@ def try_step(
     """Solve the equations of motion at the end of a step, from a constant A as first guess.
 
     The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
-    along it turns against it; then only the part up to the balance is kept.  If the changes still do not shrink,
-    half steps end a cycle.  The tangent of the first guess serves as long as changes shrink quickly, where they did so
+    along it turns against it; then only the part up to the balance is kept: forces of friction and contact resist
+    motion the more the faster it is, so that this part brings the solution nearer, where longer ones may go around it.
+    The tangent of the first guess serves as long as changes shrink quickly, where they did so
     in the step before too.
 
     Parameters
@@ -111,14 +111,13 @@ def try_step(
     """
     _predict(system, method, state, step)
     allowed = settings.newton_fraction * allowed_error(settings, step.length)
-    before, slope, factor, renewed = inf, 0.0, 1.0, True
+    before, slope, steepest, renewed = inf, 0.0, inf, True
     quick, slowest, growing = state.clock.contraction <= _QUICK, 0.0, 0
     state.clock.contraction = 1.0
     for iteration in range(_MAX_ITERATIONS):
         state.counts.iterations += 1
         _assemble(system, state, step, equations, renewed)
-        if slope > 0.0:
-            factor = _cut_back(system, state, step, equations, slope, factor, renewed)
+        factor = _cut_back(system, state, step, equations, slope, renewed) if slope > 0.0 else 1.0
         if renewed and not factorise_ring(equations.matrix, system.closed):
             return 0
         substitute(equations.matrix, system.closed, equations.node_part, equations.border_part)
@@ -128,13 +127,13 @@ def try_step(
         slope = _imbalance(equations)
         slowest = max(slowest, change / before)
         contraction = min(1.0, change / before) if factor == 1.0 else 1.0
-        factor = 0.5 if iteration >= _DAMPED_FROM and change > _STAGNATION * before else 1.0
-        _move(system, state, step, equations, factor)
+        _move(system, state, step, equations, 1.0)
         if change <= _NEAR * allowed and contraction * change <= allowed:
             _finish(method, state)
             state.clock.contraction = slowest
             return iteration + 1
-        growing += change >= before
+        growing += abs(slope) >= steepest
+        steepest = min(abs(slope), steepest)
         if growing >= _GROWING:
             return 0
         renewed = not quick or slowest > _QUICK
@@ -164,17 +163,31 @@ def _assemble(system: System, state: IntegratorState, step: Step, equations: Equ
 
 @kernel(inline=True)
 def _cut_back(
-    system: System, state: IntegratorState, step: Step, equations: Equations, slope: float, factor: float, renewed: bool
+    system: System, state: IntegratorState, step: Step, equations: Equations, slope: float, renewed: bool
 ) -> float:
-    """Take back what the last change went too far, by secants; returns the factor of the change that is left."""
+    """Take back what the last change went too far, up to the balance along it; returns the factor of what is left.
+
+    It is found by the false position (Illinois).
+    """
+    now = _imbalance(equations)
+    if now >= -_OVERSHOOT * slope:
+        return 1.0
+    factor, short, ahead, far, behind, beyond = 1.0, 0.0, slope, 1.0, now, True
     for _ in range(_CUTS):
+        place = short + (far - short) * max(_SHORTEST, ahead / (ahead - behind))
+        _move(system, state, step, equations, place - factor)
+        factor = place
+        _assemble(system, state, step, equations, False)
         now = _imbalance(equations)
-        if now >= -_OVERSHOOT * slope:
+        if abs(now) <= _OVERSHOOT * slope:
             break
-        kept = max(_SHORTEST, slope / (slope - now))
-        _move(system, state, step, equations, (kept - 1.0) * factor)
-        factor *= kept
-        _assemble(system, state, step, equations, renewed)
+        if now < 0.0:
+            far, behind, ahead = factor, now, 0.5 * ahead if beyond else ahead
+        else:
+            short, ahead, behind = factor, now, behind if beyond else 0.5 * behind
+        beyond = now < 0.0
+    if renewed:
+        _assemble(system, state, step, equations, True)
     return factor
 
 
