@@ -24,10 +24,13 @@ from beltdyn.model import Belt, Contact, Drive, Harmonic, Limits, Pulley, Simula
 from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.pulley import Diameter
+from beltdyn.model.study import CalibrationStudy, OptimizationStudy
 from beltdyn.parts.part import Part
 from beltdyn.plot import FIGURES
 from beltdyn.plot.registry import on_request
 from beltdyn.solve import simulate
+from beltdyn.solve.studies.designs import free_number
+from beltdyn.solve.studies.measured_table import read_measured
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
@@ -279,6 +282,20 @@ def test_the_tutorials_pulleys_fit_the_new_drive(new_drive: str, tmp_path: Path)
         pulleys = sorted([pulley, *others], key=lambda item: str(item["name"]), reverse=True)
         changed = loads(tomli_w.dumps(data | {"pulley": pulleys}), base=tmp_path)
         assert changed != loads(new_drive)
+
+
+def test_the_tutorials_studies_fit_the_example(tmp_path: Path) -> None:
+    """Numbers, requirements and the table of measurements are those of the alternator drive."""
+    page = ROOT / "docs" / "tutorial" / "vibrations_and_design.md"
+    example = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
+    optimisation, calibration = (tomllib.loads(block) for block in blocks(page, "toml"))
+    drive, best, fitted = loads(example), OptimizationStudy(**optimisation), CalibrationStudy(**calibration)
+    assert [free_number(drive, one).start for one in (*best.numbers, *fitted.numbers)] == [300.0, pytest.approx(12e4)]
+    (table,) = blocks(page, "text")
+    (tmp_path / fitted.measurements[0].table).write_text(table, encoding="utf-8")
+    measured = read_measured(tmp_path / fitted.measurements[0].table, drive)
+    assert list(measured.results) == list(measured.deviations) == ["pulley_slip[alternator]"]
+    assert measured.rows == 3
 
 
 def test_the_map_names_every_folder_and_files_that_exist() -> None:
