@@ -1,5 +1,6 @@
 """Spectra of whatever is recorded over time: amplitudes over frequency, and over speed in a run-up."""
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -264,7 +265,7 @@ def _even(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]
 
     NaN in between spreads to the steps next to it.
     """
-    flat = values.reshape(len(values), -1)
+    flat = values.reshape(len(values), math.prod(values.shape[1:]))
     (known,) = np.nonzero(np.isfinite(flat).all(axis=1))
     if known.size < _FEWEST:
         raise ModelError(
