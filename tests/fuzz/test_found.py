@@ -16,6 +16,8 @@ from beltdyn.results import open_run
 LENGTH, WIDTH = "length = 1.2727", "width = 0.01"
 TORQUE = 'torque = { kind = "cosine_ramp", start = 0.05, end = 0.6, value = 0.0 }'
 LONGEST_MESSAGE = 5000
+LONGEST_TIME = 20.0
+"""Processor time that a refusal may take beside other work, s: what grows with the square of a file takes minutes."""
 LONG = 100_000
 
 Change = Callable[[str], str]
@@ -62,7 +64,7 @@ def test_drive_files(change: Change, part: str) -> None:
         loads(change(demo_text()))
     assert part in str(refusal.value)
     assert len(str(refusal.value)) < LONGEST_MESSAGE
-    assert time.process_time() - begun < 5.0
+    assert time.process_time() - begun < LONGEST_TIME
 
 
 FLAT = files("beltdyn").joinpath("examples", "flat_belt_idler.toml")
@@ -95,7 +97,7 @@ def test_balances_of_tensioners_in_drives_of_any_size(text: str) -> None:
     advise(drive, installation)
     (balances,) = tensioner_balances(drive, installation)
     assert [balance.stable for balance in balances if balance.here] == [True]
-    assert time.process_time() - begun < 5.0
+    assert time.process_time() - begun < LONGEST_TIME
 
 
 def test_dots_in_texts_and_comments_are_no_keys() -> None:

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 INDEX = ROOT / "docs" / "extending.md"
 PAGES = sorted((ROOT / "docs" / "extending").glob("*.md"))
 
-COSTLY = {"surface", "normal_law", "stretch_law"}
+COSTLY = {"surface", "normal_law", "stretch_law", "element", "analysis", "integrator"}
 """Pages whose examples compile as much as that of the friction law does, half a minute each."""
 
 BLOCK = re.compile(r"^```\{code-block\} (\w+)\n:caption: ([^\n]+)\n\n(.*?)^```$", re.DOTALL | re.MULTILINE)

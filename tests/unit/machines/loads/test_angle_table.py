@@ -1,6 +1,6 @@
 """A torque over angle and speed: its points, period, slopes and ends, and what is refused."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from beltdyn.errors import ModelError
 from beltdyn.machines import AngleSpeedTable, AngleTable
 from beltdyn.machines.loads.load import LoadTorque
-from beltdyn.machines.loads.shaft import mean_loads, shaft_torque
+from beltdyn.machines.loads.shaft import ShaftLoads, mean_loads, shaft_torque
 from beltdyn.model import Pulley
 from beltdyn.system.build_machines import machine_arrays
 
@@ -130,15 +130,16 @@ def test_errors(kind: type[AngleTable], given: dict[str, Any], sentence: str) ->
 
 @pytest.mark.parametrize("load", [CRANK, GRID])
 @pytest.mark.parametrize("speed", [5.0, 13.0, 20.0, 41.0])
-def test_its_mean_is_that_of_its_torque_and_slope(torque: Torque, load: dict[str, Any], speed: float) -> None:
+def test_its_mean_is_that_of_its_torque_and_slope(load: dict[str, Any], speed: float) -> None:
     """Over the angle, between speeds and outside of them; the mean has no slope over the angle."""
     load = load | {"torques": np.square(load["torques"]).tolist()}
     loads = machine_arrays([Pulley(name="one", center=(0, 0), radius=1, inertia=1, load=[load])])
-    found = [
-        shaft_torque(loads.profiles, mean_loads(loads.shaft_loads), 0, 0.0, angle, speed, np.zeros(1))
-        for angle in (0.3, 7.0)
-    ]
-    turned = [torque(load, speed, angle) for angle in np.linspace(0.0, 4 * np.pi, 24 * 40, endpoint=False)]
+
+    def torques(rows: ShaftLoads, angles: Iterable[float]) -> list[LoadTorque]:
+        return [shaft_torque(loads.profiles, rows, 0, 0.0, angle, speed, np.zeros(1)) for angle in angles]
+
+    found = torques(mean_loads(loads.shaft_loads), (0.3, 7.0))
+    turned = torques(loads.shaft_loads, np.linspace(0.0, 4 * np.pi, 24 * 40, endpoint=False))
     assert found[0] == pytest.approx(found[1], abs=1e-12)
     assert found[0].torque == pytest.approx(np.mean([one.torque for one in turned]), abs=1e-5)
     assert found[0].by_speed == pytest.approx(np.mean([one.by_speed for one in turned]), abs=1e-5)
