@@ -1,7 +1,8 @@
 """The drive of the paper, which the unit tests bend into every shape."""
 
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from importlib.resources import files
 from pathlib import Path
 
@@ -53,3 +54,20 @@ def signal_defaults() -> Iterator[None]:
     yield
     for number, handler in before.items():
         signal.signal(number, handler)
+
+
+@pytest.fixture
+def largest_file() -> Callable[[int], AbstractContextManager[None]]:
+    """Let no file grow beyond a size in bytes, as a quota would or a full disk does."""
+    return _largest_file
+
+
+@contextmanager
+def _largest_file(size: int) -> Iterator[None]:
+    resource = pytest.importorskip("resource", reason="limits of files are a matter of POSIX")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)

@@ -13,7 +13,7 @@ from cyclopts.validators import Number
 from beltdyn.analyses import Analysis
 from beltdyn.cli.batch import analyse_several
 from beltdyn.cli.given import read_given, takes_runs
-from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output, write_extras
+from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
@@ -83,8 +83,7 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         else:
             drive, path = read_given(analysis, file), output or analysis.result_file(file)
         require_output(path, files, extras, force)
-        result = analyse_to(analysis, drive, path, force, **options)
-        write_extras(result, path, extras, force)
+        result = analyse_to(analysis, drive, path, extras, force, **options)
         return ended(result) or (doubt(result.warnings) if strict else 0)
 
     own = {

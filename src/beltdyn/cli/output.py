@@ -33,7 +33,7 @@ class Extras(NamedTuple):
     report: bool
 
 
-_NOTHING_KEPT = "No results are kept."
+NO_EXTRAS = Extras(csv=False, report=False)
 
 
 def require_output(path: Path, files: Iterable[Path], extras: Extras, force: bool) -> None:
@@ -60,12 +60,10 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
 
 
 def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
-    """Write what is asked for beside a result file, and name it; nothing of a run without outputs."""
-    from beltdyn.results import Run, open_result
+    """Write what is asked for beside a result file, and name it."""
+    from beltdyn.results import open_result
     from beltdyn.results.tables import tables_folder, write_csv
 
-    if isinstance(result, Run) and not result.outputs:
-        return
     if extras.csv:
         show(f"Tables: {', '.join(str(table) for table in write_csv(result, tables_folder(path), force))}")
     if extras.report:
@@ -74,21 +72,34 @@ def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> N
         show(f"Report: {write_report(open_result(path), report_file([path]), force)}")
 
 
-def analyse_to(analysis: Analysis, drive: "Drive | Run", path: Path, force: bool = False, **options: Any) -> "Result":
-    """Analyse a drive into a file with a progress bar, and show the result.
+def analyse_to(
+    analysis: Analysis,
+    drive: "Drive | Run",
+    path: Path,
+    extras: Extras = NO_EXTRAS,
+    force: bool = False,
+    **options: Any,
+) -> "Result":
+    """Analyse a drive into a file with a progress bar, show the result, and write what is asked for beside it.
 
     Raises
     ------
     SimulationError
         If the analysis cannot go on.
     """
+    from beltdyn.results.atomic import stamp
+
+    before = stamp(path)
     try:
         with progress_bar() as report:
             result: Result = analysis.write(drive, path, report, force, **options)
     except SimulationError:
-        show(_kept(path) if analysis.grows else _NOTHING_KEPT)
+        show(nothing_kept(path) if stamp(path) in (before, None) else f"What was computed is in {path}")
         raise
     show_result(result)
+    if stamp(path) == before:
+        show(f"\n{nothing_kept(path)}")
+        return result
     if result.status == "interrupted":
         from beltdyn.solve.checkpoint import checkpoint_file
 
@@ -96,6 +107,7 @@ def analyse_to(analysis: Analysis, drive: "Drive | Run", path: Path, force: bool
         show(f"\nInterrupted: what was computed is kept.{goes_on}")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
     show_leftovers(path)
+    write_extras(result, path, extras, force)
     return result
 
 
@@ -107,16 +119,9 @@ def show_leftovers(path: Path) -> None:
         show(f"A killed run has left {file}, which is of no use: remove it.")
 
 
-def _kept(path: Path) -> str:
-    """Say where the outputs of a failed run are, or that there are none; the file may be gone, which may be why."""
-    from beltdyn.results.dataset import open_dataset
-
-    try:
-        with open_dataset(path) as dataset:
-            outputs = dataset.sizes["time"]
-    except ModelError:
-        outputs = 0
-    return f"What was computed is in {path}" if outputs else _NOTHING_KEPT
+def nothing_kept(path: Path) -> str:
+    """Say that an analysis ended before it had results, and whose the result file is then."""
+    return "No results are kept." + f" {path} holds those of an earlier analysis, as before." * path.exists()
 
 
 def doubt(warnings: Sequence[str]) -> int:

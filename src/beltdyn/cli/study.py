@@ -48,15 +48,20 @@ def study(
     force
         Compute all points anew, and replace other files too.
     """
-    from beltdyn.cli.output import Extras, write_extras
+    from beltdyn.cli.output import Extras, nothing_kept, write_extras
+    from beltdyn.results.atomic import stamp
     from beltdyn.solve.study import study as compute
 
     path = output or file.with_suffix(".nc")
     if file.resolve() in (path.resolve(), path.with_suffix(".csv").resolve()):
         raise ModelError(f"{file} is the study file: the results would overwrite it. Choose another --output.")
+    before = stamp(path)
     with progress_bar() as tell:
         result = compute(file, jobs=jobs, scheduler=scheduler, retry=retry, output=path, progress=tell, overwrite=force)
     show_result(result)
+    if stamp(path) == before:
+        show(f"\n{nothing_kept(path)}")
+        return exit_code()
     if result.status == "interrupted":
         show("\nInterrupted: what was computed is kept, and the same command goes on from there.")
     show(f"\nResults: {path}, {path.with_suffix('.csv')}   (figures: beltdyn plot {path})")

@@ -104,15 +104,14 @@ def fmu(
         outputs=choose_outputs(drive, outputs),
     )
     Component(drive, interface).begin(progress)  # what keeps it from beginning is told here
-    with TemporaryDirectory() as folder:
+    with atomic_path(path, is_marked, overwrite) as temporary, TemporaryDirectory() as folder:
         drive_file = Path(folder, DRIVE_FILE)
         drive_file.write_text(text, encoding="utf-8")
         files = [drive_file, interface.write(Path(folder))]
         with _imports_undone():
             script = Path(__file__).with_name(f"{module}.py")
             made = builder.build_FMU(script, Path(folder, "made"), files, **dict.fromkeys(_ABILITIES, True))
-        with atomic_path(path, is_marked, overwrite) as temporary:
-            copyfile(made, temporary)
+        copyfile(made, temporary)
     return path
 
 

@@ -11,6 +11,7 @@ from beltdyn.paper.averages import BINS, contact_samples
 from beltdyn.results import Run
 from beltdyn.results.atomic import atomic_path
 from beltdyn.results.dataset import is_result
+from beltdyn.results.netcdf import write_dataset
 from beltdyn.system.build import contact_points
 
 CURVES = (
@@ -39,7 +40,7 @@ def keep(run: Run) -> None:
         kept = reduce(Run(dataset, run.drive))
     with atomic_path(run.path, is_result) as temporary:
         packed = {"zlib": True, "shuffle": True, "complevel": 4}
-        kept.to_netcdf(temporary, engine="h5netcdf", encoding=dict.fromkeys(kept.data_vars, packed))
+        write_dataset(temporary, kept, dict.fromkeys(kept.data_vars, packed))
 
 
 def open_kept(path: Path) -> xr.Dataset:

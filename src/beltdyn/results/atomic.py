@@ -93,6 +93,26 @@ def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: 
         )
 
 
+def stamp(path: Path) -> tuple[int, int] | None:
+    """What tells a file from another one of its name, and from itself before it was written to.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    number, time : int, or None
+        None where there is no file.
+    """
+    try:
+        status = path.stat()
+    except (OSError, ValueError):
+        return None
+    return status.st_ino, status.st_mtime_ns
+
+
 def leftovers(path: Path) -> list[Path]:
     """Temporary files of `atomic_path` that a killed process left beside a file, at least a minute ago.
 

@@ -7,9 +7,9 @@ as a whole or not at all (`staged_file`). ``time`` has a length of its own: the 
 """
 
 import io
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5netcdf
 import h5py
@@ -20,6 +20,9 @@ from beltdyn.results.layout import Layout
 from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
 from beltdyn.results.size import chunk_rows
 from beltdyn.results.staged_file import RESERVE, StagedFile, identity
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _FORMAT = "earliest"
 _COPIED = 512
@@ -100,22 +103,6 @@ class GrowingFile:
                 file.attrs.update(attributes)
             staged.commit(reserve=0)
 
-    @property
-    def is_empty(self) -> bool:
-        """Whether it holds no outputs."""
-        return not any(self._outputs.values())
-
-    def remove(self, path: Path) -> None:
-        """Remove the file, if it is still the one that was created.
-
-        Raises
-        ------
-        OSError
-            If it is not there.
-        """
-        self._open(path).close()
-        path.unlink()
-
     def _open(self, path: Path) -> StagedFile:
         """Open the file, if it is still the one that was created."""
         file = StagedFile(path)
@@ -162,6 +149,34 @@ def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int]) 
             rows = {time: slice(min(first, count), min(first + _COPIED, count)) for time, count in counts.items()}
             copy.append(path, {name: file[name][rows[one.dims[0]]] for name, one in layout.recorded.items()})
     return copy
+
+
+def write_dataset(
+    path: Path, dataset: "xr.Dataset", encoding: Mapping[Hashable, Mapping[str, Any]] | None = None
+) -> None:
+    """Write a dataset that is complete to a file of its own.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    dataset : xarray.Dataset
+        What it shall hold.
+    encoding : mapping, optional
+        How variables are kept; see `xarray.Dataset.to_netcdf`.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    from xarray.backends import H5NetCDFStore
+
+    path.touch()
+    with StagedFile(path) as staged:
+        with h5netcdf.File(staged, "w") as file:
+            dataset.load().dump_to_store(H5NetCDFStore(file), encoding=encoding)
+        staged.commit(reserve=0)
 
 
 def _contents(layout: Layout, attributes: Mapping[str, Any]) -> bytes:

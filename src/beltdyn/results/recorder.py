@@ -13,6 +13,7 @@ from beltdyn.results.atomic import atomic_path, require_replaceable, unwritable
 from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset, unreadable
 from beltdyn.results.layout import Layout
 from beltdyn.results.lock import OutputLock
+from beltdyn.results.schema import TIMES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,6 +76,10 @@ class Recorder(Protocol):
             The dataset.
         """
 
+    @property
+    def file(self) -> Path | None:
+        """The file that holds outputs; None before the first of them, and in memory."""
+
 
 class MemoryRecorder:
     """Keeps outputs in memory.
@@ -109,6 +114,10 @@ class MemoryRecorder:
         arrays = {name: np.concatenate([chunk[name] for chunk in self._chunks]) for name in self._layout.recorded}
         return build_dataset(self._layout, arrays, self._attributes)
 
+    @property
+    def file(self) -> None:
+        """None; see `Recorder.file`."""
+
 
 class FileRecorder:
     """Writes outputs to a NetCDF4 file, which is closed and readable between any two of them.
@@ -118,7 +127,7 @@ class FileRecorder:
     Parameters
     ----------
     path : Path or str
-        The file; a result file that exists is replaced.
+        The file; a result file that exists is replaced when the first outputs are complete, and stays until then.
     layout : Layout
         Names and reference coordinates of what is recorded.
     attributes : mapping
@@ -135,18 +144,15 @@ class FileRecorder:
     def __init__(
         self, path: Path | str, layout: Layout, attributes: Mapping[str, Any], overwrite: bool = False
     ) -> None:
-        self.path = Path(path)
+        self.path, self._overwrite = Path(path), overwrite
         self._target = self.path.resolve()
-        require_replaceable(self.path, lambda _: True)
+        self._file: netcdf.GrowingFile | None = None
+        self.revise(layout, attributes)
+        require_replaceable(self.path, is_result, overwrite)
         try:
             self._lock = OutputLock(self._target)
         except OSError as error:
             raise ModelError(unwritable(self.path, error)) from error
-        try:
-            self._create(layout, attributes, overwrite)
-        except BaseException:
-            self._lock.release()
-            raise
 
     @classmethod
     def resumed(cls, path: Path, layout: Layout, counts: Mapping[str, int]) -> Self:
@@ -167,7 +173,7 @@ class FileRecorder:
             If the file cannot be read or written, is being written by another run, or holds fewer outputs.
         """
         made = cls.__new__(cls)
-        made.path, made._target, made._layout = path, path.resolve(), layout
+        made.path, made._target, made._layout, made._attributes = path, path.resolve(), layout, {}
         try:
             made._lock = OutputLock(made._target)
         except OSError as error:
@@ -185,13 +191,7 @@ class FileRecorder:
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
         """Begin anew; see `Recorder.revise`."""
-        self._create(layout, attributes, overwrite=False)
-
-    def _create(self, layout: Layout, attributes: Mapping[str, Any], overwrite: bool) -> None:
-        """Write a file without outputs."""
-        self._layout = layout
-        with atomic_path(self.path, is_result, overwrite) as temporary:
-            self._file = netcdf.GrowingFile(temporary, layout, {**attributes, "status": "running"})
+        self._layout, self._attributes = layout, {**attributes, "status": "running"}
 
     def append(self, outputs: Outputs) -> None:
         """Take outputs; see `Recorder.append`.
@@ -204,23 +204,36 @@ class FileRecorder:
             If the file can no longer be written; it keeps what it holds.
         """
         arrays = checked_outputs(self._layout, outputs)
+        if self._file is None:
+            if any(len(arrays[name]) for name in TIMES):
+                self._file = self._begin(arrays)
+            return
         try:
             self._file.append(self._target, arrays)
         except OSError as error:
             raise OutputError(unwritable(self.path, error)) from error
 
+    def _begin(self, arrays: Mapping[str, NDArray[Any]]) -> netcdf.GrowingFile:
+        """Make the file with its first outputs, and let it take the place of an earlier one."""
+        try:
+            with atomic_path(self.path, is_result, self._overwrite) as temporary:
+                file = netcdf.GrowingFile(temporary, self._layout, self._attributes)
+                file.append(temporary, arrays)
+        except ModelError as error:
+            raise OutputError(str(error)) from error
+        return file
+
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Take the end of the simulation; see `Recorder.close`. A file of a failure without outputs is removed.
+        """Take the end of the simulation; see `Recorder.close`. Without outputs there is no file, or an earlier one.
 
         Raises
         ------
         OutputError
             If the file can no longer be written; it keeps what it holds.
         """
+        self._attributes |= {**attributes, "status": status}
         try:
-            if status == "failed" and self._file.is_empty:
-                self._file.remove(self._target)
-            else:
+            if self._file is not None:
                 self._file.finish(self._target, {**attributes, "status": status})
         except OSError as error:
             raise OutputError(unwritable(self.path, error)) from error
@@ -229,7 +242,14 @@ class FileRecorder:
 
     def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far, read when it is used; see `Recorder.dataset`."""
+        if self._file is None:
+            return build_dataset(self._layout, _no_outputs(self._layout), self._attributes)
         return open_dataset(self.path)
+
+    @property
+    def file(self) -> Path | None:
+        """The file, once it holds outputs; see `Recorder.file`."""
+        return None if self._file is None else self.path
 
 
 def _no_outputs(layout: Layout) -> dict[str, NDArray[Any]]:

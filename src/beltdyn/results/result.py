@@ -10,6 +10,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.results.atomic import atomic_path
 from beltdyn.results.dataset import is_result, kind_of, unreadable
+from beltdyn.results.netcdf import write_dataset
 from beltdyn.results.provenance import provenance
 from beltdyn.results.schema import Variable
 
@@ -101,7 +102,7 @@ class Result:
         """
         path = Path(path)
         with atomic_path(path, is_result, overwrite) as temporary:
-            self.stored.load().to_netcdf(temporary, engine="h5netcdf")
+            write_dataset(temporary, self.stored)
         return path
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.results.atomic import stamp
 from beltdyn.results.checks import Finding, find
 from beltdyn.results.dataset import complete_dataset, kind_of, open_dataset, read_dataset, unreadable
 from beltdyn.results.recorded import InMemory, Recorded
@@ -44,7 +45,7 @@ class Run(Result):
 
     def __init__(self, dataset: "xr.Dataset | None", drive: Drive, path: Path | None = None) -> None:
         super().__init__(dataset, drive, path)
-        self._stamp = _stamp(path)
+        self._stamp = None if path is None else stamp(path)
 
     def __repr__(self) -> str:
         return f"Run(path={self.path!r})"
@@ -111,7 +112,7 @@ class Run(Result):
     @property
     def _file(self) -> Path:
         """The result file, if it is still that of this run."""
-        if self.path is None or self._stamp is None or _stamp(self.path) != self._stamp:
+        if self.path is None or self._stamp is None or stamp(self.path) != self._stamp:
             raise ModelError(f"{self.path} was changed, replaced or removed since this run wrote it. Run it again.")
         return self.path
 
@@ -180,14 +181,6 @@ class Run(Result):
         """
         if self.outputs == 0:
             raise ModelError("the run ended before its first output: there is nothing to show. Run it again.")
-
-
-def _stamp(path: Path | None) -> tuple[int, int] | None:
-    """What tells a file from another one of its name; None where there is none."""
-    if path is None or not path.exists():
-        return None
-    status = path.stat()
-    return status.st_ino, status.st_mtime_ns
 
 
 def open_run(path: Path | str) -> Run:

@@ -8,10 +8,12 @@ never meets a full disk: it would leave a file that cannot be read, and crash.
 import io
 import os
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Literal, Self
+
+import h5py
 
 RESERVE = 1 << 16
 """Bytes that a growing file holds behind its contents, so that its end can be recorded on a full disk."""
@@ -160,6 +162,33 @@ class StagedFile:
         while len(data) < size and (more := self._file.read(size - len(data))):
             data += more
         return data
+
+
+@contextmanager
+def staged_hdf5(path: Path, mode: Literal["w", "r+"]) -> Iterator[h5py.File]:
+    """Change an HDF5 file as a whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        A file that exists; empty if it shall be begun.
+    mode : {"w", "r+"}
+        Whether it is begun, or added to.
+
+    Yields
+    ------
+    h5py.File
+        What is written to it reaches the disk at the end.
+
+    Raises
+    ------
+    OSError
+        If the disk does not take it.
+    """
+    with StagedFile(path) as staged:
+        with h5py.File(staged, mode) as file:
+            yield file
+        staged.commit(reserve=0)
 
 
 def identity(status: os.stat_result) -> tuple[int, int]:

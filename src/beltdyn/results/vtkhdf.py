@@ -10,6 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.results.atomic import MARK, atomic_path, require_replaceable
 from beltdyn.results.run import Run
 from beltdyn.results.scene import Cylinders, Frames, Ribbon, Surface, batches
+from beltdyn.results.staged_file import staged_hdf5
 
 _VERSION = (2, 2)
 """Version of the format."""
@@ -59,9 +60,8 @@ def write_vtkhdf(run: Run, path: Path | str, overwrite: bool = False) -> list[Pa
     require_vtkhdf(path, overwrite)
     files = _files(path)
     for name, part in _PARTS.items():
-        with atomic_path(files[name], _is_ours, overwrite) as temporary, h5py.File(temporary, "w") as file:
-            file.attrs[_MAKER] = MARK
-            _write_part(file.create_group("VTKHDF"), run, part(run))
+        with atomic_path(files[name], _is_ours, overwrite) as temporary:
+            _write_part(temporary, run, part(run))
     return list(files.values())
 
 
@@ -97,11 +97,36 @@ def _is_ours(path: Path) -> bool:
     return False
 
 
-def _write_part(group: h5py.Group, run: Run, part: Ribbon | Cylinders) -> None:
-    """Write a part at all instants."""
-    written = _SurfaceOverTime(group, part.surface, run.dataset["field_time"].values)
+def _write_part(path: Path, run: Run, part: Ribbon | Cylinders) -> None:
+    """Write a part at all instants, some at a time."""
+    path.touch()
+    times = run.dataset["field_time"].values
+    with staged_hdf5(path, "w") as file:
+        file.attrs[_MAKER] = MARK
+        _begin(file.create_group("VTKHDF"), part.surface, times)
+    done = 0
     for instants in batches(run):
-        written.append(part.frames(instants))
+        frames = part.frames(instants)
+        with staged_hdf5(path, "r+") as file:
+            _SurfaceOverTime(file["VTKHDF"], len(times), done).append(frames)
+        done += len(frames.places)
+
+
+def _begin(group: h5py.Group, surface: Surface, times: FloatArray) -> None:
+    """Write polygons, which are the same at all instants, and the instants (s), shape (steps,)."""
+    group.attrs["Version"] = _VERSION
+    group.attrs["Type"] = np.bytes_("PolyData")
+    group["NumberOfPoints"] = np.array([surface.points])
+    for kind in _CELL_KINDS:
+        _write_cells(group.create_group(kind), surface if kind == "Polygons" else Surface([], 0))
+    steps, count = group.create_group("Steps"), len(times)
+    steps.attrs["NSteps"] = count
+    steps["Values"] = times
+    steps["NumberOfParts"] = np.ones(count, dtype=int)
+    steps["PartOffsets"] = np.zeros(count, dtype=int)
+    steps["PointOffsets"] = surface.points * np.arange(count)
+    for name in ("CellOffsets", "ConnectivityIdOffsets"):
+        steps[name] = np.zeros((count, len(_CELL_KINDS)), dtype=int)
 
 
 class _SurfaceOverTime:
@@ -110,29 +135,15 @@ class _SurfaceOverTime:
     Parameters
     ----------
     group : h5py.Group
-        Where it stands, empty.
-    surface : Surface
-        Its polygons.
-    times : ndarray, shape (steps,)
-        All instants, s.
+        Where it stands, with its polygons.
+    count : int
+        Number of all instants.
+    done : int
+        Of these that were written.
     """
 
-    def __init__(self, group: h5py.Group, surface: Surface, times: FloatArray) -> None:
-        self._group, self._surface, self._count, self._done = group, surface, len(times), 0
-        group.attrs["Version"] = _VERSION
-        group.attrs["Type"] = np.bytes_("PolyData")
-        group["NumberOfPoints"] = np.array([surface.points])
-        for kind in _CELL_KINDS:
-            _write_cells(group.create_group(kind), surface if kind == "Polygons" else Surface([], 0))
-        steps = group.create_group("Steps")
-        steps.attrs["NSteps"] = self._count
-        steps["Values"] = times
-        steps["NumberOfParts"] = np.ones(self._count, dtype=int)
-        steps["PartOffsets"] = np.zeros(self._count, dtype=int)
-        steps["PointOffsets"] = surface.points * np.arange(self._count)
-        for name in ("CellOffsets", "ConnectivityIdOffsets"):
-            steps[name] = np.zeros((self._count, len(_CELL_KINDS)), dtype=int)
-        self._steps = steps
+    def __init__(self, group: h5py.Group, count: int, done: int) -> None:
+        self._group, self._steps, self._count, self._done = group, group["Steps"], count, done
 
     def append(self, frames: Frames) -> None:
         """Write the next instants."""
@@ -143,7 +154,6 @@ class _SurfaceOverTime:
                 offsets = f"{kind}Offsets/{name}"
                 if offsets not in self._steps:
                     self._steps[offsets] = one.shape[1] * np.arange(self._count)
-        self._done += len(frames.places)
 
     def _write(self, name: str, values: FloatArray) -> None:
         """Write values of instants, shape (k, n, ...), behind those before."""
@@ -157,7 +167,7 @@ class _SurfaceOverTime:
 
 
 def _write_cells(group: h5py.Group, surface: Surface) -> None:
-    """Write the polygons of a surface, which are the same at all instants."""
+    """Write the polygons of a surface."""
     sizes = [len(one) for one in surface.corners]
     group["NumberOfCells"] = np.array([len(sizes)])
     group["NumberOfConnectivityIds"] = np.array([sum(sizes)])

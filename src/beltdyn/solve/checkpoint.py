@@ -66,27 +66,40 @@ class Keeper:
         As it was given.
     compare_steady
         As for `simulate`.
+    resumes
+        Whether a checkpoint that is there is of this run, and not of an earlier one.
     """
 
-    def __init__(self, path: Path | None, every: float, drive: Drive, compare_steady: bool) -> None:
-        self._path, self._every = path, every
+    def __init__(
+        self, path: Path | None, every: float, drive: Drive, compare_steady: bool, *, resumes: bool = False
+    ) -> None:
+        self._path, self._every, self._own = path, every, resumes
         self._drive, self._compare = drive, compare_steady
         self._last = time.perf_counter()
 
     def look(self, recording: Recording, integration: AlphaIntegration) -> None:
         """Write a checkpoint if it is time; what is on its way is complete.
 
+        One of an earlier run is removed as soon as the results of that are replaced.
+
         Raises
         ------
         ModelError
             If it cannot be written.
         """
-        if self._path is None or time.perf_counter() - self._last < self._every:
+        if self._path is None:
             return
         with uninterrupted():
-            point = Checkpoint(self._drive, integration, recording.keep(), self._compare)
-            write_checkpoint(checkpoint_file(self._path), point)
-        self._last = time.perf_counter()
+            kept = recording.keep() if time.perf_counter() - self._last > self._every else None
+            if recording.file is None:
+                return
+            if not self._own:
+                self.remove()
+                self._own = True
+            if kept is not None:
+                point = Checkpoint(self._drive, integration, kept, self._compare)
+                write_checkpoint(checkpoint_file(self._path), point)
+                self._last = time.perf_counter()
 
     def remove(self) -> None:
         """Remove the checkpoint, of a run that is complete or of an earlier one."""

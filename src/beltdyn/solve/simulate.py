@@ -142,7 +142,6 @@ def record_run(
         task = drive_task(found.drive, found.system, found.state, recording.statistics)
         if isinstance(integrator, GeneralizedAlpha) and not has_functions(given):
             keeper = Keeper(Path(output) if output is not None else None, checkpoint, given, compare_steady)
-            keeper.remove()  # of an earlier run
             _integrate(integrator.begin(task), recording, keeper)
         else:
             for chunk in integrator(task):
@@ -189,7 +188,8 @@ def _resume(drive: Drive, output: Path | str | None, progress: Report | None, ch
         )
     with Recording.resumed(point.recording, path, progress) as recording:
         compile_kernels(point.integration.task.system, point.integration.task.start)
-        _integrate(point.integration, recording, Keeper(path, checkpoint, point.drive, point.compare_steady))
+        keeper = Keeper(path, checkpoint, point.drive, point.compare_steady, resumes=True)
+        _integrate(point.integration, recording, keeper)
         _end(recording, point.drive, point.compare_steady)
     return recording.run()
 

@@ -5,6 +5,7 @@ import os
 import signal
 import warnings
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from dataclasses import dataclass, replace
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
@@ -16,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 from beltdyn.analyses import Analysis
 from beltdyn.errors import BeltdynError, SimulationError
 from beltdyn.model import Drive
-from beltdyn.results import Result, Run, Summary, summarize
+from beltdyn.results import Result, Run, Summary, open_result, summarize
+from beltdyn.results.atomic import stamp
 from beltdyn.signals import ENDING
 from beltdyn.solve.progress import Progress
 
@@ -178,31 +180,33 @@ def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
     def note(progress: Progress) -> None:
         _parts[place] = progress.time / progress.duration
 
+    before = stamp(file)
     try:
         with working():
             result = work.analysis.write(drive, file, heeding(note), work.overwrite, **work.options)
-            ending = _ended(result)
+            ending = _ended(result) if stamp(file) != before else Ending(result.status)
             if work.finish is not None and result.status == "completed":
                 work.finish(result)
             return ending
     except SimulationError as error:
-        return _kept(drive, file, str(error)) if work.analysis.grows else Ending("failed", str(error))
+        left = stamp(file) not in (before, None)
+        return _kept(file, str(error)) if left else Ending("failed", str(error))
     except BeltdynError as error:
         return Ending("failed", str(error))
     except Exception as error:
         return Ending("failed", f"{type(error).__name__}: {error}")
 
 
-def _kept(drive: Drive | Run, file: Path, error: str) -> Ending:
-    """How a simulation ended that could not go on, with what it left."""
+def _kept(file: Path, error: str) -> Ending:
+    """How an analysis ended that could not go on, with what it left."""
     try:
-        return replace(_ended(Run(None, drive.drive if isinstance(drive, Run) else drive, file)), error=error)
+        found = open_result(file)
+        with closing(found.dataset):
+            return replace(_ended(found), error=error)
     except (BeltdynError, OSError):  # its file was taken away
         return Ending("failed", error)
 
 
 def _ended(result: Result) -> Ending:
-    if isinstance(result, Run) and not result.outputs:
-        return Ending(result.status)
     summary = summarize(result) if isinstance(result, Run) else None
     return Ending(result.status, summary=summary, warnings=tuple(result.warnings), kept=True)

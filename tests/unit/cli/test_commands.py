@@ -189,11 +189,17 @@ def test_an_interrupted_simulation(
     run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch, make_run: Callable[..., Run]
 ) -> None:
     run = make_run(status="interrupted")
-    put_in_place_of_simulate(monkeypatch, lambda drive, **options: run)
-    code, output, _ = run_main(["run", str(drive_file), "-o", "out.nc"])
+    out = drive_file.with_name("out.nc")
+
+    def interrupted(drive: Drive, output: Path, **options: Any) -> Run:
+        run.save(output)
+        return run
+
+    put_in_place_of_simulate(monkeypatch, interrupted)
+    code, output, _ = run_main(["run", str(drive_file), "-o", str(out)])
     assert code == 130
     assert "Interrupted: what was computed is kept." in output
-    assert "Results: out.nc" in output
+    assert f"Results: {out}" in output
 
 
 def test_an_interruption_elsewhere(run_main: RunMain, drive_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from beltdyn.published import demo_text
-from beltdyn.results import FileRecorder, Layout
+from beltdyn.results import FileRecorder, Layout, Run
 
 Refuse = Callable[[list[str]], str]
 RunMain = Callable[[list[str]], tuple[int, str, str]]
@@ -113,13 +113,12 @@ WRONG_COMMANDS = (
 
 
 @pytest.mark.parametrize("words", WRONG_COMMANDS, ids=lambda words: words[0])
-def test_a_misspelt_name_costs_no_results(words: list[str], refuse: Refuse, drive_file: Path, layout: Layout) -> None:
+def test_a_misspelt_name_costs_no_results(words: list[str], refuse: Refuse, drive_file: Path, run: Run) -> None:
     """Names and points are checked before old files are touched, with `--force`, too."""
     folder = drive_file.parent
     for name, text in WRONG_TABLES.items():
         (folder / name).write_text(text.replace("DRIVE", drive_file.name), encoding="utf-8")
-    old = folder / "old.nc"
-    FileRecorder(old, layout, {"title": "old"}).close("interrupted", {})
+    old = run.save(folder / "old.nc")
     rows = "point,belt.width [m],hub_load[driven] [N],seconds [s],warnings,failure\n1,0.01,53.5,0.1,,\n"
     old.with_suffix(".csv").write_text(rows, encoding="utf-8")
     before = old.read_bytes()

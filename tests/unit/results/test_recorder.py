@@ -10,7 +10,8 @@ import pytest
 import xarray as xr
 
 from beltdyn.errors import BeltdynError, ModelError, OutputError
-from beltdyn.results import COORDINATES, VARIABLES, FileRecorder, Layout, MemoryRecorder, open_run, staged_file
+from beltdyn.results import COORDINATES, VARIABLES, FileRecorder, Layout, MemoryRecorder, Status, open_run, staged_file
+from beltdyn.results.recorder import _no_outputs
 
 TIME = np.linspace(0.0, 1.0, 121)
 KNOWN = {**VARIABLES, **COORDINATES}
@@ -70,7 +71,7 @@ def test_tensioners_are_recorded_where_there_are_any(
 def test_result_that_lacks_the_place_of_its_tensioner_is_refused(
     tmp_path: Path, layout: Layout, attributes: Any
 ) -> None:
-    recorder = FileRecorder(tmp_path / "tensioned.nc", replace(layout, tensioners=("driven",)), attributes)
+    recorder = MemoryRecorder(replace(layout, tensioners=("driven",)), attributes)
     with recorder.dataset() as dataset:
         dataset.drop_vars("tensioner_position").to_netcdf(tmp_path / "other.nc", engine="h5netcdf")
     with pytest.raises(ModelError, match="holds no `tensioner_position`"):
@@ -111,31 +112,45 @@ def test_file_is_readable_while_it_grows(
         assert any("the run goes on, or was killed" in warning for warning in run.warnings)
 
 
-def test_result_without_outputs_opens(tmp_path: Path, layout: Layout, attributes: Any) -> None:
-    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    recorder.close("interrupted", {})
-    with recorder.dataset() as dataset:
-        assert dataset.sizes["time"] == 0
-        xr.testing.assert_identical(dataset.drop_attrs(), _empty(layout).drop_attrs())
-
-
-def test_a_failure_without_outputs_leaves_nothing(tmp_path: Path, layout: Layout, attributes: Any) -> None:
-    FileRecorder(tmp_path / "result.nc", layout, attributes).close("failed", {})
+@pytest.mark.parametrize("status", ["completed", "interrupted", "failed"])
+def test_without_outputs_there_is_no_file(tmp_path: Path, layout: Layout, attributes: Any, status: Status) -> None:
+    recorder, memory = FileRecorder(tmp_path / "result.nc", layout, attributes), MemoryRecorder(layout, attributes)
+    for one in (recorder, memory):
+        one.close(status, {"steps": 3})
     assert list(tmp_path.iterdir()) == []
+    assert recorder.file is None
+    xr.testing.assert_identical(recorder.dataset(), memory.dataset())
 
 
-def test_a_failure_without_outputs_leaves_the_file_of_another(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+@pytest.mark.parametrize("status", ["completed", "interrupted", "failed"])
+def test_an_earlier_result_stays_until_there_are_outputs(
+    result: FileRecorder, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], status: Status
+) -> None:
+    before = result.path.read_bytes()
+    recorder = FileRecorder(result.path, layout, attributes)
+    recorder.revise(layout, attributes)
+    recorder.append(_no_outputs(layout))
+    assert result.path.read_bytes() == before
+    recorder.close(status, {})
+    assert result.path.read_bytes() == before
+    recorder = FileRecorder(result.path, layout, attributes)
+    recorder.append(make_chunk(TIME[:3]))
+    assert recorder.file == result.path
+    with open_run(result.path).dataset as dataset:
+        assert dataset.sizes["time"] == 3
+    recorder.close(status, {})
+
+
+def test_a_file_that_came_meanwhile_stays(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
     recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    other = tmp_path / "other"
-    other.write_text("mine", encoding="utf-8")
-    other.replace(recorder.path)
-    with pytest.raises(OutputError, match="another file has taken its place"):
-        recorder.close("failed", {})
+    recorder.path.write_text("mine", encoding="utf-8")
+    with pytest.raises(OutputError, match="is there already, and is not a file that beltdyn wrote"):
+        recorder.append(make_chunk(TIME))
+    recorder.close("failed", {})
     assert recorder.path.read_text(encoding="utf-8") == "mine"
-
-
-def _empty(layout: Layout) -> xr.Dataset:
-    return MemoryRecorder(layout, {}).dataset()
+    assert list(tmp_path.iterdir()) == [recorder.path]
 
 
 def test_interrupted_append_is_cut_off(
@@ -221,7 +236,8 @@ def test_an_append_writes_its_outputs_and_little_more(
 
     appends, chunk = 20, make_chunk(TIME[:50])
     recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    empty = recorder.path.stat().st_size
+    recorder.append(chunk)
+    begun = recorder.path.stat().st_size
     outputs = sum(np.asarray(chunk[name], variable.dtype).nbytes for name, variable in layout.recorded.items())
     ends = 2 * len(layout.recorded) * staged_file._BLOCK  # a variable's rows begin and end within blocks
     monkeypatch.setattr(staged_file, "_write_all", counting)
@@ -229,4 +245,4 @@ def test_an_append_writes_its_outputs_and_little_more(
         written.clear()
         recorder.append(chunk)
         assert outputs < sum(written) < outputs + ends + staged_file.RESERVE
-    assert outputs + ends + staged_file.RESERVE < recorder.path.stat().st_size < 1.1 * (empty + appends * outputs)
+    assert outputs + ends + staged_file.RESERVE < recorder.path.stat().st_size < 1.1 * (begun + appends * outputs)

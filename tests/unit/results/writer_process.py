@@ -19,8 +19,6 @@ PAUSE = 0.05
 def write(path: Path, outputs: int) -> None:
     layout = Layout(("a", "b"), ("a-b", "b-a"), np.arange(20.0), np.arange(20.0), np.arange(100.0), ("r_x", "r_y"))
     recorder = FileRecorder(path, layout, {"drive": ""})
-    sys.stdout.write("ready\n")
-    sys.stdout.flush()
     start = 0
     while True:
         numbers = np.arange(start, start + outputs) % PERIOD
@@ -31,6 +29,9 @@ def write(path: Path, outputs: int) -> None:
         for name in TIMES:
             chunk[name] = np.arange(start, start + outputs)
         recorder.append(chunk)
+        if not start:
+            sys.stdout.write("ready\n")
+            sys.stdout.flush()
         time.sleep(PAUSE)
         start += outputs
 

@@ -242,7 +242,12 @@ class Recording:
 
     def run(self) -> Run:
         """The run that was recorded."""
-        return Run(None if self._path else self._recorder.dataset(), self._drive, self._path)
+        return Run(None if self.file else self._recorder.dataset(), self._drive, self.file)
+
+    @property
+    def file(self) -> Path | None:
+        """The result file, once it holds outputs; until then an earlier one may be there."""
+        return self._recorder.file
 
     def _write(self, *, ending: bool = False) -> None:
         """Record what waits, as a whole even if a signal comes meanwhile; at the end all that can be filtered."""
