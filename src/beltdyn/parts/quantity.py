@@ -72,6 +72,14 @@ def to_si(text: str, unit: str) -> float:
     return _convert(number, given, unit)
 
 
+def is_unit(text: str) -> bool:
+    """Tell whether a text is a unit that is known, such as ``"N m"``."""
+    try:
+        return bool(_UNIT.fullmatch(text) and len(text) <= _LONGEST_TEXT and _registry().parse_units(text))
+    except Exception:  # see _convert
+        return False
+
+
 def tolerance_in(text: str, unit: str) -> float | None:
     """The tolerance of a text such as ``"12.5 ± 0.1 mm"``, ``"12.5 +- 0.1 mm"`` or ``"12.5 mm ± 1 %"``, in `unit`.
 

@@ -1,16 +1,14 @@
 """Points of a table: from a CSV file of two columns, and what they must obey."""
 
-import csv
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import ValidationInfo
 
+from beltdyn.parts.csv_rows import NUMERIC, SEPARATORS, CsvRow, read_rows, row_of_units, unit_in_brackets
 from beltdyn.parts.error_location import shorten
-from beltdyn.parts.messages import reason
-from beltdyn.parts.text_file import LONGEST_TABLE, read_text
 
 
 def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
@@ -28,7 +26,8 @@ def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
     Returns
     -------
     object
-        The same table with its columns, as text with units where the key ``units`` gives those of the columns.
+        The same table with its columns, as text with units where the key ``units``, or else the head of the file,
+        gives those of the columns.
 
     Raises
     ------
@@ -37,8 +36,8 @@ def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
     """
     if not names_file(data, (first, second)):
         return data
-    columns = zip(*read_table(data["file"], _base(info), 2), strict=True)
-    units = data.get("units", ("", ""))
+    told, rows = read_table(data["file"], _base(info), 2)
+    columns, units = zip(*rows, strict=True), data.get("units", told)
     if not (isinstance(units, Sequence) and len(units) == 2 and all(isinstance(unit, str) for unit in units)):
         raise ValueError(f'units = {shorten(units)} must be the units of both columns, such as ["rpm", "N m"]')
     read = [with_unit(column, unit) for column, unit in zip(columns, units, strict=True)]
@@ -70,7 +69,7 @@ def take_grid(data: Any, info: ValidationInfo, rows: str, columns: str, values: 
     """
     if not names_file(data, (rows, columns, values)):
         return data
-    head, *body = read_table(data["file"], _base(info), None)
+    head, *body = read_table(data["file"], _base(info), None).rows
     units = data.get("units", ("", "", ""))
     if not (isinstance(units, Sequence) and len(units) == 3 and all(isinstance(unit, str) for unit in units)):
         raise ValueError(
@@ -151,7 +150,7 @@ def describe_file(schema: dict[str, Any], keys: Sequence[str], content: str) -> 
     schema["properties"]["units"] = {
         "type": "array",
         "items": {"type": "string"},
-        "description": f"the units in the file of {', '.join(keys)}; by default SI",
+        "description": f"the units in the file of {', '.join(keys)}; by default those of its head, or SI",
     }
     others = [key for key in schema.pop("required", []) if key not in keys]
     if others:
@@ -159,10 +158,20 @@ def describe_file(schema: dict[str, Any], keys: Sequence[str], content: str) -> 
     schema["oneOf"] = [{"required": ["file"]}, {"required": list(keys)}]
 
 
-def read_table(name: object, base: Path | None, width: int | None) -> list[list[float]]:
+class NumberTable(NamedTuple):
+    """What a CSV file of numbers holds."""
+
+    units: tuple[str, ...]
+    """Those that its head tells of the columns, empty where it tells none."""
+    rows: list[list[float]]
+
+
+def read_table(name: object, base: Path | None, width: int | None) -> NumberTable:
     """Read the rows of a CSV file.
 
-    Lines that are empty or start with ``#`` are skipped, and so is one header line.
+    Lines that are empty or start with ``#`` are skipped, and so is a head: all lines above the first numbers whose
+    first cell does not begin as a number does. Units are in brackets behind headings, such as ``speed [rpm]``, or in a
+    row of their own below them.
 
     Parameters
     ----------
@@ -174,11 +183,6 @@ def read_table(name: object, base: Path | None, width: int | None) -> list[list[
         Numbers in a row.  None for a grid, whose rows are as long as its first line; the first cell of that is read as
         zero.
 
-    Returns
-    -------
-    list of list of float
-        The rows.
-
     Raises
     ------
     ValueError
@@ -187,57 +191,51 @@ def read_table(name: object, base: Path | None, width: int | None) -> list[list[
     if not isinstance(name, str | Path):
         raise ValueError(f"file = {shorten(name)} must be the path of a CSV file, as text")
     try:
-        lines = read_rows((base or Path()) / name, ". A relative path starts at the folder of the drive file")
+        separator, lines = read_rows(
+            (base or Path()) / name, ". A relative path starts at the folder of the drive file"
+        )
     except ValueError as error:
         raise ValueError(f'file = "{shorten(name)}" {error}') from error
+    head: list[CsvRow] = []
     if width is None and lines:
-        lines[0][1][0] = "0"
-        width = max(len(lines[0][1]), 2)
-    elif lines and _numbers(lines[0][1], width) is None:
-        lines = lines[1:]
+        lines[0].cells[0] = "0"
+        width = max(len(lines[0].cells), 2)
+    elif width is not None:
+        end = next((place for place, row in enumerate(lines) if _is_data(row.cells, width)), len(lines))
+        head, lines = lines[:end], lines[end:]
     rows: list[list[float]] = []
     for line, cells in lines:
         numbers = _numbers(cells, width)
         if numbers is None:
-            what = f'"{shorten(",".join(cells), 40)}" ' if rows else ""  # what is no table may be anything
-            many = "two numbers with a comma between" if width == 2 else f"{width} numbers with commas between"
-            raise ValueError(f'file = "{shorten(name)}", line {line}: {what}is not {many}. Correct this line')
+            fault = _fault(cells, width, SEPARATORS[separator], show=bool(rows))
+            raise ValueError(f'file = "{shorten(name)}", line {line}{fault}. Correct this line')
         rows.append(numbers)
     if not rows:
         raise ValueError(f'file = "{shorten(name)}" has no numbers. Give one line for each point')
-    return rows
+    return NumberTable(_units(head, len(rows[0])), rows)
 
 
-def read_rows(path: Path, hint: str = "") -> list[tuple[int, list[str]]]:
-    """Read the lines of a CSV file that are neither empty nor comments.
+def _is_data(cells: list[str], width: int) -> bool:
+    """Whether a line is no part of a head: it holds numbers, or should."""
+    return _numbers(cells, width) is not None or bool(NUMERIC.match(cells[0]))
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    hint : str
-        What a message adds where there is no such file.
 
-    Returns
-    -------
-    list of tuple
-        Number and cells of each line.
+def _units(head: list[CsvRow], width: int) -> tuple[str, ...]:
+    """Units that the last line of a head tells."""
+    if not head or len(head[-1].cells) != width:
+        return ("",) * width
+    cells = head[-1].cells
+    return tuple((row_of_units(cells) if head[1:] else None) or map(unit_in_brackets, cells))
 
-    Raises
-    ------
-    ValueError
-        If it cannot be read as CSV: what goes behind the name of the file.
-    """
-    try:
-        reader = csv.reader(read_text(path, LONGEST_TABLE).splitlines())
-    except UnicodeDecodeError as error:
-        raise ValueError("is not a CSV text file. Save it as CSV in UTF-8") from error
-    except (OSError, ValueError) as error:
-        raise ValueError(f"cannot be read: {reason(error)}{hint}") from error
-    try:
-        return [(reader.line_num, row) for row in reader if any(map(str.strip, row)) and not row[0].startswith("#")]
-    except csv.Error as error:
-        raise ValueError(f"is not CSV in line {reader.line_num}: {error}. Correct this line") from error
+
+def _fault(cells: list[str], width: int | None, separator: str, *, show: bool) -> str:
+    """What is wrong with a line; what is no table may be anything, and is not shown."""
+    wrong = [place for place, cell in enumerate(cells, 1) if _numbers([cell], 1) is None]
+    if show and wrong and len(cells) == width:
+        return f', column {wrong[0]}: "{shorten(cells[wrong[0] - 1], 40)}" is not a number'
+    many = f"two numbers with a {separator} between" if width == 2 else f"{width} numbers with {separator}s between"
+    said = f'"{shorten(",".join(cells), 40)}" ' if show else ""
+    return f": {said}is not {many}"
 
 
 def _numbers(cells: list[str], width: int | None) -> list[float] | None:

@@ -25,10 +25,8 @@ def read_text(path: Path, longest: int) -> str:
 
     Parameters
     ----------
-    path : Path
-        The file.
-    longest : int
-        Most bytes that it may hold.
+    path, longest
+        As for `read_bytes`.
 
     Returns
     -------
@@ -40,7 +38,27 @@ def read_text(path: Path, longest: int) -> str:
     OSError
         If it cannot be read.
     ValueError
-        If it is no regular file, is too long, is no text in UTF-8 (`UnicodeDecodeError`), or its name is impossible.
+        As `read_bytes`; or if it is no text in UTF-8 (`UnicodeDecodeError`).
+    """
+    return read_bytes(path, longest).decode("utf-8-sig").replace("\r\n", "\n")
+
+
+def read_bytes(path: Path, longest: int) -> bytes:
+    """Read a file that is not too long.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    longest : int
+        Most bytes that it may hold.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    ValueError
+        If it is no regular file, is too long, or its name is impossible.
     """
     status = path.stat()
     if stat.S_ISDIR(status.st_mode):
@@ -51,7 +69,7 @@ def read_text(path: Path, longest: int) -> str:
         data = file.read(longest + 1)
     if len(data) > longest:
         raise ValueError(f"it holds {max(status.st_size, len(data)):,} bytes, and {longest:,} are the limit")
-    return data.decode("utf-8-sig").replace("\r\n", "\n")
+    return data
 
 
 def parse_toml(text: str) -> dict[str, Any]:

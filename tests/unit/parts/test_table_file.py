@@ -30,12 +30,13 @@ def write(tmp_path: Path) -> Any:
     ],
 )
 def test_two_columns_with_comments_empty_lines_and_a_header(write: Any, text: str) -> None:
-    assert read_table(write(text), None, 2) == [[0.0, 1.0], [2.0, -3.0]]
+    assert read_table(write(text), None, 2).rows == [[0.0, 1.0], [2.0, -3.0]]
 
 
 def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
     path = write("0,1\n2,3\n")
-    assert read_table(path.name, path.parent, 2) == read_table(str(path), None, 2) == [[0.0, 1.0], [2.0, 3.0]]
+    found = read_table(path.name, path.parent, 2)
+    assert found == read_table(str(path), None, 2) == (("", ""), [[0.0, 1.0], [2.0, 3.0]])
     with pytest.raises(ValueError, match=r'file = "points\.csv" cannot be read: .* starts at the folder of the drive'):
         read_table("points.csv", path.parent / "elsewhere", 2)
 
@@ -45,7 +46,7 @@ def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
     [
         ("0,1\n2;3\n", 'line 2: "2;3" is not two numbers with a comma between. Correct this line'),
         ("0,1\n\n# x\n2,3,4\n", 'line 4: "2,3,4" is not two numbers'),
-        ("time,torque\nt,T\n0,1\n", "line 2: is not two numbers"),
+        ("time,torque\n1,T\n0,1\n", "line 2: is not two numbers"),
         (b"\xff\xfe0,1", "is not a CSV text file. Save it as CSV in UTF-8"),
         ('0,1\n"' + "x" * 200_000 + '"\n', "is not CSV in line 2"),
     ],
@@ -121,3 +122,12 @@ def test_the_schema_asks_for_the_file_or_for_both_columns() -> None:
     assert schema["required"] == ["kind"]
     assert schema["oneOf"] == [{"required": ["file"]}, {"required": ["times", "values"]}]
     assert schema["properties"]["file"]["description"].endswith("two columns, times and values")
+
+
+def test_units_of_the_head_hold_unless_others_are_given(write: Any) -> None:
+    path = write("time [ms],speed [rpm]\n0,1\n2,3\n")
+    context: Any = SimpleNamespace(context={"base": path.parent})
+    told = take_file({"file": path.name}, context, "times", "values")
+    assert told == {"times": ["0.0 ms", "2.0 ms"], "values": ["1.0 rpm", "3.0 rpm"]}
+    given = take_file({"file": path.name, "units": ["", "rad/s"]}, context, "times", "values")
+    assert given == {"times": [0.0, 2.0], "values": ["1.0 rad/s", "3.0 rad/s"]}

@@ -1,4 +1,7 @@
-"""Tables that a user gives to an analysis: CSV files with a line of headings, such as "driver speed [rpm]"."""
+"""Tables that a user gives to an analysis: CSV files with headings, such as "driver speed [rpm]".
+
+Above the headings there may be lines with fewer cells, and below them a row of units, as loggers write them.
+"""
 
 import re
 from collections.abc import Iterator
@@ -8,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.csv_rows import CsvRow, read_rows, row_of_units, without_preamble
 from beltdyn.parts.quantity import to_si
-from beltdyn.parts.table_file import read_rows
 
 _HEADING = re.compile(r"\s*(?P<what>.*?)\s*(?:\[(?P<unit>[^\]]*)\])?\s*")
 
@@ -43,7 +46,8 @@ class HeadedColumn(NamedTuple):
             if not np.isfinite(number):
                 raise ValueError("must be a finite number")
         except ValueError as error:
-            raise ModelError(f'{self.path}, line {line}: "{cell.strip()}" {error}. Correct this line.') from error
+            where = f'{self.path}, line {line}: "{cell.strip()}" below "{self.what}"'
+            raise ModelError(f"{where} {error}. Correct this line.") from error
         return number
 
 
@@ -63,19 +67,22 @@ def read_headed(option: str, path: Path) -> list[HeadedColumn]:
         If it cannot be read, has no rows, or lines of other lengths than its headings.
     """
     try:
-        rows = read_rows(path)
+        rows = without_preamble(read_rows(path).rows)
     except ValueError as error:
         raise ModelError(f'{option} = "{path}" {error}.') from error
     if len(rows) < 2:
         raise ModelError(f'{option} = "{path}" has no rows. Give a line of headings, and lines of numbers below.')
-    headings = rows[0][1]
-    for number, line in rows[1:]:
+    headings, body = rows[0].cells, rows[1:]
+    for number, line in body:
         if len(line) != len(headings):
             raise ModelError(f"{path}, line {number}: {len(line)} cells, and there are {len(headings)} headings.")
-    return list(_columns(path, headings, rows[1:]))
+    if body[1:] and (units := row_of_units(body[0].cells)):
+        pairs = zip(headings, units, strict=True)
+        headings, body = [f"{name} [{unit}]" if unit and " [" not in name else name for name, unit in pairs], body[1:]
+    return list(_columns(path, headings, body))
 
 
-def _columns(path: Path, headings: list[str], rows: list[tuple[int, list[str]]]) -> Iterator[HeadedColumn]:
+def _columns(path: Path, headings: list[str], rows: list[CsvRow]) -> Iterator[HeadedColumn]:
     for place, heading in enumerate(headings):
         match = _HEADING.fullmatch(heading)
         what, unit = (match["what"], match["unit"] or "") if match else (heading.strip(), "")

@@ -21,6 +21,19 @@ def test_columns_and_units(tmp_path: Path) -> None:
     assert count.values("") == [1.0, 2.0]
 
 
+def test_a_table_of_a_logger(tmp_path: Path) -> None:
+    """Lines above the headings, a row of units, decimal commas; a heading's own unit, and names with brackets, stay."""
+    text = "Logger 7\nStart;12:30\ncrank speed;slip[a];force [kN]\n[rpm];%;N\n30,5;1,5;2\n60;2;3\n"
+    speed, slip, force = read_headed("table", written(tmp_path, text))
+    assert [(one.what, one.unit) for one in (speed, slip, force)] == [
+        ("crank speed", "rpm"),
+        ("slip[a]", "%"),
+        ("force", "kN"),
+    ]
+    assert slip.values("") == pytest.approx([0.015, 0.02])
+    assert force.values("N") == pytest.approx([2000.0, 3000.0])
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -28,7 +41,7 @@ def test_columns_and_units(tmp_path: Path) -> None:
         ("a, b\n1\n", "line 2: 1 cells, and there are 2 headings"),
         ("a [N]\nx\n", 'line 2: "x"'),
         ("a [m]\n1\n", "must be in units of"),
-        ("a [N]\nnan\n", '"nan" must be a number'),
+        ("a [N]\nnan\n", '"nan" below "a" must be a number'),
     ],
 )
 def test_what_is_wrong(tmp_path: Path, text: str, said: str) -> None:
