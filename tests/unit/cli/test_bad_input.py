@@ -308,7 +308,10 @@ CASES = (
         ("pulley[driven].torque", "is a directory"),
     ),
     Case(
-        "CSV of words", TORQUE, 'torque = { kind = "table", file = "words.csv" }', ('words.csv", line 3', "two numbers")
+        "CSV of words",
+        TORQUE,
+        'torque = { kind = "table", file = "words.csv" }',
+        ('words.csv", line 3', "is not a number"),
     ),
     Case(
         "CSV of three columns",
@@ -379,7 +382,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "wide.csv").write_text("0,1\n1,2,3\n")
     (tmp_path / "nan.csv").write_text("0,1\n1,nan\n")
     (tmp_path / "empty.csv").write_text("")
-    (tmp_path / "binary.csv").write_bytes(b"\xff\xfe\x00\x01")
+    (tmp_path / "binary.csv").write_bytes(b"\x89PNG\x00\x01")
     return tmp_path
 
 
