@@ -14,6 +14,7 @@ from beltdyn.model.earlier_run import EarlierRun
 from beltdyn.parts.error_location import entry_name, shorten
 from beltdyn.results import Run, open_run
 from beltdyn.results.recorded import runs_steadily
+from beltdyn.solve.checkpoint import is_checkpoint
 from beltdyn.solve.steady_running.flowing_start import DIRECTION, Beginning
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
@@ -158,6 +159,12 @@ def begin_from(drive: Drive) -> Beginning:
 @contextmanager
 def _opened(start: EarlierRun) -> Iterator[Run]:
     """The earlier run; what is wrong with it is told of the key."""
+    if is_checkpoint(Path(start.file)):
+        results = Path(start.file).with_suffix(".nc")
+        raise ModelError(
+            f"simulation.start: {start.file} is a checkpoint, with which its run alone goes on: beltdyn run --resume "
+            f"{results}. To begin another run in a state of that one, name its result file, {results}."
+        )
     try:
         run = open_run(Path(start.file))
         try:

@@ -146,6 +146,14 @@ def test_what_is_no_earlier_run(given: Drive, tmp_path: Path) -> None:
         with_instant(given.with_({"simulation.start": {"file": str(tmp_path / "rest.nc")}}))
 
 
+def test_a_checkpoint_goes_on_with_its_own_run_alone(tmp_path: Path) -> None:
+    checkpoint = tmp_path / "run.checkpoint"
+    checkpoint.write_bytes(b"beltdyn checkpoint 0.1.0\n")
+    with pytest.raises(ModelError, match=r"is a checkpoint, .*beltdyn run --resume .*run\.nc") as error:
+        with_instant(DRIVES["travelling"]().with_({"simulation.start": {"file": str(checkpoint)}}))
+    assert "name its result file" in str(error.value)
+
+
 def test_the_command_tells_what_is_wrong(given: Drive, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Exit code 2, no traceback, and nothing written."""
     path = tmp_path / "drive.toml"
