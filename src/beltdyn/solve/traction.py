@@ -140,12 +140,17 @@ def traction(
         table.derive = partial(_curve, number=number, sense=float(np.sign(fastest)))
         table.expected = _EXPECTED
         table.attributes = {"drive_as_given": drive.text, "pulley": one.name}
+
+        def from_near(part: float) -> Drive:
+            return slipping(part, _firmness(table.near, number))
+
         before = 0.0
         for index, part in enumerate(slips.tolist()):
             for on_the_way in np.arange(before + _STRIDE, part, _STRIDE).tolist():
-                table.pass_by(slipping(on_the_way, _firmness(table.near, number)), force_tolerance)
-            table.find((index,), slipping(part, _firmness(table.near, number)), force_tolerance)
-            before = part
+                if table.pass_by(from_near(on_the_way), force_tolerance):
+                    before = on_the_way
+            if table.find((index,), from_near(part), force_tolerance, partial(_between, from_near, before, part)):
+                before = part
     return table.result()
 
 
@@ -185,6 +190,11 @@ def _sliding(run: Run, number: int) -> tuple[float, float]:
 def _firmness(near: Run | None, number: int) -> float:
     """Friction of the driver, over its own, next to an operating point."""
     return _FIRMER if near is not None and min(_sliding(near, number)) > _ABOUT else 1.0
+
+
+def _between(slipping: Callable[[float], Drive], before: float, after: float, part: float) -> Drive:
+    """The drive at a part of the way between two slips."""
+    return slipping(before + part * (after - before))
 
 
 def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, points: int) -> FloatArray:

@@ -1,5 +1,6 @@
 """Traction curves: where they begin and end, and what they are of."""
 
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 import xarray as xr
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, load
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import open_result
 from beltdyn.solve.traction import traction
@@ -32,6 +33,16 @@ def test_from_nothing_past_gross_slip(loaded: Drive, tmp_path: Path) -> None:
     assert float(found.limit_torque) == pytest.approx(float(found.torque[-1]), rel=1e-6)
     np.testing.assert_allclose(found.elastic + found.added + found.slid, found.slip, atol=1e-9)
     np.testing.assert_allclose(found.pulley_slip.sel(pulley="driven"), found.slip, atol=1e-9)
+
+
+def test_where_steps_of_the_slip_are_too_long_shorter_ones_are_taken() -> None:
+    """The arc of the alternator slides on nine tenths, and that of the crank on seven: a step of 0.1 % is too long."""
+    found = traction(
+        load(str(files("beltdyn") / "examples" / "alternator_drive.toml")), slip="2.0..2.6 %", points=6
+    ).dataset
+    assert np.all(found.failure == "")
+    assert np.all(np.diff(found.torque) > 0.0)
+    assert found.sliding_share[-1] > 0.9
 
 
 def test_which_pulley(loaded: Drive) -> None:

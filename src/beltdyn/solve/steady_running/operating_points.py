@@ -4,6 +4,7 @@ import re
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -30,6 +31,8 @@ Axes = Mapping[str, tuple[Variable, ArrayLike]]
 
 _OFTEN = 1.0
 """Time between two writings of the file, s."""
+_SHORTEST_PART = 1.0 / 16.0
+"""Least part of the way between two points by which the second is looked for."""
 _PULLEY, _SPAN, _TENSIONER = ("pulley",), ("span",), ("tensioner",)
 _CAUSES = [cause for name, cause in LOSSES.items() if name != "numerical_loss"]
 
@@ -166,12 +169,20 @@ class OperatingPoints:
         """The operating point that was found last."""
         return self._near
 
-    def pass_by(self, drive: Drive, force_tolerance: float | None) -> None:
-        """Find an operating point on the way to another one, without noting it; parameters as for `find`."""
+    def pass_by(self, drive: Drive, force_tolerance: float | None) -> bool:
+        """Look for an operating point on the way to another one, without noting it; parameters as for `find`."""
         with suppress(ConvergenceError):
             self._near = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
+            return True
+        return False
 
-    def find(self, index: tuple[int, ...], drive: Drive, force_tolerance: float | None) -> Run | None:
+    def find(
+        self,
+        index: tuple[int, ...],
+        drive: Drive,
+        force_tolerance: float | None,
+        between: Callable[[float], Drive] | None = None,
+    ) -> Run | None:
         """Find an operating point, from the one that was found before.
 
         Parameters
@@ -182,6 +193,9 @@ class OperatingPoints:
             The drive there, with constant speeds, torques and schedules.
         force_tolerance
             As for `steady_state`.
+        between
+            The drive at a part of the way from the point that was found before, by which it is looked for if it is not
+            found at once.
 
         Returns
         -------
@@ -190,7 +204,7 @@ class OperatingPoints:
         """
         run = None
         try:
-            run = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
+            run = self._reach(drive, force_tolerance, between if self.found else None)
         except ConvergenceError as error:
             self.fail(index, "no operating point", str(error))
         else:
@@ -201,6 +215,32 @@ class OperatingPoints:
         if time.perf_counter() - self._written > _OFTEN:
             self._save()
         return run
+
+    def _reach(self, drive: Drive, force_tolerance: float | None, between: Callable[[float], Drive] | None) -> Run:
+        """Steady running, at once or by parts of the way.
+
+        Raises
+        ------
+        ConvergenceError
+            That of the drive itself, if it is not found.
+        """
+        found = partial(steady_state, force_tolerance=force_tolerance)
+        try:
+            return found(drive, start=self._near)
+        except ConvergenceError:
+            if between is None:
+                raise
+            near, done, part = self._near, 0.0, 0.5
+            while part >= _SHORTEST_PART:
+                ahead = min(done + part, 1.0)
+                try:
+                    near, done = found(drive if ahead == 1.0 else between(ahead), start=near), ahead
+                except ConvergenceError:
+                    part *= 0.5
+                else:
+                    if done == 1.0:
+                        return near
+            raise
 
     def fail(self, index: tuple[int, ...], what: str, reason: str) -> None:
         """Mark a point by the reason why something is not found there, and warn of it."""
