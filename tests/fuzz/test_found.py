@@ -108,9 +108,9 @@ def test_dots_in_texts_and_comments_are_no_keys() -> None:
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        ("user:secret:0:0\nroot:secret:0:0\n", "line 2: is not two numbers"),
-        ("secret\nsecret\n" * LONG, "line 2: is not two numbers"),
-        ("0,1\n1,two\n", 'line 2: "1,two" is not two numbers'),
+        ("user:secret:0:0\nroot:secret:0:0\n", "has no numbers"),
+        ("secret\nsecret\n" * LONG, "has no numbers"),
+        ("0,1\n1,two\n", 'line 2, column 2: "two" is not a number'),
         ("0,1\n" + "x" * LONG, "is not two numbers"),
     ],
 )

@@ -195,9 +195,10 @@ def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def end_as(monkeypatch: pytest.MonkeyPatch, run: Run) -> None:
-    """Let simulations give a run."""
+    """Let simulations write a run, and give it."""
 
     def simulate(drive: Drive, output: Path) -> Run:
+        run.save(output)
         return run
 
     app["run"].default_command = None  # it is made of the function

@@ -24,6 +24,7 @@ def test_a_sweep_takes_quantities_and_names_its_file(
 
     def record_run(drive: Drive, output: Path, *_: object, begin: object, watch: object, **attributes: str) -> Run:
         simulated.extend([drive, output, attributes])
+        run.save(output)
         return run
 
     monkeypatch.setattr(importlib.import_module("beltdyn.solve.sweep"), "record_run", record_run)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import h5py
+import numpy as np
 import pytest
 
 from beltdyn.errors import ModelError
@@ -32,7 +33,7 @@ REGULAR = (make_text, make_foreign_hdf5, make_empty)
 
 @pytest.mark.parametrize("make", REGULAR)
 def test_only_results_are_replaced(
-    tmp_path: Path, layout: Layout, attributes: Any, make: Callable[[Path], None]
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any], make: Callable[[Path], None]
 ) -> None:
     path = tmp_path / "mine"
     make(path)
@@ -41,7 +42,9 @@ def test_only_results_are_replaced(
         FileRecorder(path, layout, attributes)
     assert path.read_bytes() == before
     for overwrite in (True, False):  # a result now
-        FileRecorder(path, layout, attributes, overwrite).close("completed", {})
+        recorder = FileRecorder(path, layout, attributes, overwrite)
+        recorder.append(make_chunk(np.arange(3.0)))
+        recorder.close("completed", {})
         assert open_run(path).status == "completed"
     assert list(tmp_path.iterdir()) == [path]
 
@@ -61,12 +64,14 @@ def test_pipes_devices_and_folders_are_never_replaced(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
-def test_links_are_followed(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+def test_links_are_followed(tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]) -> None:
     """They stay, and what they lead to obeys the rule."""
     link, target = tmp_path / "link.nc", tmp_path / "target.nc"
     link.symlink_to(target)
     for _ in range(2):
-        FileRecorder(link, layout, attributes).close("completed", {})
+        recorder = FileRecorder(link, layout, attributes)
+        recorder.append(make_chunk(np.arange(3.0)))
+        recorder.close("completed", {})
         assert link.is_symlink()
         assert open_run(target).status == "completed"
     make_text(target)

@@ -15,9 +15,12 @@ from beltdyn.results import FileRecorder, Layout, open_run
 WRITER = Path(__file__).with_name("writer_process.py")
 
 
-def test_second_writer_is_refused(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+def test_second_writer_is_refused(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
     """By any name of the file; and nothing is changed by the attempt."""
     first = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    first.append(make_chunk(np.arange(3.0)))
     before = first.path.read_bytes()
     (tmp_path / "folder").mkdir()
     for name in (tmp_path / "result.nc", tmp_path / "folder" / ".." / "result.nc"):
@@ -29,7 +32,9 @@ def test_second_writer_is_refused(tmp_path: Path, layout: Layout, attributes: An
     assert sorted(file.name for file in tmp_path.iterdir()) == ["folder", "result.nc"]
 
 
-def test_lock_of_a_killed_process_is_gone(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+def test_lock_of_a_killed_process_is_gone(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
     path = tmp_path / "result.nc"
     command = [sys.executable, str(WRITER), str(path), "7"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
@@ -39,14 +44,18 @@ def test_lock_of_a_killed_process_is_gone(tmp_path: Path, layout: Layout, attrib
             FileRecorder(path, layout, attributes)
         process.kill()
     recorder = FileRecorder(path, layout, attributes)
+    recorder.append(make_chunk(np.arange(3.0)))
     recorder.close("completed", {})
     assert open_run(path).status == "completed"
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_a_file_that_is_read_amid_a_write_says_so(tmp_path: Path, layout: Layout, attributes: Any) -> None:
+def test_a_file_that_is_read_amid_a_write_says_so(
+    tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
+) -> None:
     """What a reader meets there may be neither the old contents nor the new ones."""
     recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
+    recorder.append(make_chunk(np.arange(3.0)))
     whole = recorder.path.read_bytes()
     recorder.path.write_bytes(whole[:100])
     with pytest.raises(ModelError, match="A run is writing it, or was killed meanwhile: try again"):
@@ -62,8 +71,9 @@ def test_rows_never_go_into_another_file(
     tmp_path: Path, layout: Layout, attributes: Any, make_chunk: Callable[..., Any]
 ) -> None:
     """As where the result was moved away, and another one moved to its place."""
-    recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
-    other = FileRecorder(tmp_path / "other.nc", layout, attributes)
+    recorder, other = (FileRecorder(tmp_path / name, layout, attributes) for name in ("result.nc", "other.nc"))
+    for one in (recorder, other):
+        one.append(make_chunk(np.arange(3.0)))
     other.close("completed", {})
     other.path.replace(recorder.path)
     before = recorder.path.read_bytes()
