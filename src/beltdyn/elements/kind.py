@@ -78,11 +78,11 @@ class ElementKind:
     shift : tuple of float
         What a shift of the whole belt does to each of them: 1 for places, 0 for derivatives.
     control : callable
-        Control points from the vectors, shape (curves, degree + 1, v), for a reference length (m).
+        Control points from the vectors, shape (..., curves, degree + 1, v), for reference lengths (m), shape (...).
     scale : callable
         Lengths that turn changes of the n coordinates of a node into m, for a reference length of elements (m).
     mass : callable
-        Mass matrix of an element, shape (2 n, 2 n), from `Section` and reference length (m).
+        Mass matrices of elements, shape (..., 2 n, 2 n), from `Section` and reference lengths (m), shape (...).
     nodal : callable
         Coordinates of nodes, shape (N, n), on a curve: from places r, dr/dx and d2r/dx2 of the material points, each of
         shape (N points, 2).
@@ -119,9 +119,9 @@ class ElementKind:
     coordinates: tuple[str, ...]
     vectors: tuple[int, ...]
     shift: tuple[float, ...]
-    control: Callable[[float], FloatArray]
+    control: Callable[[FloatArray | float], FloatArray]
     scale: Callable[[float], tuple[float, ...]]
-    mass: Callable[[Section, float], FloatArray]
+    mass: Callable[[Section, FloatArray | float], FloatArray]
     nodal: Callable[[FloatArray, FloatArray, FloatArray], FloatArray]
     energy: Callable[..., float]
     force: Callable[..., None]

@@ -162,15 +162,16 @@ def quintic_force(element: Quintic, e: FloatArray, length: float, wanted: bool, 
         end_tangent(work)
 
 
-def quintic_control(length: float) -> FloatArray:
-    """Control points of the Bezier curve from the six vectors, shape (1, 6, 6)."""
-    return np.asarray(_UNIT_CONTROL * length**_ORDERS)[None]
+def quintic_control(length: FloatArray | float) -> FloatArray:
+    """Control points of the Bezier curve from the six vectors, shape (..., 1, 6, 6)."""
+    return np.asarray(_UNIT_CONTROL * np.asarray(length)[..., None, None, None] ** _ORDERS)
 
 
-def quintic_mass(section: Section, length: float) -> FloatArray:
-    """Mass matrix, the integral of rho A S^T S, shape (12, 12)."""
-    scale = length**_COORDINATE_ORDERS
-    return np.asarray(section.mass * length * scale[:, None] * scale * _unit_mass())
+def quintic_mass(section: Section, length: FloatArray | float) -> FloatArray:
+    """Mass matrix, the integral of rho A S^T S, shape (..., 12, 12)."""
+    each = np.asarray(length)[..., None]
+    scale = each**_COORDINATE_ORDERS
+    return np.asarray((section.mass * each * scale)[..., :, None] * scale[..., None, :] * _unit_mass())
 
 
 @cache

@@ -48,15 +48,16 @@ def beam_force(beam: ThreeNodeBeam, e: FloatArray, length: float, _wanted: bool,
         add_spring(e, 2 * k, beam.section.bending / link, work.gradient, work.tangent)
 
 
-def lumped_mass(section: Section, length: float) -> FloatArray:
-    """Mass matrix of two links, half of the mass of each at its ends; p3 carries nothing here, shape (8, 8), kg."""
-    at_points = np.array([0.5, 1.0, 0.5, 0.0])
-    return np.diag(np.repeat(at_points * section.mass * length / LINKS, 2))
+def lumped_mass(section: Section, length: FloatArray | float) -> FloatArray:
+    """Mass matrix of two links, half of the mass of each at its ends and none at p3, shape (..., 8, 8), kg."""
+    at_points = np.diag(np.repeat([0.5, 1.0, 0.5, 0.0], 2))
+    return np.asarray(section.mass / LINKS * np.asarray(length)[..., None, None] * at_points)
 
 
-def _control(_length: float) -> FloatArray:
-    """Control points of both links from p0, p1 and p2, shape (2, 2, 3)."""
-    return np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]])
+def _control(length: FloatArray | float) -> FloatArray:
+    """Control points of both links from p0, p1 and p2, shape (..., 2, 2, 3)."""
+    both = np.array([[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]])
+    return np.broadcast_to(both, (*np.shape(length), *both.shape))
 
 
 THREE_NODE_BEAM = ElementKind(

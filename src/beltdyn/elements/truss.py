@@ -92,14 +92,14 @@ def truss_force(truss: Truss, e: FloatArray, length: float, _wanted: bool, work:
     add_link(e, 0, truss.section.stretch, length, work.gradient, work.tangent)
 
 
-def lumped_mass(section: Section, length: float) -> FloatArray:
-    """Mass matrix of a link, half of its mass at each end, shape (4, 4), kg."""
-    return 0.5 * section.mass * length * np.eye(4)
+def lumped_mass(section: Section, length: FloatArray | float) -> FloatArray:
+    """Mass matrix of a link, half of its mass at each end, shape (..., 4, 4), kg."""
+    return np.asarray(0.5 * section.mass * np.asarray(length)[..., None, None] * np.eye(4))
 
 
-def straight_control(_length: float) -> FloatArray:
-    """Control points of a straight curve from its ends, shape (1, 2, 2)."""
-    return np.eye(2)[None]
+def straight_control(length: FloatArray | float) -> FloatArray:
+    """Control points of a straight curve from its ends, shape (..., 1, 2, 2)."""
+    return np.broadcast_to(np.eye(2), (*np.shape(length), 1, 2, 2))
 
 
 def link_cubic_angle(angle: FloatArray) -> FloatArray:

@@ -63,7 +63,7 @@ def curve_points(
     elements = len(lengths) // kind.points
     element = np.concatenate([first, np.roll(first, -1, axis=-2)], axis=-1)[..., :elements, :]
     vectors = np.stack([element[..., start : start + 2] for start in kind.vectors], axis=-2)
-    control = np.stack([kind.control(float(np.sum(length))) for length in lengths.reshape(elements, -1)])
+    control = kind.control(lengths.reshape(elements, -1).sum(axis=1))
     points = np.einsum("ncpv,...nva->...ncpa", control, vectors).reshape(*instants, -1, control.shape[2], 2)
     degree, along = control.shape[2] - 1, xi[:, None]
     order = np.arange(degree + 1)

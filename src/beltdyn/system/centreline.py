@@ -29,17 +29,27 @@ def centreline_points(
     place, slope, bend : ndarray, shape (k, 2)
         r (m), dr/dx and d2r/dx2 (1/m).
     """
-    lengths = curve_lengths(system)
-    ends = np.cumsum(lengths)
-    curve = np.minimum(np.searchsorted(ends, along, side="right"), lengths.size - 1)
-    xi = (along - (ends - lengths)[curve]) / lengths[curve]
-    points = _control_points(system, position)
+    lengths, (points, powers, curve) = curve_lengths(system), _on_its_curves(system, position, along)
     degree = points.shape[1] - 1
     first = degree * np.diff(points, axis=1) / lengths[:, None, None]
     second = (degree - 1) * np.diff(first, axis=1) / lengths[:, None, None]
-    powers = np.vander(xi, degree + 1, increasing=True)
     place, slope, bend = (_on_curves(powers, p, curve) for p in (points, first, second))
     return place, slope, bend
+
+
+def centreline_places(system: System, position: FloatArray, along: FloatArray) -> FloatArray:
+    """Places of material points alone, shape (k, 2), m; see `centreline_points`."""
+    points, powers, curve = _on_its_curves(system, position, along)
+    return _on_curves(powers, points, curve)
+
+
+def _on_its_curves(system: System, position: FloatArray, along: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Control points of all curves, and of each point along the belt powers of xi and the number of its curve."""
+    lengths, points = curve_lengths(system), _control_points(system, position)
+    ends = np.cumsum(lengths)
+    curve = np.minimum(np.searchsorted(ends, along, side="right"), lengths.size - 1)
+    xi = (along - (ends - lengths)[curve]) / lengths[curve]
+    return points, np.vander(xi, points.shape[1], increasing=True), curve
 
 
 def _control_points(system: System, position: FloatArray) -> FloatArray:

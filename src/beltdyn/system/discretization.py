@@ -66,10 +66,10 @@ def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
         points=kind.points,
         scale=kind.scale(float(np.mean(length))),
         length=length,
-        mass=np.stack([kind.mass(section, float(each)) for each in length]),
+        mass=np.ascontiguousarray(kind.mass(section, length)),
         vectors=kind.vectors,
         shift=kind.shift,
-        control=np.stack([kind.control(float(each)) for each in length]),
+        control=np.ascontiguousarray(kind.control(length)),
         turned=kind.turned,
     )
 

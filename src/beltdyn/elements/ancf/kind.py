@@ -9,11 +9,15 @@ from beltdyn.elements.ancf.inertia import element_mass
 from beltdyn.elements.ancf.material_damping import DAMPING_WORKSPACE, damping_force
 from beltdyn.elements.kind import ElementKind
 
+_UNIT_CONTROL = np.array([[1, 0, 0, 0], [1, 1 / 3, 0, 0], [0, 0, 1, -1 / 3], [0, 0, 1, 0]], dtype=float)
+"""Control points from the vectors r_i, r_x,i, r_j, r_x,j of a cubic Hermite curve of length 1."""
+_ORDERS = np.array([0.0, 1.0, 0.0, 1.0])
+"""Of the derivatives that these are."""
 
-def _hermite_control(length: float) -> FloatArray:
-    """Control points of a cubic Hermite curve from r_i, r_x,i, r_j, r_x,j, shape (1, 4, 4)."""
-    third = length / 3.0
-    return np.array([[[1, 0, 0, 0], [1, third, 0, 0], [0, 0, 1, -third], [0, 0, 1, 0]]], dtype=float)
+
+def _hermite_control(length: FloatArray | float) -> FloatArray:
+    """Control points of a cubic Hermite curve from r_i, r_x,i, r_j, r_x,j, shape (..., 1, 4, 4)."""
+    return np.asarray(_UNIT_CONTROL * np.asarray(length)[..., None, None, None] ** _ORDERS)
 
 
 def _upright(place: FloatArray, slope: FloatArray, _bend: FloatArray) -> FloatArray:

@@ -20,6 +20,9 @@ PROFILE = record(
 )
 """A function of time."""
 
+_NOTHING = records(SEGMENT, start=[-np.inf])
+"""Segments of a profile that is zero."""
+
 
 class Profiles(NamedTuple):
     """Functions of time: one of each pulley (speed if prescribed, torque if free, zero if none), then schedules."""
@@ -42,29 +45,13 @@ def profile_rows(profiles: Sequence[Profile | None], harmonics: Sequence[Sequenc
     harmonics
         Those of each profile.
     """
-    pieces = [_segments(profile) for profile in profiles]
+    pieces = [_NOTHING if profile is None else profile.integrated for profile in profiles]
     first, waves = harmonic_rows(harmonics)
     return Profiles(
         table=records(PROFILE, segment=offsets(map(len, pieces)), harmonic=first),
         segment=np.concatenate([records(SEGMENT, start=[]), *pieces]).view(np.recarray),
         harmonic=waves,
     )
-
-
-def _segments(profile: Profile | None) -> Records:
-    """Segments of a profile, with their integrals."""
-    if profile is None:
-        return records(SEGMENT, start=[-np.inf])
-    segments, integral = profile.segments(), interpreted(segment_integral)
-    begins = np.concatenate([[0.0], segments.start[1:]]).tolist()
-    areas = [
-        integral(segment, begin, end)
-        for segment, begin, end in zip(segments[:-1], begins[:-1], begins[1:], strict=True)
-    ]
-    segments.integral[1:] = np.cumsum(areas)
-    zero = max(int(np.searchsorted(segments.start, 0.0, side="left")) - 1, 0)
-    segments.integral -= segments.integral[zero] + integral(segments[zero], begins[zero], 0.0)
-    return segments
 
 
 @kernel

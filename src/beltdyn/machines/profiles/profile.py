@@ -1,6 +1,7 @@
 """A prescribed value over time, its rate and its integral, in closed form piece by piece (Eqs. 28 and 29)."""
 
 from abc import abstractmethod
+from functools import cached_property
 from math import sin
 from typing import Any, ClassVar, Generic
 
@@ -47,6 +48,20 @@ class Profile(Part, Generic[Value]):
         recarray, shape (m,)
             Rows of `SEGMENT` without their integrals, in the order of their starts.
         """
+
+    @cached_property
+    def integrated(self) -> Records:
+        """Rows of `SEGMENT` with their integrals; not to be changed."""
+        segments, integral = self.segments(), interpreted(segment_integral)
+        begins = np.concatenate([[0.0], segments.start[1:]]).tolist()
+        areas = [
+            integral(segment, begin, end)
+            for segment, begin, end in zip(segments[:-1], begins[:-1], begins[1:], strict=True)
+        ]
+        segments.integral[1:] = np.cumsum(areas)
+        zero = max(int(np.searchsorted(segments.start, 0.0, side="left")) - 1, 0)
+        segments.integral -= segments.integral[zero] + integral(segments[zero], begins[zero], 0.0)
+        return segments
 
     def breakpoints(self) -> tuple[float, ...]:
         """Instants of kinks and jumps that a time integrator must step onto, s: none unless a kind says so."""

@@ -15,7 +15,7 @@ from beltdyn.solve.rest.static import only_tensioners
 from beltdyn.solve.steady_running.newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System
 from beltdyn.system.build_staying import staying_system
-from beltdyn.system.centreline import centreline_points
+from beltdyn.system.centreline import centreline_places, centreline_points
 from beltdyn.system.constant_drive import without_motion
 from beltdyn.system.discretization import nodal_coordinates, point_coordinates
 from beltdyn.system.pulley_state import pulley_center
@@ -229,7 +229,7 @@ def found_arcs(system: System, state: State) -> list[Arc]:
     ends = np.cumsum(system.length)
     parts = np.arange(_SAMPLES) / _SAMPLES
     along = ((ends - system.length)[:, None] + system.length[:, None] * parts).ravel()
-    places = centreline_points(system, state.position, along)[0]
+    places = centreline_places(system, state.position, along)
     found = list[Arc]()
     for depth, radius in zip(depths(system, state, places), system.rims.radius, strict=True):
         touching = np.flatnonzero(depth >= 0.0)
@@ -243,8 +243,8 @@ def found_arcs(system: System, state: State) -> list[Arc]:
 
 def depths(system: System, state: State, places: FloatArray) -> FloatArray:
     """How deep places (k, 2) lie within each pulley, m, negative outside, shape (P, k)."""
-    centers = [pulley_center(system, p, state.position) for p in range(system.pulleys.size)]
-    away = np.linalg.norm(places - np.array(centers)[:, None], axis=2)
+    centers = np.array([pulley_center(system, p, state.position) for p in range(system.pulleys.size)])
+    away = np.hypot(*(places[:, axis] - centers[:, axis, None] for axis in range(2)))
     return np.asarray(system.rims.radius[:, None] - away)
 
 

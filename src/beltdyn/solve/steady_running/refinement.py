@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Mapping
 from copy import copy
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -9,11 +11,11 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
-from beltdyn.model.graded_mesh import graded_mesh
+from beltdyn.model.graded_mesh import Arc, graded_mesh
 from beltdyn.solve.rest.staying import FINER, MOST_ELEMENTS, Standing, depths, found_arcs, stand
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.centreline import centreline_points
+from beltdyn.system.centreline import centreline_places
 from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
@@ -28,7 +30,8 @@ _LEAST_SLIP = 1e-4
 """Slip against which differences of slip are measured, at least."""
 
 
-class Solution(NamedTuple):
+@dataclass(frozen=True)
+class Solution:
     """Steady running on a mesh, or rest."""
 
     system: System
@@ -37,6 +40,11 @@ class Solution(NamedTuple):
     """What is seen there, one instant."""
     slips: FloatArray
     """Of the rims behind the first one, relative."""
+
+    @cached_property
+    def arcs(self) -> list[Arc]:
+        """Where the belt touches pulleys."""
+        return found_arcs(self.system, self.state)
 
 
 class MeshRule(NamedTuple):
@@ -187,8 +195,7 @@ def _mesh(drive: Drive, now: Solution, rule: MeshRule) -> FloatArray:
         count = round(rule.elements * rule.fineness)
         return np.full(count, length / count)
     kinks = _kinks(now)
-    arcs = found_arcs(now.system, now.state)
-    within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in arcs]
+    within = [arc._replace(kinks=tuple(k for k in kinks if arc.start < k < arc.end)) for arc in now.arcs]
     return graded_mesh(length, within, rule.layer, rule.fineness)
 
 
@@ -287,8 +294,7 @@ def _between(rest: Standing, finer: Standing) -> dict[str, float]:
 
 def _differences(before: Solution, after: Solution) -> dict[str, float]:
     """Differences of two solutions, relative."""
-    arcs = found_arcs(after.system, after.state)
-    along = np.concatenate([np.linspace(arc.start, arc.end, _POINTS) for arc in arcs] or [np.zeros(0)])
+    along = np.concatenate([np.linspace(arc.start, arc.end, _POINTS) for arc in after.arcs] or [np.zeros(0)])
     one, other = (np.maximum(_depth(solution, along), 0.0).reshape(-1, _POINTS) for solution in (before, after))
     peaks = np.max(np.abs(other - one), axis=1) / np.max(other, axis=1)
     means = np.abs(np.sum(other - one, axis=1)) / np.sum(other, axis=1)
@@ -304,5 +310,5 @@ def _differences(before: Solution, after: Solution) -> dict[str, float]:
 
 def _depth(solution: Solution, along: FloatArray) -> FloatArray:
     """Depth of points of the belt in whatever pulley is deepest, m; negative outside."""
-    places = centreline_points(solution.system, solution.state.position, along)[0]
+    places = centreline_places(solution.system, solution.state.position, along)
     return np.asarray(depths(solution.system, solution.state, places).max(axis=0))
