@@ -90,21 +90,27 @@ def test_case_2_against_a_run_over_time(factor: float, measured: Callable[..., N
 
 
 @pytest.mark.slow
-def test_accessory_drive_against_a_run_over_time(measured: Callable[..., None]) -> None:
+@pytest.mark.parametrize("hysteresis", [True, False])
+def test_accessory_drive_against_a_run_over_time(hysteresis: bool, measured: Callable[..., None]) -> None:
     """Seven pulleys, a tensioner without dry friction, clutches and springs behind rims, at a constant speed.
 
-    The largest contact forces are measured alone: on 300 travelling elements they swing by several per cent.
+    Runs over time smooth the hysteresis of bending, which the largest contact forces at the ends of arcs show: they are
+    measured alone with it, and right to 1 % without.
     """
     drive = example("accessory_drive")
     crank = drive.pulleys[0].replace(harmonics=())
     compressor = drive.pulleys[-1]
     smooth = compressor.replace(load=[load.replace(harmonics=()) for load in compressor.load])
     arm = drive.tensioners[0].replace(tensioning_friction=0.0, yielding_friction=0.0, damping=2.0)
-    steady = drive.replace(pulley=[crank, *drive.pulleys[1:-1], smooth], tensioner=[arm])
-    fine = steady.replace(
-        belt=steady.belt.replace(elements=300), simulation=steady.simulation.replace(duration=3.0, rtol=1e-4)
+    drive = drive.replace(
+        pulley=[crank, *drive.pulleys[1:-1], smooth],
+        tensioner=[arm],
+        simulation=drive.simulation.replace(duration=4.0, rtol=1e-3),
     )
-    compared(fine, steady, measured)
+    if not hysteresis:
+        drive = drive.replace(belt=drive.belt.replace(bending_loss_factor=0.0))
+    errors = compared(drive, drive, measured)
+    assert hysteresis or errors["force"] < 1e-2
 
 
 def compared(over_time: Drive, drive: Drive, measured: Callable[..., None]) -> dict[str, float]:
