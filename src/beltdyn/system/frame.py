@@ -72,7 +72,7 @@ def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
     xi, weights = gauss_points(degree + 1)
     bernstein = np.array([comb(degree, k) * xi**k * (1.0 - xi) ** (degree - k) for k in range(degree + 1)]).T
     slopes = bernstein @ basis @ derivative
-    inertia = mass * np.einsum("q,e,eqa,eqb->eab", weights, length, slopes, slopes)
+    inertia = mass * length[:, None, None] * (slopes.swapaxes(1, 2) * weights @ slopes)
     return Staying(np.zeros(1), np.ascontiguousarray(derivative), inertia)
 
 
