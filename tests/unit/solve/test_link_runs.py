@@ -20,7 +20,7 @@ SAMPLING = {"distributed": 5, "nodal": 2}
 """Contact points of a link."""
 
 
-@pytest.fixture(scope="module", params=ELEMENTS)
+@pytest.fixture(scope="module", params=["truss", pytest.param("three-node-beam", marks=pytest.mark.slow)])
 def kind(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 

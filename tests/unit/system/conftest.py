@@ -107,7 +107,11 @@ def make_drive(drive: Drive) -> Callable[..., Drive]:
     return make
 
 
-@pytest.fixture(scope="session", params=VARIANTS, ids="-".join)
+@pytest.fixture(
+    scope="session",
+    params=[pytest.param(one, marks=[pytest.mark.slow] if "three-node-beam" in one else []) for one in VARIANTS],
+    ids="-".join,
+)
 def small(request: pytest.FixtureRequest, make_drive: Callable[..., Drive]) -> Drive:
     return make_drive(*request.param)
 

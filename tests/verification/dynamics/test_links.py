@@ -41,8 +41,9 @@ def test_energy_account_closes(made_of: Callable[..., Drive], measured: Measured
     assert errors[1] < 0.3 * errors[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", CHAINS)
-@pytest.mark.parametrize("integrator", ["bdf", pytest.param("radau", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("integrator", ["bdf", "radau"])
 def test_integrators_agree(made_of: Callable[..., Drive], measured: Measured, kind: str, integrator: str) -> None:
     """As far as a local tolerance per unit of time demands, over a fraction of a second, with 96 links.
 
