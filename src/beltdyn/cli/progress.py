@@ -28,8 +28,9 @@ _PHASES = {
     "operating points": "finding operating points",
     "designs": "trying designs",
     "points": "computing points",
+    "no workers": "waiting for workers, of which the cluster has none",
 }
-_COUNTED = "integrating", "operating points", "designs", "points"
+_COUNTED = "integrating", "operating points", "designs", "points", "no workers"
 """Phases of which it is known how far they are."""
 
 

@@ -10,7 +10,16 @@ from typing import Literal
 _LATELY, _OFTEN = 5.0, 0.2
 """Computing time over which the pace is taken, and between the marks that it is taken from, s."""
 
-Phase = Literal["compiling", "equilibrium", "settling", "integrating", "operating points", "designs", "points"]
+Phase = Literal[
+    "compiling",
+    "equilibrium",
+    "settling",
+    "integrating",
+    "operating points",
+    "designs",
+    "points",
+    "no workers",
+]
 
 
 @dataclass(frozen=True)
@@ -30,7 +39,7 @@ class Progress:
     phase : str
         "compiling" (the kernels, once on a machine), "equilibrium", "settling" (at the first speed of a run-up),
         "integrating", or "operating points", "designs" and "points" (of a study), of which time and duration are the
-        numbers of those done and of all.
+        numbers of those done and of all; "no workers" while a cluster has none that could compute points.
     elapsed : float
         Computing time since the first step, s.
     bound : str

@@ -17,9 +17,9 @@ from beltdyn.parts.messages import suggest
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder
 from beltdyn.solve.compilation import compile_kernels
-from beltdyn.solve.progress import Pace, Progress, Report
+from beltdyn.solve.progress import Pace, Phase, Progress, Report
 from beltdyn.solve.studies.dispatch import Dispatch
-from beltdyn.solve.studies.executors import ThisProcess, workers_of
+from beltdyn.solve.studies.executors import ThisProcess, Workers, workers_of
 from beltdyn.solve.studies.point_work import PointWork
 from beltdyn.solve.studies.result_columns import require_reductions
 from beltdyn.solve.studies.study_plan import plan_of
@@ -108,7 +108,7 @@ def study(
                          "Compute them in this one, by jobs = 1.")  # fmt: skip
     with StudyTable(given, drive, plan, path, overwrite, retry) as table:
         waiting = np.flatnonzero(~table.done).tolist()
-        teller = _Teller(table, progress)
+        teller = _Teller(table, progress, workers)
         if waiting and scheduler is None:
             teller.compiling()
             _compile(drive)
@@ -161,8 +161,8 @@ def _compile(drive: Drive) -> None:
 class _Teller:
     """Tells of progress."""
 
-    def __init__(self, table: StudyTable, progress: Report | None) -> None:
-        self._table, self._progress = table, progress
+    def __init__(self, table: StudyTable, progress: Report | None, workers: Workers) -> None:
+        self._table, self._progress, self._workers = table, progress, workers
         self._begun, self._pace, self._before = time.perf_counter(), Pace(), int(table.done.sum())
 
     def compiling(self) -> None:
@@ -173,4 +173,5 @@ class _Teller:
         if self._progress is not None:
             done, elapsed = int(self._table.done.sum()), time.perf_counter() - self._begun
             pace = self._pace.at(elapsed, float(done - self._before))
-            self._progress(Progress(float(done), float(len(self._table.done)), 0.0, done, "points", elapsed, "", pace))
+            phase: Phase = "points" if self._workers.slots else "no workers"
+            self._progress(Progress(float(done), float(len(self._table.done)), 0.0, done, phase, elapsed, "", pace))

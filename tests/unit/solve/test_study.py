@@ -19,6 +19,7 @@ from beltdyn.solve import study
 from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.progress import Progress
 from beltdyn.solve.studies import point_work
+from beltdyn.solve.studies.executors import ThisProcess
 
 STUDY = """
 drive = "drive.toml"
@@ -152,6 +153,25 @@ def test_an_interruption_keeps_points_and_goes_on(study_file: Path, tmp_path: Pa
     assert study(study_file, output=tmp_path / "s.nc", jobs=1, progress=told.append).status == "completed"
     assert next(one.time for one in told if one.phase == "points") > done
     assert told[-1].time == told[-1].duration == 9.0
+
+
+def test_a_study_waits_for_workers_and_says_so(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Late(ThisProcess):
+        asked = 0
+
+        @property
+        def slots(self) -> int:  # type: ignore[override]
+            self.asked += 1
+            return int(self.asked > 6)
+
+    monkeypatch.setitem(study.__globals__, "workers_of", lambda jobs, scheduler: Late())
+    told: list[Progress] = []
+    found = study(study_file, progress=told.append).dataset
+    phases = [one.phase for one in told]
+    assert phases[1] == "no workers"
+    assert phases[-1] == "points"
+    assert phases == sorted(phases, key=("compiling", "no workers", "points").index)
+    assert np.isfinite(found["tension"]).sum() == 6
 
 
 @pytest.mark.slow

@@ -4,9 +4,10 @@ All are used alike: `submit` gives a `concurrent.futures.Future`, `slots` tells 
 and `lost` whether an error means that a process was killed, so that others have to do its work.
 """
 
+import asyncio
 import time
-from collections.abc import Callable
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from collections.abc import Awaitable, Callable
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any, Protocol
 
@@ -129,7 +130,6 @@ class DaskWorkers:
             raise ModelError(
                 f"scheduler = {scheduler!r} does not answer ({told}). Start one with `dask scheduler`, or correct it."
             ) from error
-        self._executor: Executor = self._client.get_executor(pure=False)
         self._asked, self._known = -_ASK, 0
 
     @property
@@ -144,7 +144,10 @@ class DaskWorkers:
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Have it computed; see `Workers.submit`."""
-        return self._executor.submit(function, *arguments)
+        future: Future[Any] = Future()
+        task = self._client.submit(function, *arguments, pure=False)
+        self._client.loop.add_callback(hand_on, task, future)
+        return future
 
     def lost(self, error: BaseException) -> bool:
         """See `Workers.lost`; the scheduler gives work of a killed worker to others a few times itself."""
@@ -154,8 +157,28 @@ class DaskWorkers:
 
     def close(self, *, abandon: bool = False) -> None:
         """Leave the cluster; see `Workers.close`."""
-        self._executor.shutdown(wait=not abandon)
         self._client.close()
+
+
+async def hand_on(task: Awaitable[Any], future: Future[Any]) -> None:
+    """Give what becomes of a task of Dask to a future, whatever it is.
+
+    Dask's own executor never tells of a task whose result was lost with its worker, and that has failed since then.
+
+    Parameters
+    ----------
+    task
+        The task.
+    future
+        What is told.
+    """
+    try:
+        future.set_result(await task)
+    except (CancelledError, asyncio.CancelledError):
+        future.cancel()
+        future.set_running_or_notify_cancel()
+    except Exception as error:
+        future.set_exception(error)
 
 
 def workers_of(jobs: int | None, scheduler: str | None) -> Workers:

@@ -1,16 +1,24 @@
 """Every point comes back once, whoever computes it, and whatever is killed meanwhile."""
 
+import os
+import random
+import signal
 import warnings
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
+from threading import Event, Thread
 
 import numpy as np
 import pytest
 
+from beltdyn.analyses import ANALYSES
 from beltdyn.errors import SimulationError
+from beltdyn.model import Drive, ParameterStudy
 from beltdyn.solve.studies.dispatch import Dispatch
 from beltdyn.solve.studies.executors import DaskWorkers, LocalProcesses, ThisProcess, Workers
 from beltdyn.solve.studies.point_work import Outcome, PointWork
+from beltdyn.solve.study import study
 
 Make = Callable[..., PointWork]
 
@@ -128,3 +136,55 @@ def test_a_cluster_that_goes_ends_the_study_with_what_came_back(tiny_work: Make)
         with pytest.raises(SimulationError, match="goes on where it was"):
             dispatch.run(range(50))
     assert 0 < len(found) < 50
+
+
+@pytest.mark.slow
+def test_a_study_on_a_cluster_outlives_thirty_kills(
+    drive: Drive, tiny_work: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker that computes is chosen at random and killed, with its results that were not fetched, 30 times.
+
+    Every point has one row, with its own number. `LocalCluster` would leave out a worker for good that is not back 15 s
+    after a loss, as one that is killed again; its deadline is put off.
+    """
+    distributed = pytest.importorskip("distributed")
+    dask = pytest.importorskip("dask")
+    work = tiny_work(seconds=0.1)
+    monkeypatch.setitem(ANALYSES, "static", work.analysis)
+    widths = np.linspace(0.0131, 0.02, 300).round(7).tolist()
+    plan = ParameterStudy(
+        analysis="static",
+        options=dict(work.options),
+        number=[{"path": "belt.width", "values": widths}],
+        results=["width"],
+    )
+    computed, rows, kills = tmp_path / "computed", tmp_path / "study.csv", list[int]()
+    chance, over = random.Random(17), Event()
+
+    def kill() -> None:
+        """Kill one of those that have computed since the last kill, each time some more rows are there."""
+        seen, goal = 0, 3
+        while len(kills) < 30 and not over.wait(0.05):
+            lines = computed.read_text(encoding="utf-8").splitlines() if computed.exists() else []
+            done = len(rows.read_text(encoding="utf-8").splitlines()) if rows.exists() else 0
+            alive = sorted({int(line.split()[1]) for line in lines[seen:]} - set(kills))
+            if done >= goal and alive:
+                kills.append(chance.choice(alive))
+                with suppress(ProcessLookupError):
+                    os.kill(kills[-1], signal.SIGKILL)
+                seen, goal = len(lines), done + chance.randint(1, 15)
+
+    with warnings.catch_warnings(), dask.config.set({"distributed.deploy.lost-worker-timeout": "1h"}):
+        warnings.simplefilter("ignore")  # those of the cluster, whose workers are killed
+        with distributed.LocalCluster(n_workers=3, threads_per_worker=1, dashboard_address=None) as cluster:
+            killer = Thread(target=kill)
+            killer.start()
+            found = study(plan, drive, scheduler=cluster.scheduler_address, output=tmp_path / "study.nc").dataset
+            over.set()
+            killer.join()
+    assert len(kills) == 30
+    assert found["width"].values.tolist() == widths
+    assert not (found["failure"] != "").any()
+    told = rows.read_text(encoding="utf-8").splitlines()[1:]
+    assert sorted(int(row.partition(",")[0]) for row in told) == list(range(1, len(widths) + 1))
+    assert len(computed.read_text(encoding="utf-8").splitlines()) > len(widths)  # some were lost, and computed again

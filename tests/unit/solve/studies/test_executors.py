@@ -1,11 +1,13 @@
 """Who computes is chosen by words, and wrong ones are told."""
 
+import asyncio
 import sys
+from concurrent.futures import CancelledError, Future
 
 import pytest
 
 from beltdyn.errors import ModelError
-from beltdyn.solve.studies.executors import DaskWorkers, LocalProcesses, ThisProcess, workers_of
+from beltdyn.solve.studies.executors import DaskWorkers, LocalProcesses, ThisProcess, hand_on, workers_of
 
 
 def test_one_job_is_this_process() -> None:
@@ -34,3 +36,19 @@ def test_an_address_that_is_none_is_told() -> None:
     pytest.importorskip("distributed")
     with pytest.raises(ModelError, match="does not answer"):
         DaskWorkers("nonsense://nowhere:1")
+
+
+@pytest.mark.parametrize("error", [RuntimeError("its worker died"), KeyError("lost"), CancelledError()])
+def test_whatever_becomes_of_a_task_is_told(error: Exception) -> None:
+    """Of one too whose result was lost with its worker, and which fails as it is waited for."""
+
+    async def task() -> None:
+        raise error
+
+    future: Future[None] = Future()
+    asyncio.run(hand_on(task(), future))
+    assert future.done()
+    if isinstance(error, CancelledError):
+        assert future.cancelled()
+    else:
+        assert future.exception() is error

@@ -16,7 +16,7 @@ def tiny(drive: Drive, *, seconds: float = 0.0, folder: str = "", kills: int = 0
         os.kill(os.getpid(), signal.SIGKILL)
     if folder:
         with (Path(folder) / "computed").open("a", encoding="utf-8") as file:
-            file.write(f"{drive.belt.width:.6f}\n")
+            file.write(f"{drive.belt.width:.6f} {os.getpid()}\n")
     end = time.process_time() + seconds
     while time.process_time() < end:
         pass
