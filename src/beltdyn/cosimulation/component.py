@@ -169,11 +169,17 @@ class Component:
 
     def _take_inputs(self, simulator: Simulator) -> None:
         """Hand on inputs that have changed: each change takes new accelerations, and short steps after it."""
+        moved = dict[str, list[float]]()
         for name, value in self._wanted.items():
             if value != self._applied.get(name):
                 one = self._inputs[name]
-                (simulator.set_speed if one.is_speed else simulator.set_torque)(one.pulley, value)
+                if one.coordinate is None:
+                    (simulator.set_speed if one.is_speed else simulator.set_torque)(one.pulley, value)
+                else:
+                    moved.setdefault(one.pulley, list(simulator.center(one.pulley)))[one.coordinate] = value
                 self._applied[name] = value
+        for pulley, center in moved.items():
+            simulator.set_center(pulley, center)
 
     def state(self) -> ComponentState:
         """Where it is, to which `restore` goes back; what follows is the same to the last bit."""

@@ -17,7 +17,7 @@ _FILE = "interface.json"
 TOLERANCE = "simulation.rtol"
 """The parameter that a host may set before it initialises a drive."""
 
-_SPEED_UNIT, _TORQUE_UNIT = "rad/s", "N m"
+_SPEED_UNIT, _TORQUE_UNIT, _CENTER_UNIT = "rad/s", "N m", "m"
 
 
 class Input(NamedTuple):
@@ -26,11 +26,12 @@ class Input(NamedTuple):
     Attributes
     ----------
     name : str
-        Its path in the drive file, ``pulley[NAME].speed`` or ``pulley[NAME].torque``.
+        Its path in the drive file: ``pulley[NAME].speed``, ``pulley[NAME].torque``, or a coordinate of the center,
+        ``pulley[NAME].center[1]``.
     pulley : str
         Name of the pulley.
     unit : str
-        rad/s or N m.
+        rad/s, N m, or m.
     meaning : str
         In words.
     start : float
@@ -45,8 +46,13 @@ class Input(NamedTuple):
 
     @property
     def is_speed(self) -> bool:
-        """Whether it is the speed of a pulley, and not its torque."""
+        """Whether it is the speed of a pulley."""
         return self.unit == _SPEED_UNIT
+
+    @property
+    def coordinate(self) -> int | None:
+        """Which coordinate of the center of a pulley it is, from zero; None of speeds and torques."""
+        return int(self.name[-2]) - 1 if self.unit == _CENTER_UNIT else None
 
 
 class Output(NamedTuple):
@@ -112,7 +118,10 @@ class Interface(NamedTuple):
 
 
 def inputs_of(drive: Drive) -> dict[str, Input]:
-    """What can be set of a drive: the speed of each pulley whose speed is prescribed, the torque of each other one.
+    """What can be set of a drive.
+
+    That is the speed of each pulley whose speed is prescribed, the torque of each other one, and the coordinates of
+    the center of each pulley that no tensioner with a spring carries.
 
     Parameters
     ----------
@@ -120,6 +129,13 @@ def inputs_of(drive: Drive) -> dict[str, Input]:
         The drive.
     """
     made = [_input(pulley, drive.simulation.begin) for pulley in drive.pulleys]
+    sprung = {one.pulley for one in drive.moving_tensioners}
+    made += [
+        Input(f"pulley[{one.name}].center[{place}]", one.name, _CENTER_UNIT, f"Center, {axis}: {one.name}", value)
+        for one in drive.pulleys
+        if one.name not in sprung
+        for place, (axis, value) in enumerate(zip("xy", one.center, strict=True), 1)
+    ]
     return {one.name: one for one in made}
 
 
@@ -150,7 +166,7 @@ def choose_inputs(drive: Drive, names: Sequence[str] | None) -> tuple[Input, ...
     known = inputs_of(drive)
     if names is None:
         given = {pulley.name for pulley in drive.pulleys if pulley.speed or pulley.torque}
-        return tuple(one for one in known.values() if one.pulley in given)
+        return tuple(one for one in known.values() if one.pulley in given and one.coordinate is None)
     _require_known("an input", names, known)
     return tuple(known[name] for name in dict.fromkeys(names))
 

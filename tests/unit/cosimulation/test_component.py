@@ -1,6 +1,7 @@
 """A drive in the hands of a host: its clock, inputs that change and that do not, steps that fail."""
 
 import pickle
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -9,13 +10,15 @@ from beltdyn.cosimulation.component import Component
 from beltdyn.cosimulation.interface import Interface, choose_inputs, choose_outputs
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
+from beltdyn.results.balance import LOSSES, STORED
 from beltdyn.solve import Simulator
 
 SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"
+X, Y = "pulley[driven].center[1]", "pulley[driven].center[2]"
 
 
-def component_of(drive: Drive) -> Component:
-    chosen = choose_inputs(drive, None), choose_outputs(drive, None)
+def component_of(drive: Drive, inputs: Sequence[str] | None = None) -> Component:
+    chosen = choose_inputs(drive, inputs), choose_outputs(drive, None)
     return Component(drive, Interface("Drive", "drive", 0.0, 0.03, 1e-3, 1e-4, *chosen))
 
 
@@ -54,6 +57,29 @@ def test_inputs_that_do_not_change_cost_nothing(short: Drive) -> None:
     assert outputs(once) == outputs(always)
     assert once.get("pulley_speed[driver]") == pytest.approx(1.5)
     assert once.get("shaft_torque[driven]") == -0.2
+
+
+@pytest.mark.parametrize("set_both", [False, True])
+def test_a_center_moves_as_a_simulator_moves_it(short: Drive, set_both: bool) -> None:
+    """To the bit, whether both coordinates are set or one; what the host does on the belt is stored or lost."""
+    still = {"pulley[driver].speed": {"kind": "constant", "value": 0.0}, "contact.friction": 0.0}
+    drive = short.with_(still | {"pulley[driven].torque": None, "simulation.start": "equilibrium"})
+    component, simulator = component_of(drive, [X, Y]), Simulator(drive)
+    component.begin()
+    (x, y), before = simulator.center("driven"), {name: component.get(name) for name in STORED}
+    for number in range(10):
+        component.set(X, x + 0.5e-4 * (number + 1))
+        if set_both:
+            component.set(Y, y)
+        simulator.set_center("driven", (x + 0.5e-4 * (number + 1), y))
+        component.step(number * 2e-3, 2e-3)
+        simulator.step(number * 2e-3 + 2e-3)
+    assert outputs(component) == list(simulator.outputs().values())
+    assert simulator.center("driven") == pytest.approx((x + 0.5e-3, y), abs=1e-12)
+    work = component.get("driver_work")
+    stored = sum(component.get(name) - before[name] for name in STORED)
+    assert stored + sum(component.get(name) for name in LOSSES) == pytest.approx(work, rel=0.01)
+    assert work > 0.25e-3 * component.get("hub_load[driven]")
 
 
 def test_states_go_to_another_component(short: Drive, component: Component) -> None:

@@ -24,6 +24,7 @@ from beltdyn.solve import Simulator, simulate
 pytestmark = pytest.mark.skipif(not FmuBuilder.has_binary(), reason="pythonfmu has no binary for this system")
 
 SPEED, TORQUE = "pulley[driver].speed", "pulley[driven].torque"
+CENTER = "pulley[driven].center[1]"
 BOTH = ("2.0", "3.0")
 STEP = 1e-3
 
@@ -119,6 +120,35 @@ def test_going_back_leads_to_the_same_to_the_bit(unit: Path, host: Hosts) -> Non
     other.restore(other.from_bytes(data))
     other.step(1)
     assert other.outputs() == expected
+
+
+@pytest.mark.parametrize("version", BOTH)
+def test_a_center_is_moved_and_taken_back(short: Drive, tmp_path: Path, host: Hosts, version: str) -> None:
+    """As `Simulator.set_center` does, to the bit; a state that is set back has the center where it was."""
+    path = fmu(short, tmp_path / "drive.fmu", [CENTER], fmi=version)
+    assert validate_fmu(str(path)) == []
+    one, simulator = host(path).begin(), Simulator(short)
+    (variable,) = [named for named in one.description.modelVariables if named.name == CENTER]
+    assert (variable.causality, variable.unit, float(variable.start)) == ("input", "m", short.pulleys[1].center[0])
+    x, y = simulator.center("driven")
+    for number in range(3):
+        if number == 1:
+            state = one.save()
+        if number:
+            one.put(CENTER, x + 1e-4 * number)
+            simulator.set_center("driven", (x + 1e-4 * number, y))
+        one.step(number)
+        simulator.step(number * STEP + STEP)
+    assert one.outputs() == simulator.outputs()
+    one.restore(state)
+    one.put(CENTER, x)
+    one.step(1)
+    assert one.outputs() != simulator.outputs()
+    one.restore(state)
+    for number in (1, 2):
+        one.put(CENTER, x + 1e-4 * number)
+        one.step(number)
+    assert one.outputs() == simulator.outputs()
 
 
 def test_two_instances_know_nothing_of_each_other(unit: Path, host: Hosts) -> None:
