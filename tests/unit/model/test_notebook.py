@@ -46,7 +46,7 @@ def test_the_belt_is_drawn_in_its_length_around_its_pulleys(name: str) -> None:
 def test_a_notebook_shows_pulleys_tension_and_warnings(drive: Drive) -> None:
     shown = drive._repr_html_()
     assert shown.count("<circle") == 2
-    assert "<td>driven</td>" in shown
+    assert re.findall(r'<th scope="row"[^>]*>(\w+)</th>', shown) == ["driver", "driven"]
     assert "N at rest" in shown
     for shown_drive in (drive, example("accessory_drive.toml"), example("crossed_belt.toml")):
         warnings = advise(shown_drive, install(shown_drive))
