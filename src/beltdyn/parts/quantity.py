@@ -17,6 +17,10 @@ _NUMBER = re.compile(r"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\
 _UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
 _TOLERANCE = re.compile(r"\s*(?:±|\+/?-)\s*(?P<size>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<percent>%?)\s*")
 _MARKS = re.compile(r"±|\+/?-")
+_MORE_UNITS = "newton_meter = newton * meter = Nm", "newton_millimeter = newton * millimeter = Nmm"
+"""As drive engineers write them; kNm and the like follow."""
+_TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
+"""Other ways to write rpm, of angular speeds."""
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
 _REMEMBERED = 4096
@@ -33,7 +37,10 @@ SHOWN_UNITS = MappingProxyType({"rad/s": ("rpm", RPM), "rad": ("°", math.degree
 def _registry() -> "pint.UnitRegistry[float]":
     import pint  # takes 0.4 s, and most files hold plain numbers
 
-    return pint.UnitRegistry()
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+    for definition in _MORE_UNITS:
+        registry.define(definition)
+    return registry
 
 
 def to_si(text: str, unit: str) -> float:
@@ -61,6 +68,8 @@ def to_si(text: str, unit: str) -> float:
     if match is None:
         raise ValueError(f"must be a number{f' in {unit}' if unit else ''}")
     number, given = float(match["number"]), match["unit"]
+    if unit == "rad/s" and _TURNS.fullmatch(given):
+        given = "rpm"
     if not unit and tolerance is not None and not given:
         return number
     if not unit:
@@ -75,7 +84,8 @@ def to_si(text: str, unit: str) -> float:
 def is_unit(text: str) -> bool:
     """Tell whether a text is a unit that is known, such as ``"N m"``."""
     try:
-        return bool(_UNIT.fullmatch(text) and len(text) <= _LONGEST_TEXT and _registry().parse_units(text))
+        known = _TURNS.fullmatch(text) or _UNIT.fullmatch(text)
+        return bool(known and len(text) <= _LONGEST_TEXT and _registry().parse_units(text))
     except Exception:  # see _convert
         return False
 

@@ -25,6 +25,15 @@ from beltdyn.parts.quantity import to_si, written_like
         ("1 ms", "s", 1e-3),
         ("10 kN/m**2", "N/m^2", 1e4),
         ("-.5 m", "m", -0.5),
+        ("12 Nm", "N*m", 12.0),
+        ("1.2 kNm", "N*m", 1200.0),
+        ("250 Nmm", "N*m", 0.25),
+        ("0.3 Nm/rad", "N*m/rad", 0.3),
+        ("720 U/min", "rad/s", 75.39822368615503),
+        ("720 rev/min", "rad/s", 75.39822368615503),
+        ("720 1/min", "rad/s", 75.39822368615503),
+        ("720 min^-1", "rad/s", 75.39822368615503),
+        ("720 min⁻¹", "rad/s", 75.39822368615503),
     ],
 )
 def test_units(text: str, unit: str, value: float) -> None:

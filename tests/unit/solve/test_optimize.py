@@ -171,3 +171,11 @@ def test_the_study_is_never_replaced(loaded: Drive, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="which is the study"):
         optimize(loaded, study=file, output=tmp_path / "s.nc", overwrite=True)
     assert "installed_tension" in file.read_text()
+
+
+def test_what_the_tolerance_of_limits_lets_pass_is_said(found: Result, tmp_path: Path) -> None:
+    """The limit of slip is active: the best design misses it by less than 1e-4 of it, or not at all, as is said."""
+    best = found.dataset
+    beyond = 1.0 - float(best.worst[1]) / SAFETY
+    assert beyond <= 1e-4
+    assert ("a limit is missed by" in str(best.ended.item())) == (beyond > 0.0)

@@ -51,13 +51,16 @@ def unsettled(evidence: Evidence) -> Iterator[Finding]:
             'Set simulation.frame = "staying", or give more belt.elements.',
         )
     elif not left < SETTLED:
-        much, longer = f"{left:.1%} of the largest mean span tension is", "a longer settling"
+        much, longer = f"{left:.1%} of the largest mean span tension was", "a longer settling"
         swept = [one for one in evidence.drive.pulleys if one.name == evidence.recorded.attrs.get("swept_pulley")]
         if isnan(left) and swept and swept[0].speed is not None:
             window = least_window(swept[0], float(swept[0].speed.at(evidence.time[:1])[0]))
-            much, longer = "an unknown part of the tensions is", f"a settling of {LEAST_WINDOWS * window:.2g} s or more"
+            much, longer = (
+                "an unknown part of the tensions was",
+                f"a settling of {LEAST_WINDOWS * window:.2g} s or more",
+            )
         yield Finding(
-            f"the run-up begins before the start is over: {much} still on its way to the steady state.",
+            f"the first speed had not settled when the run-up began: {much} still due to the start.",
             "It spoils spectra at the lowest speeds.",
             f"Give {longer}, or begin at a higher speed.",
         )

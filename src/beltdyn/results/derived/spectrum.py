@@ -68,7 +68,7 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     unknown = time[~np.isfinite(even.reshape(len(even), -1)).all(axis=1)]
     if unknown.size:
         raise ModelError(
-            f"{values.attrs['long_name']} is unknown from t = {unknown[0]:.4g} s to {unknown[-1]:.4g} s, as where a "
+            f"{_name_of(values)} is unknown from t = {unknown[0]:.4g} s to {unknown[-1]:.4g} s, as where a "
             "belt has left a pulley: there is no spectrum over that. Select a time before or after."
         )
     rate = (len(time) - 1) / (time[-1] - time[0])
@@ -151,7 +151,7 @@ def overall_level(amplitude: xr.DataArray) -> xr.DataArray:
     2.1
     """
     squares = 0.5 * np.sum(amplitude.values[:, 1:] ** 2, axis=1)
-    attributes = {"units": amplitude.attrs["units"], "long_name": "Overall level (RMS)"}
+    attributes = {"units": amplitude.attrs.get("units", "1"), "long_name": "Overall level (RMS)"}
     return amplitude[:, 0].copy(data=np.sqrt(squares / _NOISE_BANDWIDTH)).assign_attrs(attributes)
 
 
@@ -343,4 +343,9 @@ def _records(speed: FloatArray) -> IntArray:
 
 
 def _amplitude_of(values: xr.DataArray) -> dict[str, str]:
-    return {"units": str(values.attrs["units"]), "long_name": f"Amplitude of {values.attrs['long_name'].lower()}"}
+    return {"units": str(values.attrs.get("units", "1")), "long_name": f"Amplitude of {_name_of(values).lower()}"}
+
+
+def _name_of(values: xr.DataArray) -> str:
+    """A variable in words, also one that a user has computed, which loses its attributes."""
+    return str(values.attrs.get("long_name") or values.name or "the variable")

@@ -166,9 +166,16 @@ class History:
             "goal_at_start": self._aims.goal_of(start.values),
             "goal_found": self._aims.goal_of(best.values),
             "designs": len(self.tried),
-            "ended": self._ended,
+            "ended": self._ended + self._within_tolerance(best),
             **named,
         }
+
+    def _within_tolerance(self, best: Design) -> str:
+        """How far the best design is beyond a limit by which it counts as kept."""
+        beyond = self._aims.violation(best.values)
+        if not 0.0 < beyond <= _KEPT:
+            return ""
+        return f"; a limit is missed by {beyond:.2g} of it, within the tolerance of {_KEPT:g}"
 
     def _of_numbers(self, best: Design) -> dict[str, ArrayLike]:
         return {

@@ -206,6 +206,15 @@ def test_a_run_down_has_the_same_orders(run_up: Signals) -> None:
     assert float(back["order"][1:].values[int(np.argmax(back.mean("speed").values[1:]))]) == pytest.approx(2.5)
 
 
+def test_variables_without_unit_and_name_have_spectra_and_orders(run_up: Signals) -> None:
+    """As those that a user computes, which lose their attributes."""
+    values, angle = run_up[0].drop_attrs(), run_up[2]
+    for found in (orders(values, angle), amplitude_spectrum(values)):
+        assert found.attrs == {"units": "1", "long_name": "Amplitude of the variable"}
+    assert orders(values.rename("swing"), angle).attrs["long_name"] == "Amplitude of swing"
+    assert np.array_equal(orders(values, angle), orders(run_up[0], angle), equal_nan=True)
+
+
 def test_orders_need_turns() -> None:
     time = np.arange(0.0, 1.0, 1e-3)
     with pytest.raises(ModelError, match=r"makes 3.18 turns .* orders need 16 or more"):
