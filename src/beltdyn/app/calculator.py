@@ -2,10 +2,13 @@
 
 import asyncio
 import multiprocessing
-from concurrent.futures import ProcessPoolExecutor
+import threading
+from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing.context import SpawnProcess
+from multiprocessing.process import BaseProcess
 
-from beltdyn.app.computing import Answer, Asked, Preparations, answer, begin, look_ahead
+from beltdyn.app.computing import Answer, Asked, answer, begin, compile_ahead
 
 
 class Calculator:
@@ -13,27 +16,42 @@ class Calculator:
 
     def __init__(self) -> None:
         self._spawning = multiprocessing.get_context("spawn")
-        self._preparations = Preparations(self._spawning.Event(), self._spawning.Event())
+        self._compiles, self._compiles_ahead = self._spawning.Event(), self._spawning.Event()
         self._pool: ProcessPoolExecutor | None = None
+        self._ahead: SpawnProcess | None = None
+        self._starting = threading.Lock()
 
     @property
     def preparing(self) -> bool:
         """Whether kernels are compiled, which answers may wait for."""
-        return any(flag.is_set() for flag in self._preparations)
+        return self._compiles.is_set() or self._compiles_ahead.is_set()
 
     def look_ahead(self, asked: Asked) -> None:
-        """Start the process before there is a question, with a drive for which it makes its kernels ready.
+        """Load or compile what answers need, before there is a question.
+
+        What a drive at rest needs is loaded by the process that answers; running and modes are left to one of their
+        own, which begins when the drive is at rest.
 
         Parameters
         ----------
         asked : Asked
             A question about a drive at rest.
         """
-        self._process().submit(look_ahead, asked)
+        pool = self._process()
+
+        def go_on(found: Future[Answer]) -> None:
+            with self._starting:
+                if self._pool is pool and not found.cancelled() and found.exception() is None:
+                    self._ahead = self._spawning.Process(
+                        target=compile_ahead, args=(asked, self._compiles_ahead), daemon=True
+                    )
+                    self._ahead.start()
+
+        pool.submit(answer, asked).add_done_callback(go_on)
 
     def _process(self) -> ProcessPoolExecutor:
         if self._pool is None:
-            self._pool = ProcessPoolExecutor(1, self._spawning, begin, (self._preparations,))
+            self._pool = ProcessPoolExecutor(1, self._spawning, begin, (self._compiles,))
         return self._pool
 
     async def ask(self, asked: Asked) -> Answer:
@@ -58,12 +76,17 @@ class Calculator:
             )
 
     def close(self) -> None:
-        """End the process, whatever it is at."""
-        pool, self._pool = self._pool, None
+        """End the processes, whatever they are at, before what they share with this one is gone."""
+        with self._starting:
+            pool, self._pool = self._pool, None
+            ahead, self._ahead = self._ahead, None
+        processes: list[BaseProcess] = [] if ahead is None else [ahead]
         if pool is not None:
-            processes = list((pool._processes or {}).values())
+            processes += (pool._processes or {}).values()
             pool.shutdown(wait=False, cancel_futures=True)
-            for process in processes:
-                process.kill()
-        for flag in self._preparations:
-            flag.clear()
+        for process in processes:
+            process.kill()
+        for process in processes:
+            process.join()
+        self._compiles.clear()
+        self._compiles_ahead.clear()

@@ -85,20 +85,8 @@ class _Known(NamedTuple):
 _known: dict[str, _Known] = {}
 
 
-class Preparations(NamedTuple):
-    """What is set while kernels are compiled.
-
-    Attributes
-    ----------
-    here, ahead : multiprocessing Event
-        By the process that answers, and by that which compiles what will be needed later.
-    """
-
-    here: SharedEvent
-    ahead: SharedEvent
-
-
-_preparations: Preparations | None = None
+_compiles: SharedEvent | None = None
+"""What is set while this process compiles kernels for an answer."""
 
 
 def prepare() -> None:
@@ -108,35 +96,38 @@ def prepare() -> None:
     threading.Thread(target=_follow_parent, daemon=True).start()
 
 
-def begin(preparations: Preparations) -> None:
-    """Make the process that answers ready."""
-    global _preparations
+def begin(compiles: SharedEvent) -> None:
+    """Make the process that answers ready.
+
+    Parameters
+    ----------
+    compiles : multiprocessing Event
+        Is set while it compiles kernels.
+    """
+    global _compiles
     prepare()
-    _preparations = preparations
-    _tell_by(preparations.here)
+    _compiles = compiles
+    _tell_by(compiles)
 
 
 def _tell_by(flag: SharedEvent) -> None:
     tell_of_compilation(lambda compiles: flag.set() if compiles else flag.clear())
 
 
-def look_ahead(asked: Asked) -> None:
-    """Load or compile what answers need, before there is a question.
+def compile_ahead(asked: Asked, compiles: SharedEvent) -> None:
+    """Load or compile what running and modes need, before there is a question; it gives way to other processes.
 
-    What a drive at rest needs is loaded here; running and modes are left to a process of its own, which gives way to
-    others.
+    Parameters
+    ----------
+    asked : Asked
+        A question about a drive at rest.
+    compiles : multiprocessing Event
+        Is set while kernels are compiled.
     """
-    answer(asked)
-    if _preparations is not None:
-        spawning = multiprocessing.get_context("spawn")
-        spawning.Process(target=_compile_ahead, args=(asked, _preparations.ahead), daemon=True).start()
-
-
-def _compile_ahead(asked: Asked, flag: SharedEvent) -> None:
     prepare()
     if hasattr(os, "nice"):
         os.nice(_YIELDING)
-    _tell_by(flag)
+    _tell_by(compiles)
     for what in ("running", "modes"):
         answer(asked._replace(what=what))
 
@@ -157,8 +148,8 @@ def answer(asked: Asked) -> Answer:
     except BeltdynError as error:
         return Answer((), (), str(error), time.perf_counter() - begun)
     finally:
-        if _preparations is not None:
-            _preparations.here.clear()
+        if _compiles is not None:
+            _compiles.clear()
 
 
 Shown = tuple[tuple[Table | Facts, ...], tuple[str, ...]]
@@ -177,8 +168,8 @@ def _rest(asked: Asked) -> Shown:
 
 def _hear(progress: "Progress") -> None:
     """Tell of compilation in processes that the search for equilibrium starts, too."""
-    if _preparations is not None:
-        (_preparations.here.set if progress.phase == "compiling" else _preparations.here.clear)()
+    if _compiles is not None:
+        (_compiles.set if progress.phase == "compiling" else _compiles.clear)()
 
 
 def _running(asked: Asked) -> Shown:

@@ -258,9 +258,9 @@ def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pyt
 
     class Compiles(Told):
         async def ask(self, asked: Asked) -> Answer:
-            self._preparations.here.set()
+            self._compiles.set()
             await compiled.wait()
-            self._preparations.here.clear()
+            self._compiles.clear()
             return await super().ask(asked)
 
     workspace.calculator = Compiles()
