@@ -1,6 +1,7 @@
 """Drives from TOML."""
 
 import pathlib
+import re
 import tomllib
 from typing import Any, TypeVar
 
@@ -16,6 +17,8 @@ from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
 Study = TypeVar("Study", bound=Part)
 
 _LONGEST_REASON = 200
+_SECTION = re.compile(r"(?:^|\n\n)(?=[A-Z]\w+\n---)")
+"""Where a section of a docstring begins."""
 
 
 def load(path: str | pathlib.Path) -> Drive:
@@ -154,6 +157,6 @@ def json_schema() -> dict[str, Any]:
     """
     schema = Drive.model_json_schema()
     for part in (schema, *schema["$defs"].values()):
-        if "description" in part:  # examples are those of Python
-            part["description"] = part["description"].partition("\n\nExamples\n")[0]
+        if "description" in part:  # its keys have their own, and sections on them are for those who write Python
+            part["description"] = _SECTION.split(part["description"], maxsplit=1)[0]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -64,6 +64,15 @@ def test_schema_knows_every_group() -> None:
     assert "in m" in json.dumps(schema["$defs"]["Belt"]["properties"]["length"])
 
 
+def test_descriptions_of_the_schema_are_for_those_who_write_drive_files() -> None:
+    """No sections of docstrings; each key has a description of its own instead, but for the kind of a part."""
+    schema = json_schema()
+    for name, part in ({"Drive": schema} | schema["$defs"]).items():
+        assert "---" not in part.get("description", ""), name
+        without = [key for key, given in part.get("properties", {}).items() if "description" not in given]
+        assert set(without) <= {"kind"}, name
+
+
 def test_tables_of_loads_and_schedules_are_read_too(drive_file: Path) -> None:
     (drive_file.parent / "curve.csv").write_text("0,0\n10,-2\n")
     (drive_file.parent / "engage.csv").write_text("0,0\n1,1\n")
