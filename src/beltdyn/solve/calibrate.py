@@ -94,6 +94,9 @@ def calibrate(
         If the study is none, or does not fit the drive.
     ConvergenceError
         If the drive that is given has no such state, or measurements do not tell the numbers.
+    KeyboardInterrupt
+        If the search is interrupted before there are numbers to keep. Later it ends with those that it has come to, and
+        with the status "interrupted".
 
     Examples
     --------
@@ -169,6 +172,8 @@ def _result(drive: Drive, numbers: Sequence[Free], fitting: Residuals, found: Fi
         warnings,
     )
     more = {"drive_as_given": drive.text, "best_drive": text, "confidence": confidence}
+    if found.interrupted:
+        more["status"] = "interrupted"
     more["title"] = f"{drive.title}: calibrated with {np.sum(on)} measured values, intervals of {confidence:.0%}"
     return Result(result.dataset.assign_attrs(more), result.drive)
 
@@ -177,6 +182,11 @@ def _warnings(numbers: Sequence[Free], fitting: Residuals, found: Fit) -> Iterat
     """What makes the fit doubtful."""
     from scipy import stats
 
+    if found.interrupted:
+        yield (
+            "the search was interrupted: the numbers are those that it had come to, for which intervals do not hold. "
+            "Run it again for those that fit best."
+        )
     yield from dict.fromkeys(failure for series in fitting.series for failure in series.designs.failed)
     paths = [one.path for one in numbers]
     if not found.told:

@@ -13,6 +13,7 @@ from beltdyn.model import CalibrationStudy, Drive, loads
 from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solve.calibrate import _warnings, calibrate
+from beltdyn.solve.progress import Progress
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.designs import Free
@@ -67,6 +68,22 @@ def test_stiffness_from_slip(drive: Drive, slips: FloatArray, tmp_path: Path) ->
     assert float(found.dataset.residual_deviation) < 1e-4
     assert loads((tmp_path / "out.toml").read_text(encoding="utf-8")) == open_result(tmp_path / "out.nc").drive
     assert found.drive.belt.youngs_modulus == pytest.approx(TRUE_MODULUS, rel=2e-4)
+
+
+def test_an_interrupted_calibration_keeps_what_it_has_come_to(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:
+    """Its file says so, and the drive file beside it holds the numbers."""
+    write(tmp_path, slips)
+
+    def interrupt(progress: Progress) -> None:
+        if progress.time >= 3.0:
+            raise KeyboardInterrupt
+
+    found = calibrate(drive, study=study_file(tmp_path), output=tmp_path / "out.nc", progress=interrupt)
+    kept = open_result(tmp_path / "out.nc")
+    assert found.status == kept.status == "interrupted"
+    assert any("the search was interrupted" in warning for warning in kept.warnings)
+    assert abs(kept.dataset.fitted[0] / TRUE_MODULUS - 1.0) < abs(kept.dataset.start[0] / TRUE_MODULUS - 1.0)
+    assert loads((tmp_path / "out.toml").read_text(encoding="utf-8")) == kept.drive
 
 
 def test_noise_gives_intervals_of_its_size(drive: Drive, slips: FloatArray, tmp_path: Path) -> None:

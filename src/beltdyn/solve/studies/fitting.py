@@ -35,6 +35,8 @@ class Fit(NamedTuple):
     """Root mean square of residuals with the degrees of freedom that are left; NaN where none is left."""
     untold: tuple[int, ...]
     """Which numbers measurements do not tell, alone or from each other."""
+    interrupted: bool = False
+    """Whether the search was ended before the numbers fitted best."""
 
     @property
     def told(self) -> bool:
@@ -67,17 +69,19 @@ def fit(
         Whether the standard deviations are those of the measurements; otherwise one factor is unknown.
     most
         Evaluations, at most.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the search is interrupted before derivatives at its start are known. Later it ends where it has come to.
     """
     from scipy import stats
-    from scipy.optimize import least_squares
 
-    solve: Callable[..., Any] = least_squares
-    settings = {"ftol": _TOLERANCE, "xtol": _TOLERANCE, "gtol": _TOLERANCE, "max_nfev": most}
-    found = solve(residuals, start, jac=jacobian, bounds=(0.0, 1.0), method="trf", x_scale="jac", **settings)
-    left = found.fun.size - start.size
-    spread = float(np.sqrt(found.fun @ found.fun / left)) if left > 0 else np.nan
-    sizes = np.linalg.norm(found.jac, axis=0)
-    scaled = found.jac / np.where(sizes > 0.0, sizes, 1.0)
+    numbers, away, slopes, interrupted = _search(residuals, jacobian, start, most)
+    left = away.size - start.size
+    spread = float(np.sqrt(away @ away / left)) if left > 0 else np.nan
+    sizes = np.linalg.norm(slopes, axis=0)
+    scaled = slopes / np.where(sizes > 0.0, sizes, 1.0)
     _, singular, rows = np.linalg.svd(scaled, full_matrices=False)
     unnoticed = rows[singular <= _LEAST_SINGULAR * singular.max()]
     untold = tuple(np.flatnonzero((sizes == 0.0) | (left < 0) | (np.abs(unnoticed) > _INVOLVED).any(axis=0)).tolist())
@@ -92,4 +96,41 @@ def fit(
     half = 0.5 * (1.0 + confidence)
     reach = float(stats.norm.ppf(half) if known else stats.t.ppf(half, left)) if known or left > 0 else np.inf
     errors = factor * deviations / np.where(sizes > 0.0, sizes, 1.0)
-    return Fit(found.x, errors, correlation, reach, found.fun, spread, untold)
+    return Fit(numbers, errors, correlation, reach, away, spread, untold, interrupted)
+
+
+class _Reached(NamedTuple):
+    """Where a search has come to."""
+
+    numbers: FloatArray
+    residuals: FloatArray
+    slopes: FloatArray
+    interrupted: bool
+
+
+def _search(
+    residuals: Callable[[FloatArray], FloatArray],
+    jacobian: Callable[[FloatArray], FloatArray],
+    start: FloatArray,
+    most: int,
+) -> _Reached:
+    """Least squares, or the last numbers at which derivatives were taken where the search is interrupted."""
+    from scipy.optimize import least_squares
+
+    solve: Callable[..., Any] = least_squares
+    settings = {"ftol": _TOLERANCE, "xtol": _TOLERANCE, "gtol": _TOLERANCE, "max_nfev": most}
+    reached: _Reached | None = None
+
+    def slopes_at(numbers: FloatArray) -> FloatArray:
+        nonlocal reached
+        slopes = jacobian(numbers)
+        reached = _Reached(numbers.copy(), residuals(numbers), slopes, True)
+        return slopes
+
+    try:
+        found = solve(residuals, start, jac=slopes_at, bounds=(0.0, 1.0), method="trf", x_scale="jac", **settings)
+    except KeyboardInterrupt:
+        if reached is None:
+            raise
+        return reached
+    return _Reached(found.x, found.fun, found.jac, False)

@@ -84,3 +84,26 @@ def test_derivatives_with_errors_do_not_tell_apart_what_is_alike() -> None:
     true = np.array([0.4, 0.5, 0.6])
     found = fit(lambda x: jacobian @ (x - true), lambda x: jacobian, np.full(3, 0.5), 0.95, known=True)
     assert found.untold == (0, 1)
+
+
+@pytest.mark.parametrize("calls", [1, 2, 3, 4])
+def test_an_interrupted_search_keeps_what_it_has_come_to(calls: int) -> None:
+    """The numbers are nearer than the start, with their own residuals and derivatives; not before there are any."""
+    exact, start, count = model(TRUE), np.array([0.1, 0.9]), 0
+
+    def residuals(x: FloatArray) -> FloatArray:
+        nonlocal count
+        count += 1
+        if count > calls:
+            raise KeyboardInterrupt
+        return model(x) - exact
+
+    if calls == 1:
+        with pytest.raises(KeyboardInterrupt):
+            fit(residuals, slopes, start, 0.95, known=False)
+        return
+    found = fit(residuals, slopes, start, 0.95, known=False)
+    assert found.interrupted
+    np.testing.assert_array_equal(found.residuals, model(found.numbers) - exact)
+    assert (found.residuals**2).sum() <= ((model(start) - exact) ** 2).sum()
+    assert np.all(np.isfinite(found.errors))
