@@ -112,7 +112,7 @@ def test_an_interruption_keeps_what_was_found(loaded: Drive, tmp_path: Path) -> 
     found = open_result(file)
     assert found.status == "interrupted"
     assert found.dataset.sizes["design"] == 2
-    assert str(found.dataset.ended.values) == "interrupted"
+    assert str(found.dataset.ended.values).startswith("interrupted")
     assert loads(drive_file.read_text(encoding="utf-8")) == found.drive
 
 

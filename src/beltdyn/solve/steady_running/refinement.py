@@ -98,15 +98,17 @@ def steady_from_rest(
     ConvergenceError
         If there is none.
     """
+    ran = False
     for trial in range(1, _MOST_STARTS + 1):
-        search = SteadySearch(rest.drive, rest.system, rest.state, time)
-        search.run(rest)
-        band, given = search.friction_band() if bands else {}, rule(rest)
+        search, given = SteadySearch(rest.drive, rest.system, rest.state, time), rule(rest)
         try:
+            search.run(rest)
+            ran = True
+            band = search.friction_band() if bands else {}
             errors, found = refine(search, given, tolerance)
             break
-        except ConvergenceError:
-            if given.elements or trial == _MOST_STARTS:
+        except ConvergenceError:  # what runs on one mesh is there; the search has lost its way on this one
+            if not ran or given.elements or trial == _MOST_STARTS:
                 raise
             rest = stand(rest.drive, fineness=FINER * rest.fineness)
     return Refined(search, rest, band, errors, found)
