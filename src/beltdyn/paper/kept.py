@@ -37,7 +37,7 @@ def keep(run: Run) -> None:
     """
     assert run.path is not None
     with closing(run.dataset) as dataset:
-        kept = reduce(Run(dataset, run.drive))
+        kept = reduce(Run(dataset, run.drive)).load()
     with atomic_path(run.path, is_result) as temporary:
         packed = {"zlib": True, "shuffle": True, "complevel": 4}
         write_dataset(temporary, kept, dict.fromkeys(kept.data_vars, packed))

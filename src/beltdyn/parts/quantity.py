@@ -37,7 +37,7 @@ SHOWN_UNITS = MappingProxyType({"rad/s": ("rpm", RPM), "rad": ("°", math.degree
 def _registry() -> "pint.UnitRegistry[float]":
     import pint  # takes 0.4 s, and most files hold plain numbers
 
-    registry: pint.UnitRegistry[float] = pint.UnitRegistry()
+    registry: pint.UnitRegistry[float] = pint.UnitRegistry(on_redefinition="ignore")  # Nm is a unit of yarn there
     for definition in _MORE_UNITS:
         registry.define(definition)
     return registry

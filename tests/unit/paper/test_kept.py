@@ -9,6 +9,7 @@ from beltdyn.paper.averages import contact_samples, mean_forces
 from beltdyn.paper.distribution import distribution
 from beltdyn.paper.kept import AT_END, CURVES, keep, open_kept, reduce
 from beltdyn.results import Run
+from beltdyn.results.dataset import open_dataset
 
 
 def test_curves_and_the_last_output_are_those_of_the_run(run: Run) -> None:
@@ -56,7 +57,7 @@ def test_the_file_is_replaced_by_a_small_one(run: Run, tmp_path: Path) -> None:
     path = tmp_path / "run.nc"
     run.dataset.to_netcdf(path, engine="h5netcdf")
     before, whole = path.stat().st_size, reduce(run)
-    keep(Run(run.dataset.copy(), run.drive, path))
+    keep(Run(open_dataset(path), run.drive, path))
     assert path.stat().st_size < 0.2 * before
     assert [file.name for file in tmp_path.iterdir()] == ["run.nc"]
     assert open_kept(path).equals(whole)

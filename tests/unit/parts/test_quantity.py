@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beltdyn.parts.quantity import to_si, written_like
+from beltdyn.parts.quantity import _registry, to_si, written_like
 
 
 @pytest.mark.parametrize(
@@ -38,6 +38,13 @@ from beltdyn.parts.quantity import to_si, written_like
 )
 def test_units(text: str, unit: str, value: float) -> None:
     assert to_si(text, unit) == pytest.approx(value, rel=1e-14)
+
+
+def test_units_of_drive_engineers_are_added_without_a_word(caplog: pytest.LogCaptureFixture) -> None:
+    """Nm is a unit of yarn in pint, which would tell each program that shows log messages of its redefinition."""
+    _registry.cache_clear()
+    assert to_si("12 Nm", "N*m") == 12.0
+    assert caplog.messages == []
 
 
 @given(st.text() | st.from_regex(r"[0-9]{1,3} ?[a-zA-Z*/^() 0-9.-]{1,20}", fullmatch=True))
