@@ -23,8 +23,8 @@ def plot(
     variable: str = "span_tension",
     animate: Annotated[bool, Parameter(negative="")] = False,
     mp4: Annotated[bool, Parameter(negative="")] = False,
-    start: float | None = None,
-    end: float | None = None,
+    start: float | str | None = None,
+    end: float | str | None = None,
     frames_per_turn: int | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
@@ -51,7 +51,7 @@ def plot(
     mp4
         Write it as MP4 in place of GIF, which needs `pip install "beltdyn[video]"` or the program ffmpeg.
     start, end
-        From when to when it shows the drive, s; all of the run by default.
+        From when to when it shows the drive, such as "0.5 s", or in s; all of the run by default.
     frames_per_turn
         Pictures for each turn of the first pulley: slow motion. By default 150 pictures in all.
     force

@@ -13,6 +13,7 @@ from PIL.Image import Image
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
+from beltdyn.parts.number_range import number_in
 from beltdyn.plot.drive import DrivePicture, size_of
 from beltdyn.plot.style import new_figure, styled
 from beltdyn.results import Run
@@ -33,8 +34,8 @@ def animate(
     frame_rate: int = 25,
     overwrite: bool = False,
     *,
-    start: float | None = None,
-    end: float | None = None,
+    start: float | str | None = None,
+    end: float | str | None = None,
     per_turn: int | None = None,
 ) -> Path:
     """Write an animation of belt and pulleys, the belt's tension in color.
@@ -51,8 +52,8 @@ def animate(
         Pictures shown per second.
     overwrite : bool
         Replace any regular file, and not only animations of beltdyn.
-    start, end : float, optional
-        From when to when, s; all of the run by default.
+    start, end : float or str, optional
+        From when to when, such as "0.5 s", or in s; all of the run by default.
     per_turn : int, optional
         Pictures for each turn of the first pulley, in place of `frames`: slow motion in which the eye can follow it.
 
@@ -112,14 +113,18 @@ def film(figure: Figure, path: Path, frame_rate: int, overwrite: bool) -> Iterat
             yield take
 
 
-def _instants(run: Run, frames: int, start: float | None, end: float | None, per_turn: int | None) -> FloatArray:
+def _instants(
+    run: Run, frames: int, start: float | str | None, end: float | str | None, per_turn: int | None
+) -> FloatArray:
     """Outputs of fields that are shown, s."""
     times = run.dataset["field_time"].values
-    inside = times[(times >= (-np.inf if start is None else start)) & (times <= (np.inf if end is None else end))]
+    first = times[0] if start is None else number_in("start", start, "s")
+    last = times[-1] if end is None else number_in("end", end, "s")
+    inside = times[(times >= first) & (times <= last)]
     if inside.size == 0:
         raise ModelError(
-            f"no output of fields lies from {start} to {end} s: they are from {times[0]:.4g} to {times[-1]:.4g} s. "
-            "Choose a longer time, or reduce simulation.field_interval."
+            f"no output of fields lies from {first:.4g} to {last:.4g} s: they are from {times[0]:.4g} to "
+            f"{times[-1]:.4g} s. Choose a longer time, or reduce simulation.field_interval."
         )
     if per_turn is None:
         return np.asarray(inside[np.unique(np.linspace(0, len(inside) - 1, frames).round().astype(int))])

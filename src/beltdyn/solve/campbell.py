@@ -30,7 +30,7 @@ def campbell(
     count: int = 8,
     orders: str | None = None,
     dry_tensioners: str = SLIDING,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
@@ -62,7 +62,8 @@ def campbell(
         "sliding" for tensioners whose dry friction is left out, as in large vibrations, or "stuck" for those that it
         holds, as in small ones.
     at
-        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.

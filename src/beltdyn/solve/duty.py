@@ -39,7 +39,7 @@ def duty(
     drive: Drive,
     *,
     table: Path | str,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
@@ -58,7 +58,8 @@ def duty(
     table
         The CSV file.
     at
-        At which instant the rest of the drive is taken, s; by default at the end of the simulation.
+        At which instant the rest of the drive is taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.

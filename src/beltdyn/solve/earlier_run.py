@@ -12,6 +12,7 @@ from beltdyn.machines.profiles.functions import go_on
 from beltdyn.model import Drive, loads
 from beltdyn.model.earlier_run import EarlierRun
 from beltdyn.parts.error_location import entry_name, shorten
+from beltdyn.parts.number_range import number_in
 from beltdyn.results import Run, open_run
 from beltdyn.results.recorded import runs_steadily
 from beltdyn.solve.checkpoint import is_checkpoint
@@ -30,7 +31,7 @@ _FREE_OF_PULLEYS = frozenset({"speed", "harmonics", "torque", "load", "inertia",
 _KEPT_SETTINGS = ("frame", "joint")
 
 
-def instant_of(run: Run, at: float | None, name: str = "at") -> float:
+def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
     """The instant at which the belt was recorded that is asked for, s.
 
     Parameters
@@ -38,7 +39,7 @@ def instant_of(run: Run, at: float | None, name: str = "at") -> float:
     run
         A run over time.
     at
-        s; the last one by default.
+        Such as "0.5 s", or in s; the last one by default.
     name
         What a message calls it.
 
@@ -53,13 +54,14 @@ def instant_of(run: Run, at: float | None, name: str = "at") -> float:
     times = run.dataset["field_time"].values
     if at is None:
         return float(times[-1])
-    nearest = float(times[np.argmin(np.abs(times - at))])
+    wanted = number_in(name, at, "s")
+    nearest = float(times[np.argmin(np.abs(times - wanted))])
     step = float(np.diff(times).min()) if times.size > 1 else max(abs(nearest), 1.0)
-    if not abs(nearest - at) <= _SAME * step:
+    if not abs(nearest - wanted) <= _SAME * step:
         every = f", every {step:.6g} s," if times.size > 1 else ""
         raise ModelError(
-            f"{name} = {at:g} s is no instant at which this run has recorded its belt: it has from {times[0]:.6g} to "
-            f"{times[-1]:.6g} s{every} the nearest at {nearest:.8g} s. Give that one, or run the drive again with "
+            f"{name} = {wanted:g} s is no instant at which this run has recorded its belt: it has from {times[0]:.6g} "
+            f"to {times[-1]:.6g} s{every} the nearest at {nearest:.8g} s. Give that one, or run the drive again with "
             "another simulation.field_interval."
         )
     return nearest

@@ -25,7 +25,7 @@ def modes(
     about: str | Run = STEADY,
     speed: str | None = None,
     pulley: str | None = None,
-    at: float | None = None,
+    at: float | str | None = None,
     count: int = 12,
     force_tolerance: float | None = None,
     progress: Report | None = None,
@@ -53,8 +53,8 @@ def modes(
     pulley
         The pulley whose speed is prescribed by `speed`; by default the one that drives.
     at
-        At which instant loads and schedules are taken, s; by default at the end of the simulation. Of a run over time
-        an instant at which its belt was recorded, by default the last.
+        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of the
+        simulation. Of a run over time an instant at which its belt was recorded, by default the last.
     count
         How many lightly damped modes to give, from the lowest frequency on, up to 99. Heavily damped ones between them
         are given, too, 99 modes in all at most.
@@ -107,7 +107,7 @@ def modes(
     return Result(result.dataset.assign_attrs(told), result.drive)
 
 
-def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | None, count: int) -> None:
+def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | str | None, count: int) -> None:
     """Make sure that the options make sense."""
     if count < 1:
         raise ModelError(f"count = {count} modes are none. Give 1 or more.")
@@ -127,7 +127,7 @@ def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: 
         raise ModelError(f"pulley = {pulley!r} names whose speed to prescribe, and there is no speed. Give speed.")
 
 
-def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | None) -> Drive:
+def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | str | None) -> Drive:
     """The drive with a pulley at a speed."""
     values = numbers_in("speed", speed, "rad/s", 2)
     if values.size > 1:

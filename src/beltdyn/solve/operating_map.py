@@ -21,7 +21,7 @@ def operating_map(
     load: str | None = None,
     points: int = 40,
     load_points: int = 10,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
@@ -49,7 +49,8 @@ def operating_map(
     load_points
         Number of factors of a range.
     at
-        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.

@@ -32,7 +32,7 @@ def response(
     dry_tensioners: str = SLIDING,
     compare: Path | str | Run | None = None,
     measured: Path | str | None = None,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
@@ -64,7 +64,8 @@ def response(
         A CSV file of measured amplitudes to put beside: a column "speed [rpm]", and columns such as
         "span_tension crank-idler order 2 [N]".
     at
-        At which instant loads and schedules are taken, s; by default at the end of the simulation.
+        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.

@@ -24,13 +24,13 @@ from beltdyn.solve.modes import REST, STEADY
 from beltdyn.solve.progress import Progress, Report
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady_running.changed_drive import at_instant
 from beltdyn.solve.studies.drive_numbers import PART, Number, chosen_numbers
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
 from beltdyn.solve.studies.named_results import names_in, names_of, need_bands, unit_of
 from beltdyn.solve.studies.small_changes import CHANGE, SmallChanges
 from beltdyn.solve.studies.spread import with_spread
 from beltdyn.solve.studies.tolerance_points import require_points, results_at_points
-from beltdyn.solve.sweep import without_schedules
 
 _USUAL = {STEADY: "efficiency, least_slip_safety, largest_tension", REST: "tension, hub_load"}
 """Results that are looked at where none are named."""
@@ -42,7 +42,7 @@ def sensitivity(
     of: str | None = None,
     numbers: str | None = None,
     about: str = STEADY,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     sobol: int = 0,
     progress: Report | None = None,
@@ -68,7 +68,8 @@ def sensitivity(
     about
         "steady" or "rest".
     at
-        At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
+        At which instant speeds, torques and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.
@@ -102,7 +103,7 @@ def sensitivity(
     """
     if about not in _USUAL:
         raise ModelError(f'about = {about!r} is no state. Give "{STEADY}" or "{REST}".')
-    given = without_schedules(drive, drive.simulation.end if at is None else at)[0]
+    given = at_instant(drive, at)
     require_points(sobol)
     tolerances = {path: size for path, size in tolerances_of(drive).items() if _stands(given, path)}
     if sobol and not tolerances:

@@ -10,6 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, mesh_error_attribute
+from beltdyn.solve.instant import instant_given
 from beltdyn.solve.integrators.trajectory import Chunk
 from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Progress, Report
@@ -31,7 +32,7 @@ _TURNS = 2.2
 def steady_state(
     drive: Drive,
     *,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     elements: int | None = None,
     start: Run | None = None,
@@ -48,7 +49,8 @@ def steady_state(
     drive
         The drive.
     at
-        At which instant speeds, torques and schedules are taken, s; by default at the end of the simulation.
+        At which instant speeds, torques and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.
@@ -89,7 +91,7 @@ def steady_state(
         elements = drive.elements
     tolerance = _tolerance(drive, force_tolerance)
     _require_sense(tolerance, elements)
-    instant = drive.simulation.end if at is None else at
+    instant = instant_given(drive, at)
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     found = _continued(drive, start, instant, tolerance, bands=True) if start is not None else None

@@ -59,7 +59,7 @@ def traction(
     pulley: str | None = None,
     slip: str | None = None,
     points: int = 30,
-    at: float | None = None,
+    at: float | str | None = None,
     force_tolerance: float | None = None,
     output: Path | str | None = None,
     progress: Report | None = None,
@@ -84,7 +84,8 @@ def traction(
     points
         Number of slips of a range.
     at
-        At which instant speeds, loads and schedules are taken, s; by default at the end of the simulation.
+        At which instant speeds, loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        the simulation.
     force_tolerance
         Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
         drive, 0.01.

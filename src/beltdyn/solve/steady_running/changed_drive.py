@@ -6,11 +6,12 @@ from beltdyn.errors import ModelError
 from beltdyn.machines import Constant
 from beltdyn.machines.loads.load import Load
 from beltdyn.model import Drive, Pulley
+from beltdyn.solve.instant import instant_given
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.sweep import without_schedules
 
 
-def held_at(drive: Drive, at: float | None) -> Drive:
+def held_at(drive: Drive, at: float | str | None) -> Drive:
     """Hold speeds, torques and schedules as they are at an instant, with the belt's length or take-up found.
 
     Parameters
@@ -18,7 +19,7 @@ def held_at(drive: Drive, at: float | None) -> Drive:
     drive
         The drive.
     at
-        The instant, s; by default the end of the simulation.
+        The instant, such as "0.5 s", or in s; by default the end of the simulation.
 
     Raises
     ------
@@ -29,9 +30,9 @@ def held_at(drive: Drive, at: float | None) -> Drive:
     return held if held.belt.installed_tension is None else bring_to_stand(held).drive
 
 
-def at_instant(drive: Drive, at: float | None) -> Drive:
-    """Hold speeds, torques and schedules as they are at an instant (s), by default the end of the simulation."""
-    return without_schedules(drive, drive.simulation.end if at is None else at)[0]
+def at_instant(drive: Drive, at: float | str | None) -> Drive:
+    """Hold speeds, torques and schedules as they are at an instant, as from `instant_given`."""
+    return without_schedules(drive, instant_given(drive, at))[0]
 
 
 def sense_of(drive: Drive, number: int) -> float:
