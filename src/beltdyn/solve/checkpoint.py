@@ -7,6 +7,7 @@ a drive; nothing else is taken out of it, so that a file of others runs no code.
 import io
 import pickle
 import time
+import warnings
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -39,6 +40,10 @@ _LIBRARY = frozenset(
     }
 )
 """What a checkpoint may hold beside classes of beltdyn: the last makes a drive of its text."""
+
+
+class CheckpointWarning(UserWarning):
+    """A checkpoint could not be written; the run goes on."""
 
 
 @dataclass(frozen=True)
@@ -76,16 +81,14 @@ class Keeper:
         self._path, self._every, self._own = path, every, resumes
         self._drive, self._compare = drive, compare_steady
         self._last = time.perf_counter()
+        self._warned = False
 
     def look(self, recording: Recording, integration: AlphaIntegration) -> None:
         """Write a checkpoint if it is time; what is on its way is complete.
 
-        One of an earlier run is removed as soon as the results of that are replaced.
-
-        Raises
-        ------
-        ModelError
-            If it cannot be written.
+        One of an earlier run is removed as soon as the results of that are replaced. A checkpoint that cannot be
+        written is tried again when the next one is due, and the one before stays; the first time a
+        `CheckpointWarning` says so.
         """
         if self._path is None:
             return
@@ -97,9 +100,25 @@ class Keeper:
                 self.remove()
                 self._own = True
             if kept is not None:
-                point = Checkpoint(self._drive, integration, kept, self._compare)
-                write_checkpoint(checkpoint_file(self._path), point)
+                self._write(checkpoint_file(self._path), Checkpoint(self._drive, integration, kept, self._compare))
                 self._last = time.perf_counter()
+
+    def _write(self, path: Path, point: Checkpoint) -> None:
+        """Write a checkpoint, or warn once that it cannot be written."""
+        try:
+            write_checkpoint(path, point)
+        except ModelError as error:
+            if self._warned:
+                return
+            self._warned = True
+            since = "the checkpoint before it" if is_checkpoint(path) else "its beginning"
+            warnings.warn(
+                f"the run goes on without this checkpoint: {error} Results are not touched; but if the run is "
+                f"interrupted or killed now, it goes on from {since}. A checkpoint is tried again every "
+                f"{self._every:g} s.",
+                CheckpointWarning,
+                stacklevel=4,
+            )
 
     def remove(self) -> None:
         """Remove the checkpoint, of a run that is complete or of an earlier one."""

@@ -1,5 +1,6 @@
 """Runs that are interrupted or killed go on to the same results, to the last bit."""
 
+import errno
 import os
 import pickle
 import signal
@@ -9,6 +10,7 @@ import time
 from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, load
 from beltdyn.results import Run
 from beltdyn.solve import Progress, simulate
-from beltdyn.solve.checkpoint import checkpoint_file, is_checkpoint, read_checkpoint
+from beltdyn.solve.checkpoint import CheckpointWarning, checkpoint_file, is_checkpoint, read_checkpoint
 
 OFTEN = 1e-9
 """Computing time between checkpoints, s: one after each chunk of steps."""
@@ -106,6 +108,50 @@ def test_checkpoints_are_told_from_other_files(stopped: Path) -> None:
 def test_a_new_run_forgets_the_checkpoint_of_an_earlier_one(travelling: Drive, stopped: Path) -> None:
     simulate(travelling.with_({"simulation.duration": 0.002}), stopped).dataset.close()
     assert not checkpoint_file(stopped).exists()
+
+
+class _FullFrom:
+    """A disk that has no room for checkpoints from the given one on."""
+
+    def __init__(self, number: int) -> None:
+        self.number, self.asked, self._dump = number, 0, pickle.dump
+
+    def dump(self, point: object, file: BinaryIO, protocol: int) -> None:
+        self.asked += 1
+        self._dump(point, file, protocol)
+        if self.asked >= self.number:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+@pytest.mark.parametrize(("number", "whence"), [(1, "its beginning"), (2, "the checkpoint before it")])
+def test_a_run_goes_on_where_a_checkpoint_cannot_be_written(
+    number: int, whence: str, travelling: Drive, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It warns once, and the checkpoint before stays whole: an interrupted run goes on from it."""
+    whole, path, disk = simulate(travelling), tmp_path / "run.nc", _FullFrom(number)
+    monkeypatch.setattr(pickle, "dump", disk.dump)
+    with pytest.warns(CheckpointWarning) as said:
+        simulate(travelling, path, stopping_after(0.05), checkpoint=OFTEN).dataset.close()
+    monkeypatch.undo()
+    assert disk.asked > number + 1
+    assert len(said) == 1
+    text = str(said[0].message)
+    assert "(No space left on device). Make room" in text
+    assert text.endswith(f"it goes on from {whence}. A checkpoint is tried again every {OFTEN:g} s.")
+    assert not list(tmp_path.glob(".*.checkpoint"))
+    if number == 1:
+        assert not checkpoint_file(path).exists()
+        return
+    require_same(simulate(travelling, path, resume=True), whole)
+
+
+def test_what_is_in_the_place_of_a_checkpoint_stays(travelling: Drive, tmp_path: Path) -> None:
+    """A file of others, where the checkpoint would be, is left alone, and the run is complete."""
+    path = tmp_path / "run.nc"
+    checkpoint_file(path).write_text("mine")
+    with pytest.warns(CheckpointWarning, match=r"is there already, and is not a file that beltdyn wrote"):
+        assert simulate(travelling, path, checkpoint=OFTEN).status == "completed"
+    assert checkpoint_file(path).read_text() == "mine"
 
 
 def test_a_run_without_a_checkpoint_cannot_go_on(travelling: Drive, tmp_path: Path) -> None:
