@@ -7,6 +7,7 @@ from typing import get_args
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
 from beltdyn.model.toml_writer import has_functions
+from beltdyn.parts.number_range import number_in
 from beltdyn.results import Run, require_room
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
 from beltdyn.solve.beginning import Begin, begin_on, mesh_of
@@ -33,7 +34,7 @@ def simulate(
     integrator: Integrator | None = None,
     *,
     compare_steady: bool = False,
-    checkpoint: float = CHECKPOINT,
+    checkpoint: float | str = CHECKPOINT,
     resume: bool = False,
 ) -> Run:
     """Simulate a drive over time.
@@ -54,8 +55,9 @@ def simulate(
     compare_steady
         Find the steady running under the speeds and loads at the end too, and tell how the run differs from it.
     checkpoint
-        Computing time between two checkpoints, s: a run into a file that is interrupted or killed goes on from the
-        last one. They are in a file beside it with the ending ``.checkpoint``, which is removed at the end.
+        Computing time between two checkpoints, such as "10 min", or in s: a run into a file that is interrupted or
+        killed goes on from the last one. They are in a file beside it with the ending ``.checkpoint``, which is removed
+        at the end.
     resume
         Go on with the run in the result file, with the same steps and results as if it had not been interrupted. On
         the command line the result file may stand in place of the drive file.
@@ -82,13 +84,12 @@ def simulate(
     >>> run.status, run.outputs
     ('completed', 11)
     """
-    if not checkpoint > 0.0:
-        raise ModelError(f"checkpoint = {checkpoint:g} s must be above zero. Raise it, or leave it away.")
+    every = number_in("checkpoint", checkpoint, "s")
+    if not every > 0.0:
+        raise ModelError(f"checkpoint = {every:g} s must be above zero. Raise it, or leave it away.")
     if resume:
-        return _resume(drive, output, progress, checkpoint)
-    return record_run(
-        drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=checkpoint
-    )
+        return _resume(drive, output, progress, every)
+    return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=every)
 
 
 def record_run(
