@@ -29,8 +29,9 @@ def _pulleys(choice: Choice) -> list[list[str]]:
 
 
 def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
-    """Lay out a panel for each kind of force and pulley."""
-    blocks = [(block, kind) for block in _pulleys(choice) for kind in get_args(Kind)]
+    """Lay out a panel for each kind of force and pulley; at rest nothing rubs."""
+    kinds = ("normal",) if isinstance(run, StaticResult) else get_args(Kind)
+    blocks = [(block, kind) for block in _pulleys(choice) for kind in kinds]
     return panels([[partial(draw, run, name, kind=kind) for name in block] for block, kind in blocks])
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beltdyn.analyses import STATIC
-from beltdyn.results.resolution import Resolution, mesh_resolution
+from beltdyn.model import ERROR_LIMITS, layer_lengths
+from beltdyn.results.resolution import Resolution, found_errors, mesh_error_attribute, mesh_resolution
 from beltdyn.results.result import Result, build_result
 from beltdyn.results.schema import COORDINATES, VARIABLES, Variable
 
@@ -51,8 +52,11 @@ class StaticResult(Result):
 
     @cached_property
     def resolution(self) -> Resolution:
-        """How well the mesh resolves tension and contact."""
-        return mesh_resolution(self.drive, float(self.dataset["belt_tension"].mean()), 0.0)
+        """How well the mesh resolves tension and contact: what a finer mesh has told, or else an estimate."""
+        found, tension = found_errors(self.dataset), float(self.dataset["belt_tension"].mean())
+        if found:
+            return Resolution(found, {}, layer_lengths(self.drive, tension))
+        return mesh_resolution(self.drive, tension, 0.0)
 
 
 def static_result(run: "Run") -> StaticResult:
@@ -83,5 +87,6 @@ def static_result(run: "Run") -> StaticResult:
         if name in instant.coords and used.issuperset(variable.dims)
     }
     result = build_result(STATIC, run.drive, variables, coordinates, run.warnings)
-    kept = {name: run.dataset.attrs[name] for name in ("title", "drive_as_given") if name in run.dataset.attrs}
+    names = ("title", "drive_as_given", *map(mesh_error_attribute, ERROR_LIMITS))
+    kept = {name: run.dataset.attrs[name] for name in names if name in run.dataset.attrs}
     return StaticResult(result.dataset.assign_attrs(kept), run.drive)

@@ -1,21 +1,33 @@
 """An analysis: the static equilibrium of a drive at rest."""
 
+from typing import Any
+
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.results import StaticResult, static_result
+from beltdyn.results import StaticResult, mesh_error_attribute, static_result
 from beltdyn.solve.integrators.trajectory import Chunk
 from beltdyn.solve.observation.recording import Recording
 from beltdyn.solve.progress import Report
 from beltdyn.solve.rest.installation import bring_to_rest, on_equal_elements
 from beltdyn.solve.rest.static import standing
+from beltdyn.solve.rest.staying import bring_to_stand, stand
+from beltdyn.solve.steady import require_tolerance
+from beltdyn.solve.steady_running.refinement import refine_at_rest
+from beltdyn.system.arrays import System
+from beltdyn.system.state import State
 
 
-def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult:
+def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress: Report | None = None) -> StaticResult:
     """Find the static equilibrium of a drive at rest, with pulleys that do not turn.
 
     Parameters
     ----------
     drive
         The drive.
+    force_tolerance
+        Error of contact forces, over the largest of a pulley, up to which a mesh that is graded towards the ends of
+        arcs is refined; by default that of the drive, simulation.force_tolerance. Without either the mesh is that of
+        equal elements, as many as the drive has.
     progress
         Called now and then with a `Progress`.
 
@@ -23,10 +35,12 @@ def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult
     -------
     StaticResult
         Shape of the belt, tensions, contact forces and hub loads. Its drive has the length, or the take-up, that gives
-        the installed tension, and the mesh of equal elements that travels.
+        the installed tension.
 
     Raises
     ------
+    ModelError
+        If the tolerance is not above zero, or there is one for a belt with ends.
     ConvergenceError
         If no equilibrium is found in which the belt touches every pulley.
 
@@ -36,12 +50,40 @@ def equilibrium(drive: Drive, *, progress: Report | None = None) -> StaticResult
     >>> rest.dataset.span_tension.values.round().tolist()  # N
     [27.0, 27.0]
     """
-    given, drive = drive.text, on_equal_elements(drive)
+    tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
+    if tolerance is not None:
+        return _refined(drive, tolerance, progress)
+    drive = on_equal_elements(drive)
     rest = bring_to_rest(drive, progress)
-    system = standing(rest.system)
-    recording = Recording(drive, system, None, f"{drive.title} at rest, in static equilibrium", progress)
-    recording.start(rest.drive, system, rest.unstable)
-    recording.note(drive_as_given=given)
-    recording.take(Chunk.start(system, rest.state), "equilibrium")
-    recording.end("completed")
+    return _seen(drive, rest.drive, standing(rest.system), rest.state, rest.unstable, progress)
+
+
+def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticResult:
+    """The equilibrium on a graded mesh, as fine as contact forces need it."""
+    require_tolerance(tolerance)
+    if drive.ends:
+        raise ModelError(
+            "force_tolerance does not fit an open belt, whose mesh is one of equal elements. Leave it out, and give "
+            "more belt.elements."
+        )
+    unstable = bring_to_rest(drive, progress).unstable
+    rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), tolerance)
+    found = {mesh_error_attribute(name): error for name, error in errors.items()}
+    return _seen(drive, rest.drive, rest.system, rest.state, unstable, progress, **found)
+
+
+def _seen(
+    given: Drive,
+    drive: Drive,
+    system: System,
+    state: State,
+    unstable: tuple[str, ...],
+    progress: Report | None,
+    **attributes: Any,
+) -> StaticResult:
+    """A state as results; the drive as given, and with the length that was found."""
+    with Recording(given, system, None, f"{drive.title} at rest, in static equilibrium", progress) as recording:
+        recording.start(drive, system, unstable)
+        recording.note(drive_as_given=given.text, **attributes)
+        recording.take(Chunk.start(system, state), "equilibrium")
     return static_result(recording.run())

@@ -332,10 +332,21 @@ def require_steady_start(drive: Drive) -> None:
         ) from error
 
 
-def _require_sense(force_tolerance: float, elements: int | None) -> None:
-    """Make sure that the options make sense."""
+def require_tolerance(force_tolerance: float) -> None:
+    """Make sure that an error of contact forces that is asked for makes sense.
+
+    Raises
+    ------
+    ModelError
+        If not.
+    """
     if not 0.0 < force_tolerance < 1.0:
         raise ModelError(f"force_tolerance = {force_tolerance:g} must lie between 0 and 1, such as 0.01 for 1 %.")
+
+
+def _require_sense(force_tolerance: float, elements: int | None) -> None:
+    """Make sure that the options make sense."""
+    require_tolerance(force_tolerance)
     if elements is not None and elements < 3:
         raise ModelError(f"elements = {elements} must be 3 or more. Leave it out for a graded mesh.")
 

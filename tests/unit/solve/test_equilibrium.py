@@ -1,6 +1,7 @@
 """A drive at rest as a result: dimensions without a time, its file, its figures, and what it lacks."""
 
 from collections.abc import Callable
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,7 @@ import xarray as xr
 
 from beltdyn import plot
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, load
 from beltdyn.results import StaticResult, open_result, open_run, summarize
 from beltdyn.results.derived import contact_arc
 from beltdyn.solve import bring_to_rest, equilibrium
@@ -81,3 +82,39 @@ def test_what_it_lacks_is_said(rest: StaticResult, use: Callable[[Any], object],
 def test_it_is_no_run(rest: StaticResult, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="is the result of another analysis, static"):
         open_run(rest.save(tmp_path / "rest.nc"))
+
+
+def peaks(found: StaticResult) -> Any:
+    """Largest normal force of each pulley, N/m."""
+    forces = found.dataset.normal_force
+    return [float(forces.where(found.dataset.contact_pulley == number).max()) for number in range(2)]
+
+
+def test_contact_forces_keep_to_a_tolerance(drive: Drive) -> None:
+    """The largest forces, at the ends of arcs, against those of a mesh that is ten times more exact."""
+    wanted = drive.replace(belt=drive.belt.replace(installed_tension=100.0))
+    coarse, fine = (equilibrium(wanted, force_tolerance=tolerance) for tolerance in (0.01, 0.001))
+    np.testing.assert_allclose(peaks(coarse), peaks(fine), rtol=0.01)
+    assert coarse.resolution.errors["peak pressure"] <= 0.01
+    assert fine.resolution.errors["peak pressure"] <= 0.001
+    assert fine.dataset.sizes["element"] > coarse.dataset.sizes["element"]
+    np.testing.assert_allclose(coarse.dataset.span_tension, 100.0, rtol=0.003)
+    assert coarse.dataset.attrs["drive_as_given"] == wanted.text
+
+
+def test_the_tolerance_may_be_that_of_the_drive(drive: Drive) -> None:
+    settings = drive.simulation.replace(frame="staying", force_tolerance=0.02, start="equilibrium")
+    given = drive.replace(simulation=settings)
+    assert 0.0 < equilibrium(given).resolution.errors["peak pressure"] <= 0.02
+
+
+@pytest.mark.parametrize(
+    ("example", "tolerance", "message"),
+    [
+        ("band_brake", 0.01, "force_tolerance does not fit an open belt"),
+        ("alternator_drive", 0.0, "force_tolerance = 0 must lie between 0 and 1"),
+    ],
+)
+def test_a_tolerance_that_makes_no_sense(example: str, tolerance: float, message: str) -> None:
+    with pytest.raises(ModelError, match=message):
+        equilibrium(load(str(files("beltdyn") / "examples" / f"{example}.toml")), force_tolerance=tolerance)

@@ -140,7 +140,7 @@ def on_equal_elements(drive: Drive) -> Drive:
     settings = drive.simulation
     if settings.frame == "travelling":
         return drive
-    return drive.replace(simulation=settings.replace(frame="travelling"))
+    return drive.replace(simulation=settings.replace(frame="travelling", force_tolerance=None))
 
 
 def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:

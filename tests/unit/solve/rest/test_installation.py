@@ -304,3 +304,12 @@ def test_equilibrium_is_found_on_equal_elements() -> None:
     assert rest.drive.elements == drive.elements
     assert still.dataset.sizes["node"] == still.drive.elements == travelling.elements > drive.elements
     assert rest.tension == pytest.approx(bring_to_rest(travelling).tension, rel=1e-9)
+
+
+@pytest.mark.parametrize("settings", [{"force_tolerance": 0.02}, {"mesh": "uniform"}, {"start": "steady"}])
+def test_settings_of_a_run_on_a_mesh_that_stays_do_not_matter_at_rest(settings: dict[str, Any]) -> None:
+    drive = load(str(files("beltdyn").joinpath("examples", "crossed_belt.toml")))
+    given = drive.replace(simulation=drive.simulation.replace(**settings))
+    rest = bring_to_rest(given)
+    assert rest.drive.simulation == given.simulation
+    assert rest.tension == pytest.approx(drive.tension_at_rest, rel=0.05)
