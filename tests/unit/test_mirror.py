@@ -55,6 +55,7 @@ ELSEWHERE = {
     "solve/studies/residuals.py": "unit/solve/test_calibrate.py",
     "solve/studies/small_changes.py": "unit/solve/test_sensitivity.py",
     "solve/steady_running/newton.py": "unit/solve/test_steady.py",
+    "solve/steady_running/point_values.py": "unit/solve/test_operating_map.py",
     "solve/steady_running/neighbour.py": "unit/solve/test_steady.py",
     "solve/steady_running/refinement.py": "unit/solve/test_steady.py",
     "solve/steady_running/search.py": "unit/solve/test_steady.py",

@@ -14,7 +14,8 @@ from beltdyn.model import Drive
 from beltdyn.results import Result, Variable
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady_running.changed_drive import at_speed, held_at, with_load, with_torque
-from beltdyn.solve.steady_running.operating_points import VARIABLES, Axes, OperatingPoints
+from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints
+from beltdyn.solve.steady_running.point_values import VARIABLES
 from beltdyn.solve.studies.headed_table import HeadedColumn, read_headed
 
 UNITS = {"duration": "s", "load": "", "speed": "rad/s", "torque": "N m"}

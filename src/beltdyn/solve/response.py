@@ -9,7 +9,8 @@ from beltdyn.parts.number_range import numbers_in
 from beltdyn.results import Result, Run, Variable
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady_running.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
-from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints, labels_of
+from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints
+from beltdyn.solve.steady_running.point_values import labels_of
 from beltdyn.solve.vibration.forced_motion import ForcedMotion
 from beltdyn.solve.vibration.mode_table import SLIDING, STUCK
 from beltdyn.solve.vibration.response_answers import Answers

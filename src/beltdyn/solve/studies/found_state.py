@@ -13,7 +13,7 @@ from beltdyn.solve.rest.installation import looked_at
 from beltdyn.solve.rest.staying import Standing, stand_like
 from beltdyn.solve.steady import Beside, require_found, steady_beside, tangent_of
 from beltdyn.solve.steady_running.newton import SteadyWork
-from beltdyn.solve.steady_running.operating_points import labels_of
+from beltdyn.solve.steady_running.point_values import labels_of
 from beltdyn.solve.studies.named_results import MODES, OF_MODES, name_of, values_of, variable_and_label
 from beltdyn.solve.studies.state_modes import FollowedModes, FoundModes, Mode, StateModes
 from beltdyn.solve.vibration.small_motions import SmallMotions, about_standing, about_steady

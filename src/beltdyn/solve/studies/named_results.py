@@ -10,7 +10,7 @@ from beltdyn.parts.messages import suggest
 from beltdyn.results import Run, Variable
 from beltdyn.results.static import OWN
 from beltdyn.results.summary import means_of
-from beltdyn.solve.steady_running.operating_points import VARIABLES, labels_of, values_by_name
+from beltdyn.solve.steady_running.point_values import VARIABLES, labels_of, values_by_name
 from beltdyn.solve.vibration.mode_table import FIRST_STUCK
 from beltdyn.solve.vibration.small_motions import dry_tensioners
 

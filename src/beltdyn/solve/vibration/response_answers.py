@@ -11,7 +11,8 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, Variable
-from beltdyn.solve.steady_running.operating_points import Axes, labels_of
+from beltdyn.solve.steady_running.operating_points import Axes
+from beltdyn.solve.steady_running.point_values import labels_of
 from beltdyn.solve.vibration.excitation import LOAD, SPEED, Excitation, own_excitations
 from beltdyn.solve.vibration.forced_motion import ForcedMotion
 from beltdyn.solve.vibration.waves import speed_waves, torque_waves
