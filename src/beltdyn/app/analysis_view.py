@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 _OFTEN = 0.25
 """Time between two looks at an analysis, s."""
-_MOST_RESULTS = 5
 
 
 class AnalysisView:
@@ -36,7 +35,7 @@ class AnalysisView:
 
     def __init__(self, session: Session, watch: Callable[["Glimpse | None"], None]) -> None:
         self._session, self._watch = session, watch
-        self._cards: list[ui.expansion] = []
+        self._cards: list[tuple[Outcome, ui.expansion]] = []
         self._seen: Glimpse | None = None
         names = offered()
         with ui.row().classes("w-full items-center gap-2 q-mt-md"):
@@ -56,8 +55,7 @@ class AnalysisView:
         self._box = ui.column().classes("w-full gap-1 bd-tables").mark("watched")
         self._results = ui.column().classes("w-full gap-1")
         self._timer = ui.timer(_OFTEN, self._look, active=session.job is not None)
-        for name, outcome in reversed(session.outcomes):
-            self._show(name, outcome)
+        self._show_outcomes()
         self._ask_options()
         self.update()
 
@@ -117,23 +115,17 @@ class AnalysisView:
             self._state.text = "ending …"
 
     def _look(self) -> None:
-        job = self._session.job
-        if job is None:
-            return
-        job.poll()
-        if job.outcome is None:
+        job = self._session.follow_job()
+        if job is not None:
             part, phase, remaining, glimpse = job.step
             self._bar.value = part
             left = "" if math.isnan(remaining) else f", about {remaining:.0f} s left"
             self._state.text = f"{job.name}: {phase}, {part:.0%}{left}"
             self._show_glimpse(glimpse)
             return
-        self._session.job, self._timer.active, self._state.text = None, False, ""
-        self._session.workspace.jobs.discard(job)
+        self._timer.active, self._state.text = False, ""
         self._show_glimpse(None)
-        self._session.outcomes.insert(0, (job.name, job.outcome))
-        self._show(job.name, job.outcome)
-        self._forget()
+        self._show_outcomes()
         self.update()
 
     def _show_glimpse(self, glimpse: "Glimpse | None") -> None:
@@ -151,8 +143,18 @@ class AnalysisView:
                 )
                 show_parts((glimpse.pulleys,))
 
+    def _show_outcomes(self) -> None:
+        """Show what has ended since, and take away what the session keeps no more."""
+        there = self._session.outcomes
+        for old in [one for one in self._cards if all(one[0] is not outcome for _, outcome in there)]:
+            old[1].delete()
+            self._cards.remove(old)
+        for name, outcome in reversed(there):
+            if all(shown is not outcome for shown, _ in self._cards):
+                self._show(name, outcome)
+
     def _show(self, name: str, outcome: Outcome) -> None:
-        for other in self._cards:
+        for _, other in self._cards:
             other.value = False
         with self._results:
             title = f"{name}: {outcome.status}"
@@ -160,17 +162,7 @@ class AnalysisView:
             card.move(target_index=0)
             with card:
                 self._fill(outcome)
-        self._cards.insert(0, card)
-
-    def _forget(self) -> None:
-        """Take the oldest results away, with their files."""
-        for old in self._cards[_MOST_RESULTS:]:
-            old.delete()
-        for _, gone in self._session.outcomes[_MOST_RESULTS:]:
-            for file in (gone.result, gone.report, gone.best):
-                if file is not None:
-                    file.unlink(missing_ok=True)
-        del self._cards[_MOST_RESULTS:], self._session.outcomes[_MOST_RESULTS:]
+        self._cards.append((outcome, card))
 
     def _fill(self, outcome: Outcome) -> None:
         if outcome.error:

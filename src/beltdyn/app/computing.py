@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 _MODES = 6
 _MOST_TABS = 8
 """Tabs whose last steady running is remembered."""
-_YIELDING = 10
-"""How far the process that compiles ahead gives way to others, of 19."""
 
 
 class Asked(NamedTuple):
@@ -115,7 +113,7 @@ def _tell_by(flag: SharedEvent) -> None:
 
 
 def compile_ahead(asked: Asked, compiles: SharedEvent) -> None:
-    """Load or compile what running and modes need, before there is a question; it gives way to other processes.
+    """Load or compile what running and modes need, before there is a question.
 
     Parameters
     ----------
@@ -125,8 +123,6 @@ def compile_ahead(asked: Asked, compiles: SharedEvent) -> None:
         Is set while kernels are compiled.
     """
     prepare()
-    if hasattr(os, "nice"):
-        os.nice(_YIELDING)
     _tell_by(compiles)
     for what in ("running", "modes"):
         answer(asked._replace(what=what))

@@ -15,6 +15,7 @@ from beltdyn.parts.toml_edits import Edit
 
 _FARTHEST = 1e3
 """Coordinate up to which the canvas is believed, m."""
+_MOST_RESULTS = 5
 _ON_PULLEYS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, float]], list[Edit]]] = {
     "move": lambda data, number, to: placing.move(data, number, to["x"], to["y"]),
     "size": lambda data, number, to: placing.resize(data, number, to["radius"]),
@@ -45,7 +46,7 @@ class Session:
     job : Job or None
         The analysis that is computed.
     outcomes : list of (str, Outcome)
-        Analyses that have ended, by their names, the latest first.
+        The last analyses that have ended, by their names, the latest first.
     """
 
     def __init__(self, workspace: Workspace) -> None:
@@ -130,6 +131,27 @@ class Session:
         pulleys, tensioners = (groups(self.document.data, key) for key in ("pulley", "tensioner"))
         number = self.selected if self.selected is not None else len(pulleys) - 1
         return placing.new_tensioner(self.draft, number, kind, len(tensioners)) if number >= 0 else []
+
+    def follow_job(self) -> Job | None:
+        """The analysis that is computed, if any. One that has ended becomes an outcome; the oldest goes with its files.
+
+        The page may be shown several times, as where it was loaded again a moment ago.
+        """
+        job = self.job
+        if job is None:
+            return None
+        job.poll()
+        if job.outcome is None:
+            return job
+        self.job = None
+        self.workspace.jobs.discard(job)
+        self.outcomes.insert(0, (job.name, job.outcome))
+        for _, gone in self.outcomes[_MOST_RESULTS:]:
+            for file in (gone.result, gone.report, gone.best):
+                if file is not None:
+                    file.unlink(missing_ok=True)
+        del self.outcomes[_MOST_RESULTS:]
+        return None
 
     def start(self, text: str, name: str | None = None) -> None:
         """Begin with a drive file.

@@ -1,11 +1,14 @@
 """Drives on the page: a folder with one, and what tabs share."""
 
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from beltdyn.app.folder import Folder
+from beltdyn.app.jobs import Outcome
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import Workspace
 
@@ -26,3 +29,19 @@ def session(workspace: Workspace) -> Session:
     made = Session(workspace)
     made.open("drive.toml")
     return made
+
+
+class Ended:
+    """An analysis that has ended, and was not asked yet."""
+
+    def __init__(self, name: str, ending: Outcome) -> None:
+        self.name, self._ending = name, ending
+        self.outcome: Outcome | None = None
+
+    def poll(self) -> None:
+        self.outcome = self._ending
+
+
+@pytest.fixture
+def ended_job() -> Callable[[str, Outcome], Any]:
+    return Ended

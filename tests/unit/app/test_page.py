@@ -13,10 +13,13 @@ from nicegui import ui
 from nicegui.testing import User, user_simulation
 
 from beltdyn.app import numbers_view
+from beltdyn.app.analysis_view import AnalysisView
 from beltdyn.app.calculator import Calculator
 from beltdyn.app.canvas import Canvas
 from beltdyn.app.computing import Answer, Asked
+from beltdyn.app.jobs import Outcome
 from beltdyn.app.page import Page
+from beltdyn.app.session import Session
 from beltdyn.app.sheet_view import table_html
 from beltdyn.app.workspace import Workspace
 from beltdyn.results.sheet_parts import Facts, Table
@@ -285,6 +288,26 @@ def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> Non
         await user.should_see("campbell needs speed.")
 
     go(workspace, journey)
+
+
+def test_what_ends_is_shown_by_every_page_of_a_session(session: Session, ended_job: Callable[..., Any]) -> None:
+    """A page that was loaded again shows it too, though the one before is still there for a while, and hears first."""
+    session.job = ended_job("run", Outcome("interrupted"))
+
+    def root() -> None:
+        for _ in range(2):
+            AnalysisView(session, lambda _: None)
+
+    async def journey() -> None:
+        async with user_simulation(root=root) as user:
+            await user.open("/")
+            await user.should_see("run: interrupted", retries=100)
+            while len(user.find("run: interrupted").elements) < 2:
+                await asyncio.sleep(0.05)
+            await user.should_not_see(marker="cancel")
+
+    asyncio.run(asyncio.wait_for(journey(), 20.0))
+    assert session.job is None
 
 
 def test_tables_are_written_with_their_text_escaped() -> None:

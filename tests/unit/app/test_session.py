@@ -3,10 +3,13 @@
 import math
 import random
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from beltdyn.app.jobs import Outcome
 from beltdyn.app.session import Session
 from beltdyn.app.workspace import EMPTY, Workspace, examples
 from beltdyn.errors import ModelError
@@ -111,3 +114,16 @@ def test_a_hundred_random_edits_leave_a_file_that_says_what_the_data_say(session
         assert (session.draft.drive is None) == bool(session.draft.told)
         if generator.random() < 0.2:
             session.undo()
+
+
+def test_the_last_analyses_are_kept_and_older_ones_go_with_their_files(
+    session: Session, tmp_path: Path, ended_job: Callable[..., Any]
+) -> None:
+    files = [tmp_path / f"{number}.nc" for number in range(7)]
+    for file in files:
+        file.touch()
+        session.job = ended_job(file.name, Outcome("completed", result=file))
+        assert session.follow_job() is None
+        assert session.follow_job() is None  # once
+    assert [name for name, _ in session.outcomes] == [file.name for file in files[:1:-1]]
+    assert [file.exists() for file in files] == 2 * [False] + 5 * [True]
