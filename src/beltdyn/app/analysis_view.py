@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from nicegui import app, ui
 
 from beltdyn.analyses import ANALYSES, RUN
-from beltdyn.app.jobs import Job, Option, Outcome, offered, options_of
+from beltdyn.app.jobs import Job, Outcome
+from beltdyn.app.options import Option, offered, options_of
 from beltdyn.app.session import Session
 from beltdyn.app.sheet_view import show_parts
 from beltdyn.errors import ModelError
@@ -75,13 +76,18 @@ class AnalysisView:
     def _input(self, one: Option) -> ui.input | ui.select:
         """A field of an option; of one that is a file a list of those in the folder."""
         name = one.name.strip("_")
+        box: ui.input | ui.select
         if one.suffixes:
             there = self._session.workspace.folder.files(*one.suffixes)
             words = name if there else f"{name}: no {' or '.join(one.suffixes)} file in the folder"
             box = ui.select(there, label=words, clearable=True).style("min-width: 14em")
-            return box.props("dense options-dense stack-label").mark(f"option:{one.name}")
-        typed = ui.input(label=name, placeholder=one.default).style("width: 9em")
-        return typed.props('dense stack-label autocomplete="off"').mark(f"option:{one.name}")
+            box.props("dense options-dense stack-label")
+        else:
+            box = ui.input(label=name, placeholder=one.default).style("width: 9em")
+            box.props('dense stack-label autocomplete="off"')
+        with box:
+            ui.tooltip(one.about).classes("bd-about")
+        return box.mark(f"option:{one.name}")
 
     def start(self) -> None:
         """Start the chosen analysis."""

@@ -7,20 +7,16 @@ import signal
 import threading
 import time
 from collections.abc import Mapping
-from functools import cache
-from inspect import Parameter, signature
 from multiprocessing.connection import Connection
 from multiprocessing.synchronize import Event as SharedEvent
 from pathlib import Path
-from types import UnionType
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beltdyn.analyses import ANALYSES
 from beltdyn.app.computing import prepare
 from beltdyn.app.preparing import PREPARING, tell_of_compilation
-from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.errors import BeltdynError
 from beltdyn.model import loads
-from beltdyn.parts.error_location import shorten
 from beltdyn.results.sheet_parts import Facts, Table
 
 if TYPE_CHECKING:
@@ -30,9 +26,6 @@ _GRACE = 5.0
 """Time that a cancelled analysis has to close its file, s."""
 _OFTEN = 0.1
 """Time between two steps that are told, s."""
-_SHARED = ("output", "progress", "overwrite", "start")
-_SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "compare": (".nc",)}
-"""Option that is a file -> what such files end with; of others files of all these kinds are offered."""
 
 
 class Step(NamedTuple):
@@ -85,83 +78,6 @@ class Outcome(NamedTuple):
     result: Path | None = None
     report: Path | None = None
     best: Path | None = None
-
-
-class Option(NamedTuple):
-    """An option of an analysis.
-
-    Attributes
-    ----------
-    name : str
-        As its function has it.
-    kind : type
-        str, int or float: what is given; Path of a file in the folder of the page.
-    default : str
-        What holds where it is left open; empty where it must be given, or is chosen.
-    required : bool
-        Whether it must be given.
-    """
-
-    name: str
-    kind: type
-    default: str
-    required: bool
-
-    @property
-    def suffixes(self) -> tuple[str, ...]:
-        """What the names of its files end with, of an option that is a file; nothing of others."""
-        every = tuple(dict.fromkeys(one for suffixes in _SUFFIXES.values() for one in suffixes))
-        return _SUFFIXES.get(self.name, every) if self.kind is Path else ()
-
-    def read(self, text: str) -> str | int | float:
-        """Read what was typed, or the name of the file that was chosen.
-
-        Raises
-        ------
-        ModelError
-            If it is no number, and should be one.
-        """
-        if self.kind in (str, Path):
-            return text
-        try:
-            number: int | float = self.kind(text)
-        except ValueError:
-            whole = "a whole number" if self.kind is int else "a number"
-            raise ModelError(f"{self.name} = {shorten(text)} must be {whole}.") from None
-        return number
-
-
-@cache
-def offered() -> dict[str, str]:
-    """Analyses that take a drive file, plain options and further files, with what they tell."""
-    return {
-        name: one.purpose
-        for name, one in ANALYSES.items()
-        if all(_kind(each.annotation) or each.default is not Parameter.empty for each in _own(name))
-    }
-
-
-@cache
-def options_of(name: str) -> tuple[Option, ...]:
-    """Options of an analysis that are texts, numbers or files; those that must be given come first."""
-    found = []
-    for one in _own(name):
-        if kind := _kind(one.annotation):
-            required = one.default is Parameter.empty
-            default = "" if required or one.default is None else str(one.default)
-            found.append(Option(one.name, kind, default, required))
-    return tuple(sorted(found, key=lambda option: not option.required))
-
-
-def _own(name: str) -> list[Parameter]:
-    parameters = signature(ANALYSES[name].function, eval_str=True).parameters.values()
-    return [one for one in parameters if one.kind is Parameter.KEYWORD_ONLY and one.name not in _SHARED]
-
-
-def _kind(annotation: Any) -> type | None:
-    """What an option takes as it is typed or chosen; None where it is neither file, text nor number."""
-    kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
-    return next((kind for kind in (Path, str, float, int) if kind in kinds), None)
 
 
 class Job:

@@ -51,8 +51,9 @@ class NumbersView:
         self._timer = ui.timer(_OFTEN, self._say_why, active=False)
 
     def _slider(self, name: str, low: int, high: int) -> ui.slider:
-        label = ui.label().classes("text-caption").style("min-width: 7em")
-        slider = ui.slider(min=low, max=high, value=100, step=5, on_change=self.update)
+        with ui.row().classes("items-center gap-2 no-wrap"):
+            label = ui.label().classes("text-caption").style("min-width: 7em")
+            slider = ui.slider(min=low, max=high, value=100, step=5, on_change=self.update)
         slider.props(f'dense aria-label="{name} in percent of the drive file"').style("width: 130px").mark(name)
         label.bind_text_from(slider, "value", lambda value: f"{name} {value:g} %")
         return slider

@@ -38,20 +38,22 @@ def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:
     return figure
 
 
-def rows(items: Sequence[Item]) -> list[list[Item]]:
-    """Break a sequence into rows of nearly the same length, four at most.
+def rows(items: Sequence[Item], most: int = _COLUMNS) -> list[list[Item]]:
+    """Break a sequence into rows of nearly the same length.
 
     Parameters
     ----------
     items : sequence
         One or more.
+    most : int
+        Items of a row at most.
 
     Returns
     -------
     list of list
         The rows.
     """
-    columns = ceil(len(items) / ceil(len(items) / _COLUMNS))
+    columns = ceil(len(items) / ceil(len(items) / most))
     return [list(items[first : first + columns]) for first in range(0, len(items), columns)]
 
 

@@ -75,7 +75,7 @@ def study_lines(result: Result, of: str | None = None, over: str | None = None, 
             ax.plot(x[order], y[order], color=color(number), linestyle=dash(number), marker="o", ms=3, label=told)
     if len(family):
         ax.legend(title=str(result.dataset[others[0]].name))
-    ax.set(xlabel=labelled(result.dataset[along]), ylabel=labelled(result.dataset[name]))
+    ax.set(xlabel=labelled(result.dataset[along]), title=labelled(result.dataset[name]))
     return ax
 
 

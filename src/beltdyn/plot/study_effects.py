@@ -22,6 +22,8 @@ from beltdyn.results.sobol_indices import sobol_indices as indices_of
 _MOST_BARS = 12
 _NARROW = 22
 """Letters in a line beside a bar."""
+_TICKS = 5
+"""Numbers below a panel at most, less one: they may have many digits."""
 
 
 @figure(suits("tornado"), panel_for_each_result, of=(STUDY,))
@@ -65,10 +67,11 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
             if number < len(numbers):
                 side = "left" if value > base else "right"
                 ax.annotate(f"{numbers[number]:.4g}", (value, row), (3 if value > base else -3, 0), "data",
-                            "offset points", ha=side, va="center", fontsize=7)  # fmt: skip
+                            "offset points", ha=side, va="center", fontsize=8)  # fmt: skip
     ax.axvline(base, color=INK, linewidth=0.9)
-    ax.set_yticks(range(len(order)), [labelled(result.dataset[path], _NARROW) for path in order], fontsize=7)
+    ax.set_yticks(range(len(order)), [labelled(result.dataset[path], _NARROW) for path in order], fontsize=8)
     ax.margins(x=0.2)
+    ax.locator_params(axis="x", nbins=_TICKS)
     ax.set_xlabel(labelled(result.dataset[name]))
     return ax
 
@@ -109,7 +112,7 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
         (-0.2, total[0], total_error[0], "with others"),
     ):
         ax.barh(places + side, values, 0.38, xerr=errors, capsize=2, color=color(int(side < 0.0)), label=told)
-    ax.set_yticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=7)
+    ax.set_yticks(places, [labelled(result.dataset[one], _NARROW) for one in names], fontsize=8)
     ax.set_xlim(left=min(0.0, float(np.nan_to_num(first[0]).min()) - 0.05))
     ax.set_xlabel(f"Part of the variance of\n{name}", fontsize=9)
     name_lines(ax)

@@ -19,13 +19,16 @@ from beltdyn.results import Result
 from beltdyn.results.shown import shown_unit
 
 _MOST_PANELS = 6
+_BESIDE = 2
+"""Panels beside each other: their words are long."""
 _CORNERS = 3
 """Points from which on there are contours."""
 
 
 def panel_for_each_result(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a panel for each of the first results, with one legend where all have the same."""
-    page = panels(rows([partial(draw, result, name) for name in results_of(result)[:_MOST_PANELS]]), sharey=False)
+    draws = [partial(draw, result, name) for name in results_of(result)[:_MOST_PANELS]]
+    page = panels(rows(draws, _BESIDE), sharey=False)
     legends = [box for ax in page.axes if (box := ax.get_legend()) is not None]
     if legends:
         words = [text.get_text() for text in legends[0].get_texts()]

@@ -4,10 +4,7 @@ import math
 import time
 from pathlib import Path
 
-import pytest
-
-from beltdyn.app.jobs import Job, Option, Outcome, _Teller, offered, options_of
-from beltdyn.errors import ModelError
+from beltdyn.app.jobs import Job, Outcome, _Teller
 from beltdyn.results import open_result
 from beltdyn.solve.progress import Progress
 
@@ -17,32 +14,6 @@ def ended(job: Job) -> Outcome:
         time.sleep(0.05)
         job.poll()
     return job.outcome
-
-
-def test_analyses_are_offered_with_their_options() -> None:
-    names = offered()
-    assert {"run", "static", "steady", "traction", "modes", "campbell", "duty", "optimize"} <= names.keys()
-    options = {one.name: one for one in options_of("campbell")}
-    assert options["speed"].required
-    assert options["points"] == Option("points", int, "40", False)
-    assert options_of("static") == ()
-    assert {"from_", "to"} <= {one.name for one in options_of("sweep") if one.required}
-
-
-def test_options_are_read_as_what_they_are() -> None:
-    points = Option("points", int, "40", False)
-    assert (points.read("12"), Option("slip", str, "", False).read("1")) == (12, "1")
-    for wrong in ("1.5", "many"):
-        with pytest.raises(ModelError, match="must be a whole number"):
-            points.read(wrong)
-
-
-def test_options_that_are_files_say_what_they_end_with() -> None:
-    suffixes = {name: {one.name: one.suffixes for one in options_of(name)} for name in ("duty", "optimize", "response")}
-    assert suffixes["duty"]["table"] == (".csv",)
-    assert suffixes["optimize"]["study"] == (".toml",)
-    assert suffixes["response"]["compare"] == (".nc",)
-    assert suffixes["response"]["speed"] == ()
 
 
 def test_a_duty_table_of_the_folder_is_read(drive_text: str, tmp_path: Path) -> None:

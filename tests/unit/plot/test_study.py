@@ -12,6 +12,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy
 from beltdyn.plot import parallel_coordinates, sobol_indices, study_contour, study_lines, tornado
 from beltdyn.plot.figures import chosen_by_default
+from beltdyn.plot.registry import FIGURES, Choice
 from beltdyn.results import Result
 from beltdyn.solve import study
 
@@ -39,7 +40,7 @@ def test_one_number_is_a_line_in_shown_units(make: Make) -> None:
     (line,) = ax.get_lines()
     assert np.asarray(line.get_xdata()) == pytest.approx([10.0, 15.0, 20.0])
     assert np.asarray(line.get_ydata()) == pytest.approx(result.dataset["tension"].values)
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("belt.width [mm]", "tension [N]")
+    assert (ax.get_xlabel(), ax.get_title("left")) == ("belt.width [mm]", "tension [N]")
     plt.close("all")
 
 
@@ -56,6 +57,18 @@ def test_two_numbers_are_lines_and_contours(make: Make) -> None:
     with pytest.raises(ModelError, match="is no number that varies"):
         study_lines(result, over="belt.length")
     plt.close("all")
+
+
+def test_panels_stand_in_pairs_with_one_legend(drive: Drive) -> None:
+    """Their words are long: four beside each other could not be read."""
+    results = ["tension", "hub_load[driven]", "hub_load[driver]"]
+    given = ParameterStudy(number=[WIDTH, RADIUS], analysis="static", results=results)
+    page = FIGURES["study_lines"].arrange(study(given, drive, jobs=1), Choice())
+    first, second, third = (ax.get_position() for ax in page.axes)
+    assert first.y0 == pytest.approx(second.y0)
+    assert third.y1 < first.y0
+    assert [ax.get_legend() for ax in page.axes] == 3 * [None]
+    assert len(page.legends) == 1
 
 
 def test_many_numbers_are_parallel_axes(make: Make) -> None:

@@ -1,0 +1,100 @@
+"""Analyses that the page offers, and their options, which are those of the functions."""
+
+from functools import cache
+from inspect import Parameter, signature
+from pathlib import Path
+from types import UnionType
+from typing import Any, NamedTuple, get_args
+
+from docstring_parser import parse
+
+from beltdyn.analyses import ANALYSES
+from beltdyn.errors import ModelError
+from beltdyn.parts.error_location import shorten
+
+_SHARED = ("output", "progress", "overwrite", "start", "checkpoint")
+"""What the page gives itself, or does not need: its runs are not resumed."""
+_SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "compare": (".nc",)}
+"""Option that is a file -> what such files end with; of others files of all these kinds are offered."""
+
+
+class Option(NamedTuple):
+    """An option of an analysis.
+
+    Attributes
+    ----------
+    name : str
+        As its function has it.
+    kind : type
+        str, int or float: what is given; Path of a file in the folder of the page.
+    default : str
+        What holds where it is left open; empty where it must be given, or is chosen.
+    required : bool
+        Whether it must be given.
+    about : str
+        What it means.
+    """
+
+    name: str
+    kind: type
+    default: str
+    required: bool
+    about: str
+
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """What the names of its files end with, of an option that is a file; nothing of others."""
+        every = tuple(dict.fromkeys(one for suffixes in _SUFFIXES.values() for one in suffixes))
+        return _SUFFIXES.get(self.name, every) if self.kind is Path else ()
+
+    def read(self, text: str) -> str | int | float:
+        """Read what was typed, or the name of the file that was chosen.
+
+        Raises
+        ------
+        ModelError
+            If it is no number, and should be one.
+        """
+        if self.kind in (str, Path):
+            return text
+        try:
+            number: int | float = self.kind(text)
+        except ValueError:
+            whole = "a whole number" if self.kind is int else "a number"
+            raise ModelError(f"{self.name} = {shorten(text)} must be {whole}.") from None
+        return number
+
+
+@cache
+def offered() -> dict[str, str]:
+    """Analyses that take a drive file, plain options and further files, with what they tell."""
+    return {
+        name: one.purpose
+        for name, one in ANALYSES.items()
+        if all(_kind(each.annotation) or each.default is not Parameter.empty for each in _own(name))
+    }
+
+
+@cache
+def options_of(name: str) -> tuple[Option, ...]:
+    """Options of an analysis that are texts, numbers or files; those that must be given come first."""
+    found = []
+    told = {one.arg_name: one.description or "" for one in parse(ANALYSES[name].function.__doc__ or "").params}
+    for one in _own(name):
+        if kind := _kind(one.annotation):
+            required = one.default is Parameter.empty
+            default = "" if required or one.default is None else str(one.default)
+            about = " ".join(told[one.name].replace("`", "").split())
+            found.append(Option(one.name, kind, default, required, about))
+    return tuple(sorted(found, key=lambda option: not option.required))
+
+
+def _own(name: str) -> list[Parameter]:
+    parameters = signature(ANALYSES[name].function, eval_str=True).parameters.values()
+    return [one for one in parameters if one.kind is Parameter.KEYWORD_ONLY and one.name not in _SHARED]
+
+
+def _kind(annotation: Any) -> type | None:
+    """What an option takes as it is typed or chosen; None where it is neither file, text nor number."""
+    kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
+    return next((kind for kind in (Path, str, float, int) if kind in kinds), None)
