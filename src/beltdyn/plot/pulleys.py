@@ -237,7 +237,7 @@ def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
     ]
     ax = lines(loads, axes_or_new(ax), names)
     ax.set_ylim(bottom=0.0)
-    note(ax, f"numbers: means and largest values at the end, from {over.start:.4g} to {over.end:.4g} s")
+    note(ax, f"means and largest values, from {over.start:.4g} to {over.end:.4g} s")
     return ax
 
 

@@ -50,12 +50,15 @@ def overlay(
         The axes.
     """
     names, drawn, titles = names_of_results(results), dict[int, list[Line2D]](), list[str]()
-    notes = list[Text]()
+    notes, limits = list[Text](), list[tuple[float, float]]()
     for number, result in enumerate(results):
         if shows is not None and not shows[number]:
             continue
         before = set(ax.get_children()) if ax is not None else set()
+        if ax is not None and drawn:
+            ax.autoscale(axis="y")  # what the result before has set holds for it alone
         ax = draw(result, ax)
+        limits.append(ax.get_ylim())
         titles.append(ax.get_title(loc="left"))
         new = [artist for artist in ax.get_children() if artist not in before | {ax.patch, *ax.spines.values()}]
         drawn[number] = [artist for artist in new if isinstance(artist, Line2D)]
@@ -69,6 +72,8 @@ def overlay(
                 one.remove()
     assert ax is not None
     ax.set_title(_shared(titles))
+    if not ax.get_autoscaley_on():
+        ax.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
     if notes:
         notes[0].set_text(_shared([note.get_text() for note in notes]))
     legend, page = _named(drawn, names), ax.figure.figure

@@ -108,9 +108,10 @@ def write_words(chart: Any, ax: Axes) -> None:
 
 def name_the_rest(chart: Any, ax: Axes, named: Sequence[Named]) -> list[Named]:
     """What the legend of a panel says besides the names of its lines, such as what a mark means."""
-    legend, known = ax.get_legend(), {one.name for one in named}
+    legend, lines = ax.get_legend(), [line for line in ax.lines if _of_data(line)]
     if legend is None:
         return []
+    known = {one.name for one in named} | {str(line.get_label()) for line in lines} | {line.get_gid() for line in lines}
     said = zip(legend.legend_handles, (text.get_text() for text in legend.get_texts()), strict=True)
     return [Named(text, _sample(chart, handle)) for handle, text in said if handle is not None and text not in known]
 
@@ -202,7 +203,8 @@ def _draw(chart: Any, ax: Axes, lines: Sequence[Line2D], hover: Any) -> list[Nam
 def _name(line: Line2D) -> str:
     """The name of a line, with that of its result where several are drawn."""
     name, result = str(line.get_label()), line.get_gid() or ""
-    return name if not result or result in name else f"{name}, {result}"
+    told = not result or name == result or name.endswith(f", {result}")
+    return name if told else f"{name}, {result}"
 
 
 def _shaded(steps: StepPatch) -> Iterator[dict[str, float]]:

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
@@ -54,6 +55,25 @@ def test_what_differs_is_named_after_its_run(pair: list[Run], ax: Axes) -> None:
     assert names[0] == "driver 0.000%"
     assert [name.split(", ")[1] for name in names[1:3]] == ["one", "other"]
     assert len(ax.texts) == 1
+
+
+@pytest.mark.parametrize("order", [slice(None), slice(None, None, -1)])
+@pytest.mark.parametrize("name", ["hub_load_sizes", "slip", "span_tensions"])
+def test_the_scale_has_room_for_all_results(
+    run: Run, make_run: Callable[..., Run], ax: Axes, name: str, order: slice
+) -> None:
+    """The first may be the smaller, or the larger one."""
+    more = make_run(
+        hub_force=1.5 * run.dataset["hub_force"].values,
+        span_tension=1.5 * run.dataset["span_tension"].values,
+        pulley_speed=run.dataset["pulley_speed"].values * [1.0, 0.9],
+    )
+    draw = getattr(plot, name)
+    alone = [draw(one).get_ylim() for one in (run, more)]
+    low, high = draw([named(run, "a.nc"), named(more, "b.nc")][order], ax).get_ylim()
+    assert low <= min(bottom for bottom, _ in alone)
+    assert high >= 0.99 * max(top for _, top in alone)
+    plt.close("all")
 
 
 def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path: Path) -> None:
@@ -136,7 +156,7 @@ def test_titles_and_notes_keep_what_is_true_of_all(run: Run, make_run: Callable[
     time = run.dataset["time"]
     later = named(Run(run.dataset.assign_coords(time=(2.0 * time).assign_attrs(time.attrs)), run.drive), "later.nc")
     plot.hub_load_sizes([named(run, "one.nc"), later], ax)  # type: ignore[arg-type]
-    assert [text.get_text() for text in ax.texts] == ["numbers: means and largest values at the end"]
+    assert [text.get_text() for text in ax.texts] == ["means and largest values"]
 
 
 def test_long_names_of_results_are_told_by_their_line_styles(pair: list[Run]) -> None:

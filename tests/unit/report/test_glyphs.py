@@ -1,13 +1,17 @@
 """What is on a figure is on its chart too."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from beltdyn.plot.registry import FIGURES, Choice
 from beltdyn.report.chart import charts
 from beltdyn.report.glyphs import can_be_charted, thinned
+from beltdyn.results import Run
 
 
 def test_bands_areas_marks_and_words_are_drawn() -> None:
@@ -47,6 +51,18 @@ def test_lines_of_several_results_have_their_names() -> None:
         ax.plot([0.0, 1.0], label="driver", gid=result)
     (chart,) = charts(ax.figure.figure)
     assert [item.label.value for item in chart.legend[0].items] == ["driver, before", "driver, after"]
+
+
+@pytest.mark.parametrize("name", ["speeds", "hub_load_sizes"])
+def test_each_line_of_several_results_is_named_once(run: Run, name: str) -> None:
+    """Also where the name of a result is a part of that of a pulley."""
+    other = run.dataset.assign(hub_force=1.5 * run.dataset["hub_force"])
+    pair = [Run(run.dataset, run.drive, Path("r.nc")), Run(other, run.drive, Path("e.nc"))]
+    (chart,) = charts(FIGURES[name].arrange(pair, Choice()))
+    names = [item.label.value for item in chart.legend[0].items]
+    assert [(one.split(" ")[0].strip(","), one.split(", ")[-1]) for one in names] == [
+        (pulley, result) for result in ("r", "e") for pulley in ("driver", "driven")
+    ]
 
 
 def test_panels_beside_each_other_have_the_label_that_they_share() -> None:
