@@ -5,6 +5,14 @@ class BeltdynError(Exception):
     """Base of every error that beltdyn raises on purpose.
 
     The message says the value, the rule and the remedy, and is meant to be shown as it is.
+
+    Examples
+    --------
+    >>> try:
+    ...     bd.loads("belt = 3")
+    ... except bd.BeltdynError as error:
+    ...     print(type(error).__name__, error.exit_code)
+    ModelError 2
     """
 
     exit_code = 2
@@ -32,7 +40,16 @@ class SimulationError(BeltdynError, RuntimeError):
 
 
 class ConvergenceError(SimulationError):
-    """The equations find no solution: the message says when, where and what to try."""
+    """The equations find no solution: the message says when, where and what to try.
+
+    Examples
+    --------
+    >>> try:
+    ...     bd.steady_state(drive.with_({"pulley[driven].torque.value": -50.0}))
+    ... except bd.ConvergenceError as error:
+    ...     print(str(error).split("; ")[0])
+    no steady running at t = 1 s: the belt slips through on driven, which transmits at most 5.654 N m at 112.2 rpm
+    """
 
 
 class OutputError(SimulationError):

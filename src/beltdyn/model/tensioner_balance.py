@@ -25,7 +25,15 @@ _ACCURACY = 1e-13
 
 
 class TensionerBalance(NamedTuple):
-    """A place in which spring and stops of a tensioner balance the belt."""
+    """A place in which spring and stops of a tensioner balance the belt.
+
+    Examples
+    --------
+    >>> slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
+    >>> sprung = drive.replace(tensioner=[slide])
+    >>> [[one.stable for one in places] for places in bd.tensioner_balances(sprung, bd.install(sprung))]
+    [[True]]
+    """
 
     position: float
     """q, m or rad."""

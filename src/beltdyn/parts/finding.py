@@ -23,6 +23,12 @@ class Finding:
     ------
     ValueError
         If a part is no sentence.
+
+    Examples
+    --------
+    >>> found = bd.Finding("The belt is long.", "The slack span sags.", "Shorten it.")
+    >>> print(found)
+    The belt is long. The slack span sags. Shorten it.
     """
 
     fault: str

@@ -49,6 +49,11 @@ def save_all(
     ModelError
         If a figure, the pulley or the variable is not known or cannot be drawn, the run holds no output, a file cannot
         be written, or would replace one that is no figure of ours.
+
+    Examples
+    --------
+    >>> [path.name for path in bd.plot.save_all(run, "figures", figures=["speeds"])]
+    ['speeds.png']
     """
     results = [run] if isinstance(run, Result) else list(run)
     for result in results:

@@ -108,6 +108,11 @@ def save_layout(
     ------
     ModelError
         If the format is unknown, the file cannot be written, or would replace one that is no figure of ours.
+
+    Examples
+    --------
+    >>> bd.plot.save_layout(drive, "layout.svg").name
+    'layout.svg'
     """
     path = FilePath(path)
     figure = new_figure(size_of(drive))

@@ -176,6 +176,12 @@ def mode_shape(result: Result, mode: int = 1, *, ax: Axes | None = None) -> Axes
     ------
     ModelError
         If there is no such mode.
+
+    Examples
+    --------
+    >>> found = bd.modes(drive, about="rest", count=2)
+    >>> bd.plot.mode_shape(found, mode=2).get_aspect()
+    1.0
     """
     numbers = result.dataset["mode"].values
     if mode not in numbers:

@@ -58,6 +58,12 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     ------
     ModelError
         If there is no such variable.
+
+    Examples
+    --------
+    >>> found = bd.operating_map(drive, speed="60, 120 rpm")
+    >>> bd.plot.operating_points(found, "hub_load").get_ylabel()
+    'Hub load [N]'
     """
     dataset = result.dataset
     axis = str(dataset.attrs["axes"]).split()[0]
@@ -104,6 +110,12 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the map is over speed or load alone.
+
+    Examples
+    --------
+    >>> found = bd.operating_map(drive, speed="60, 120 rpm", load="0.5, 1")
+    >>> bd.plot.efficiency_map(found).get_ylabel()
+    'Load'
     """
     if not _over_both(result):
         raise ModelError("an efficiency map needs speed and load. Give both to `beltdyn map`.")
@@ -140,6 +152,11 @@ def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> bd.plot.traction_curve(bd.traction(drive, slip="0..0.2 %", points=3)).get_ylabel()
+    'Slip [%]'
     """
     dataset, ax = result.dataset, axes_or_new(ax)
     torque = dataset["torque"].values

@@ -40,6 +40,15 @@ def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> study = bd.OptimizationStudy(
+    ...     number=[{"path": "belt.length", "least": "1.27 m", "largest": "1.275 m"}],
+    ...     goal={"result": "hub_load"},
+    ... )
+    >>> bd.plot.optimization(bd.optimize(drive, study=study, most=3)).get_xlabel()
+    'Design'
     """
     dataset, ax = result.dataset, axes_or_new(ax)
     goal, beyond = dataset["design_goal"].values, dataset["design_violation"].values

@@ -61,6 +61,13 @@ def response(result: Result, variable: str = "span_tension", of: str | int = 0, 
     ------
     ModelError
         If there is no such variable, or nothing of that name.
+
+    Examples
+    --------
+    >>> wave = [{"order": 2, "amplitude": 0.02}]
+    >>> wavy = drive.replace(pulley=[drive.pulleys[0].replace(harmonics=wave), drive.pulleys[1]])
+    >>> bd.plot.response(bd.response(wavy, speed="80, 120 rpm")).get_ylabel()
+    'Amplitude [N]'
     """
     dataset, name = result.dataset, _name(result, variable)
     names = [str(one) for one in dataset[dataset[name].dims[-1]].values]

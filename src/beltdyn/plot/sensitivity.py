@@ -48,6 +48,12 @@ def sensitivity(result: Result, of: str | None = None, *, ax: Axes | None = None
     ------
     ModelError
         If there is no such result.
+
+    Examples
+    --------
+    >>> found = bd.sensitivity(drive, about="rest", of="tension", numbers="belt.width, belt.length")
+    >>> [number.get_text() for number in bd.plot.sensitivity(found).get_yticklabels()]
+    ['belt.width', 'belt.length']
     """
     return _tornado(result, of, "effect", "change with 1 % or 1 mm more", axes_or_new(ax))
 
@@ -82,6 +88,13 @@ def tolerances(result: Result, of: str | None = None, *, ax: Axes | None = None)
     ------
     ModelError
         If there is no such result, or the drive file has no tolerances.
+
+    Examples
+    --------
+    >>> text = bd.published.demo_text().replace("width = 0.01", 'width = "10 ± 0.1 mm"')
+    >>> found = bd.sensitivity(bd.loads(text), about="rest", of="tension", numbers="belt.width")
+    >>> [name.get_text() for name in bd.plot.tolerances(found).get_yticklabels()]
+    ['all, independent', 'belt.width']
     """
     if not _has_tolerances(result):
         raise ModelError('the drive file has no tolerances. Write for example width = "12.5 ± 0.1 mm".')

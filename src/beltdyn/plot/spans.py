@@ -65,6 +65,12 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
     ------
     ModelError
         If the run holds too few outputs, or nothing for spectra.
+
+    Examples
+    --------
+    >>> fine = drive.simulation.replace(duration=0.01, output_interval=0.0001)
+    >>> bd.plot.tension_spectrum(bd.simulate(drive.replace(simulation=fine)), start=0.0).get_xlabel()
+    'Frequency [Hz]'
     """
     run.require_output()
     run.require("filtered_span_tension")
@@ -109,6 +115,13 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the drive has no tensioner that moves.
+
+    Examples
+    --------
+    >>> slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
+    >>> sprung = drive.replace(tensioner=[slide], simulation=drive.simulation.replace(duration=0.005))
+    >>> bd.plot.tensioners(bd.simulate(sprung)).get_ylabel()
+    'Tensioner position [mm]'
     """
     if "tensioner_position" not in run.dataset:
         raise ModelError("this drive has no tensioner that moves: there is no position to draw. Choose another figure.")

@@ -35,6 +35,11 @@ def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> bd.plot.stretch(bd.read_catalogue()["PK"], name="PK").get_xlabel()
+    'Strain [%]'
     """
     ax, curve = axes_or_new(ax), entry.stretch_curve
     law = LAWS["linear"].make(entry.axial_stiffness) if curve is None else curve.parameters
@@ -79,6 +84,12 @@ def save_stretch(entry: Entry, path: Path | str, name: str = "", *, overwrite: b
     ------
     ModelError
         If the format is unknown, the file cannot be written, or would replace one that is no figure of ours.
+
+    Examples
+    --------
+    >>> belt = bd.read_catalogue()["PK"]
+    >>> bd.plot.save_stretch(belt, "stretch.svg", name="PK").name
+    'stretch.svg'
     """
     figure = new_figure()
     stretch(entry, name, figure.add_subplot())

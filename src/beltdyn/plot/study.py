@@ -59,6 +59,16 @@ def study_lines(result: Result, of: str | None = None, over: str | None = None, 
     ------
     ModelError
         If there is no such result or number.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension"],
+    ...     number=[{"path": "belt.width", "values": "10..20 mm", "steps": 3}],
+    ... )
+    >>> bd.plot.study_lines(bd.study(study, drive, jobs=1)).get_xlabel()
+    'belt.width [mm]'
     """
     name, ax, varied = chosen_result(result, of), axes_or_new(ax), varied_numbers(result)
     along = chosen_number(result, over, varied)
@@ -101,6 +111,19 @@ def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = No
     ------
     ModelError
         If there is no such result, or other than two numbers vary.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension"],
+    ...     number=[
+    ...         {"path": "belt.width", "values": "10..20 mm", "steps": 2},
+    ...         {"path": "pulley[driven].radius", "values": "81..81.5 mm", "steps": 2},
+    ...     ],
+    ... )
+    >>> bd.plot.study_contour(bd.study(study, drive, jobs=1)).get_ylabel()
+    'pulley[driven].radius [mm]'
     """
     name = chosen_result(result, of)
     if not spans_a_plane(result):
@@ -145,6 +168,17 @@ def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | No
     ------
     ModelError
         If there is no such result.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension", "hub_load[driven]"],
+    ...     number=[{"path": "belt.width", "values": "10..20 mm", "steps": 2}],
+    ... )
+    >>> ax = bd.plot.parallel_coordinates(bd.study(study, drive, jobs=1))
+    >>> ax.get_xticklabels()[0].get_text()
+    'belt.width [mm]'
     """
     name = chosen_result(result, of)
     names = [*varied_numbers(result), *[one for one in results_of(result) if one != name][: _AXES - 1], name]

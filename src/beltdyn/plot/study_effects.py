@@ -48,6 +48,17 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
     ------
     ModelError
         If there is no such result, or several numbers vary at a time.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension"],
+    ...     number=[{"path": "belt.width", "values": [0.01, 0.02]}],
+    ...     sampling="one_at_a_time",
+    ... )
+    >>> bd.plot.tornado(bd.study(study, drive, jobs=1)).get_xlabel()
+    'tension [N]'
     """
     name, ax = chosen_result(result, of), axes_or_new(ax)
     if result.dataset.attrs["sampling"] != "one_at_a_time":
@@ -100,6 +111,18 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
     ------
     ModelError
         If there is no such result, or the points are no such design.
+
+    Examples
+    --------
+    >>> study = bd.ParameterStudy(
+    ...     analysis="static",
+    ...     results=["tension"],
+    ...     number=[{"path": "belt.width", "values": [0.01, 0.02]}],
+    ...     sampling="saltelli",
+    ...     points=2,
+    ... )
+    >>> bd.plot.sobol_indices(bd.study(study, drive, jobs=1)).get_yticklabels()[0].get_text()
+    'belt.width [mm]'
     """
     name, ax = chosen_result(result, of), axes_or_new(ax)
     if result.dataset.attrs["sampling"] != "saltelli":

@@ -43,6 +43,13 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
     -------
     Axes
         The axes.
+
+    Examples
+    --------
+    >>> slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
+    >>> found = bd.tensioner_sheet(drive.replace(tensioner=[slide]), tolerance="1 mm", wear="2 mm")
+    >>> bd.plot.tensioner_sheet(found, "hub_load").get_ylabel()
+    'Hub load [N]'
     """
     dataset, ax = result.dataset, axes_or_new(ax)
     names = [one.pulley for one in result.drive.moving_tensioners]

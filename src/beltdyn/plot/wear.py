@@ -28,6 +28,11 @@ def wear_by_arc(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.wear_by_arc(run).get_xlabel()
+    'Angle from the inlet [°]'
     """
     ax = axes_or_new(ax)
     wear = derived.wear_by_arc(run)
@@ -59,6 +64,11 @@ def wear_by_belt(run: Run, ax: Axes | None = None) -> Axes:
     ------
     ModelError
         If the run holds no output.
+
+    Examples
+    --------
+    >>> bd.plot.wear_by_belt(run).get_xlabel()
+    "Belt coordinate of the element's middle, unstretched [m]"
     """
     ax = axes_or_new(ax)
     wear = derived.wear_by_belt(run)

@@ -106,6 +106,13 @@ def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     -------
     Balance
         The mean powers.
+
+    Examples
+    --------
+    >>> with run.recorded() as recorded:
+    ...     balance = bd.power_balance(recorded)
+    >>> sorted(balance.losses)[:2]
+    ['belt bending', 'belt compression']
     """
     window = plain_window(np.asarray(recorded["time"])) if window is None else window
     return Balance(

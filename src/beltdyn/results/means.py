@@ -87,6 +87,13 @@ class TensionerSummary:
         Whether it turns, so that its positions are angles.
     position, lowest, highest : float
         Mean, least and largest position, m or rad.
+
+    Examples
+    --------
+    >>> slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
+    >>> found = bd.summarize(bd.steady_state(drive.replace(tensioner=[slide]))).tensioners[0]
+    >>> found.name, found.rotary, round(found.position, 4)  # m, along its direction
+    ('driven', False, 0.0002)
     """
 
     name: str

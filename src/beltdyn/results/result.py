@@ -132,6 +132,14 @@ def build_result(
     -------
     Result
         In memory, with where it comes from among its attributes.
+
+    Examples
+    --------
+    >>> power, speed = bd.Variable(("speed",), "W", "Power"), bd.Variable(("speed",), "rad/s", "Speed")
+    >>> known, over = {"power": (power, [10.0, 20.0])}, {"speed": (speed, [50.0, 100.0])}
+    >>> found = bd.build_result("dynamometer", drive, known, over)
+    >>> found.dataset.power.sel(speed=100.0).item()
+    20.0
     """
     import xarray as xr
 

@@ -39,6 +39,12 @@ class StaticResult(Result):
         The drive, with the length of the belt or the take-up that gives the installed tension.
     path : Path or None
         The file that it was read from, or None for a result in memory.
+
+    Examples
+    --------
+    >>> rest = bd.equilibrium(drive)
+    >>> rest.kind, rest.dataset.tension.attrs["units"]
+    ('static', 'N')
     """
 
     def fields_at(self, time: float | None = None) -> "xr.Dataset":

@@ -37,6 +37,12 @@ class Compared:
         Mean over the end of the run.
     steady : float
         In steady running.
+
+    Examples
+    --------
+    >>> slip = bd.Compared("slip", "driven", "%", run=0.21, steady=0.2)
+    >>> print(f"{slip.quantity} of {slip.name}: {slip.run - slip.steady:+.2f} {slip.unit}")
+    slip of driven: +0.01 %
     """
 
     quantity: str

@@ -185,6 +185,17 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     ------
     ModelError
         If the pulley turns too little, its speed stays the same, or there are too few outputs.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import xarray as xr
+    >>> time = np.linspace(0.0, 2.0, 4001)  # s
+    >>> angle = xr.DataArray(40.0 * np.pi * time + 10.0 * np.pi * time**2, {"time": time}, "time")
+    >>> tension = (100.0 + 5.0 * np.cos(3.0 * angle)).assign_attrs(units="N", long_name="Tension")
+    >>> found = bd.derived.orders(tension, angle)
+    >>> found.mean("speed").sel(order=3.0).round(2).item()  # N
+    5.0
     """
     from scipy.interpolate import CubicSpline
 
