@@ -29,8 +29,9 @@ def edited(drive: Drive, changes: Mapping[str, float]) -> str:
     Returns
     -------
     str
-        TOML, from which `loads` makes the changed drive to ten digits. Where its text cannot be changed so, as when
-        a pulley has a diameter in place of the radius, every number is spelled out.
+        TOML, from which `loads` makes the changed drive to ten digits. A number that a default or the profile of a belt
+        gave is a line more. Where the text cannot be changed so, as when a pulley has a diameter in place of the
+        radius, every number is spelled out.
 
     Raises
     ------
@@ -56,17 +57,18 @@ def edited(drive: Drive, changes: Mapping[str, float]) -> str:
 
 
 def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
-    """The edit that changes a number that stands in a drive file.
+    """The edit that gives a number its value in a drive file, where a default or a belt's profile may have given it.
 
     Raises
     ------
     KeyError, IndexError
-        If nothing stands there.
+        If its group does not stand there.
     """
-    location = location_of(data, path)
-    given: Any = data
-    for key in location:
-        given = given[key]
+    *outer, last = location = location_of(data, path)
+    holder: Any = data
+    for key in outer:
+        holder = holder[key]
+    given = holder.get(last) if isinstance(holder, dict) else holder[last]
     return Edit("set", location, written_like(value, given, unit, _DIGITS))
 
 

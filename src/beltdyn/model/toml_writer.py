@@ -79,13 +79,14 @@ def location_of(data: Mapping[str, Any], path: str) -> Location:
     Raises
     ------
     KeyError, IndexError
-        If nothing stands there.
+        If a group or a list on the way is not there; a last key may be missing.
     """
     given: Any = data
     location: Location = ()
     for step in steps_of(path):
-        key = _key(given, step)
-        given, location = given[key], (*location, key)
+        if location:
+            given = given[location[-1]]
+        location = (*location, _key(given, step))
     return location
 
 

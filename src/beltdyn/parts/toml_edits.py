@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import AoT, InlineTable
+from tomlkit.items import AoT, InlineTable, Table
 
 Location = tuple[int | str, ...]
 """Keys and positions in lists that lead to a value."""
@@ -97,11 +97,25 @@ def _apply(container: Any, edit: Edit, plain: bool) -> None:
             else _written(value, str(last), isinstance(container, InlineTable))
         )
     if edit.action == "set":
-        container[last] = value
+        _set(container, last, value)
     elif edit.action == "insert":
         container.insert(last, value)
     elif isinstance(last, int) or last in container:
         del container[last]
+
+
+def _set(container: Any, key: str | int, value: Any) -> None:
+    """Give a key its value; a new one of a group stands before the blank lines and remarks at its end.
+
+    There stands what the author says of the next group.
+    """
+    new = isinstance(container, Table) and key not in container
+    body = container.value.body if new else []
+    end = max((number + 1 for number, (one, _) in enumerate(body) if one is not None), default=len(body))
+    after = body[end:]
+    del body[end:]
+    container[key] = value
+    body.extend(after)
 
 
 def _entry(value: Any, container: Any) -> Any:

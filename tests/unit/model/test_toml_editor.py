@@ -1,5 +1,7 @@
 """Numbers changed in the text of a drive file."""
 
+from importlib.resources import files
+
 import pytest
 
 from beltdyn.errors import ModelError
@@ -40,6 +42,18 @@ def test_what_the_text_does_not_say_is_spelled_out(drive: Drive) -> None:
     """A width that a default gives stands nowhere in the text."""
     text = edited(drive, {"gravity[2]": -9.81})
     assert loads(text) == drive.with_({"gravity[2]": -9.81})
+
+
+@pytest.mark.parametrize("path", ["belt.axial_stiffness", "belt.bending_stiffness", "belt.stretch_damping_time"])
+def test_what_a_profile_gave_is_said_beside_it(path: str) -> None:
+    """One line more, at the end of its group: the belt stays that of its profile."""
+    given = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
+    drive, key = loads(given), path.split(".")[1]
+    value = 1.07 * getattr(drive.belt, key)
+    text, before = edited(drive, {path: value}).splitlines(), given.splitlines()
+    place = next(number for number, line in enumerate(before) if line.startswith("installed_tension")) + 1
+    assert text == [*before[:place], f"{key} = {float(f'{value:.10g}')}", *before[place:]]
+    assert getattr(loads("\n".join(text)).belt, key) == pytest.approx(value)
 
 
 def test_a_wrong_path(drive: Drive) -> None:

@@ -51,6 +51,13 @@ def test_groups_are_made_on_the_way_and_written_in_brackets() -> None:
     assert "# the origin" in text
 
 
+def test_a_new_key_stands_in_its_group_before_remarks_on_the_next_one() -> None:
+    text = TEXT.replace("\n[[pulley]]", "\n# in the order of the belt\n[[pulley]]")
+    edit = Edit("set", ("belt", "length"), 2.0)
+    written = changed_text(text, [edit], changed_data(tomllib.loads(text), [edit]))
+    assert written == text.replace("as delivered\n", "as delivered\nlength = 2.0\n")
+
+
 def test_a_text_that_would_not_say_the_data_is_not_given() -> None:
     edit = Edit("set", ("belt", "width"), 1.0)
     assert changed_text(TEXT, [edit], {"belt": {"width": 2.0}}) is None
