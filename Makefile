@@ -40,8 +40,8 @@ compatibility: ## kernels with the oldest Numba, the last one known and the newe
 		rm -rf .venv-numba && $(PYTHON) -m venv .venv-numba && \
 		.venv-numba/bin/pip install --quiet "numba$$version" pytest hypothesis . && \
 		.venv-numba/bin/python -c "import numba; print('Numba', numba.__version__)" && \
-		BELTDYN_CACHE_DIR=.venv-numba/kernels .venv-numba/bin/python -m pytest --quiet tests/unit/kernel tests/unit/contact \
-			tests/unit/elements tests/unit/system || exit 1; \
+		BELTDYN_CACHE_DIR=.venv-numba/kernels .venv-numba/bin/python -m pytest --quiet --compiled tests/unit/kernel \
+			tests/unit/contact tests/unit/elements tests/unit/machines tests/unit/stretch tests/unit/system || exit 1; \
 	done
 	rm -rf .venv-numba
 

@@ -40,6 +40,7 @@ STATISTICS = {
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--curves", metavar="FILE", help="write the curves of docs/verification to a JSON file")
+    parser.addoption("--compiled", action="store_true", help="compile the kernels of points, elements and machines too")
 
 
 @pytest.fixture

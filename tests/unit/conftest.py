@@ -10,12 +10,26 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from beltdyn.kernel import interpreted
 from beltdyn.model import Drive, loads
 from beltdyn.signals import ENDING
 from beltdyn.stretch import LAWS, StretchLaw, StretchParameters
 
 settings.register_profile("patient", deadline=None)  # loading units and kernels takes its time once
 settings.load_profile("patient")
+
+
+POINTS = {"contact", "elements", "machines", "stretch"}
+"""Folders of kernels of a point, an element or a machine: Python runs their tests sooner than it compiles each of them.
+
+In whole systems they are compiled. Alone they are with ``--compiled``, as `make compatibility` does.
+"""
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> None:
+    if not POINTS.isdisjoint(pyfuncitem.path.parts) and not pyfuncitem.config.getoption("--compiled"):
+        pyfuncitem.obj = interpreted(pyfuncitem.obj)
 
 
 @pytest.fixture(scope="session", params=list(LAWS.values()), ids=list(LAWS))

@@ -14,6 +14,7 @@ from scipy.optimize import brentq
 
 from beltdyn.model import Belt, Drive
 from beltdyn.published import two_pulley
+from beltdyn.published.cases import better
 from beltdyn.solve.rest.static import find_equilibrium, standing
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observe import observe
@@ -84,7 +85,7 @@ def installed() -> Callable[[int], tuple[float, float]]:
     """Tension of the paper's belt at rest, N, and the variation of tension within elements over it."""
 
     def tension(elements: int) -> tuple[float, float]:
-        drive: Drive = two_pulley(elements)
+        drive: Drive = better(two_pulley(elements))
         drive = drive.replace(belt=drive.belt.replace(discretization="quintic"))
         system = standing(drive_system(drive))
         state = find_equilibrium(system, laid(system, drive.path)).state

@@ -21,6 +21,7 @@ width = "20 mm"
 density = 1200
 youngs_modulus = "5 GPa"
 poissons_ratio = 0.3
+stretch_law = "linear"
 bending_factor = 0.1
 thickness = "1 mm"
 [contact]

@@ -19,7 +19,11 @@ def closure(run: xr.Dataset) -> float:
     return float(np.max(np.abs(run.energy_closure.values)))
 
 
-@pytest.mark.parametrize("contact", [{}, SLOPE_OF_COEFFICIENT], ids=["force_slope", "coefficient_slope"])
+@pytest.mark.parametrize(
+    "contact",
+    [{}, pytest.param(SLOPE_OF_COEFFICIENT, marks=pytest.mark.slow)],
+    ids=["force_slope", "coefficient_slope"],
+)
 @pytest.mark.parametrize("integration", ["zone", "fixed"])
 def test_closes_better_with_tighter_tolerance(
     small: Drive, change: Change, measured: Measured, curve: Measured, contact: dict[str, object], integration: str

@@ -29,7 +29,7 @@ def made_of(small: Drive, change: Change) -> Callable[..., Drive]:
     return make
 
 
-@pytest.mark.parametrize("kind", CHAINS)
+@pytest.mark.parametrize("kind", ["truss", pytest.param("three-node-beam", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("sampling", ["nodal", "distributed"])
 def test_energy_account_closes(made_of: Callable[..., Drive], measured: Measured, kind: str, sampling: str) -> None:
     errors = []

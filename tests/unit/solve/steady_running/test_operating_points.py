@@ -6,6 +6,7 @@ import pytest
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.published import two_pulley
+from beltdyn.published.cases import better
 from beltdyn.results import Run, Variable
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running import operating_points
@@ -26,7 +27,7 @@ def test_a_point_that_is_far_is_found_by_parts_of_the_way(
     monkeypatch: pytest.MonkeyPatch, reach: float, is_found: bool
 ) -> None:
     """A search that reaches no further than some change of the speed, at once or by halves of the way."""
-    drive = held_at(two_pulley(), None)
+    drive = held_at(better(two_pulley()), None)
 
     def speed(of: Drive) -> float:
         return float(of.pulleys[0].driven_speed())
