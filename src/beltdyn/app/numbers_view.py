@@ -20,6 +20,12 @@ _OFTEN, _SOON = 0.5, 2.0
 """Time between two looks at what an answer waits for, and time after which that is said, s."""
 
 
+class Slider(ui.slider):
+    """A slider that the browser moves at once; the library's own waits for the server, and loses keys meanwhile."""
+
+    LOOPBACK = False
+
+
 class NumbersView:
     """The tables below the canvas.
 
@@ -50,10 +56,10 @@ class NumbersView:
         self._begun = 0.0
         self._timer = ui.timer(_OFTEN, self._say_why, active=False)
 
-    def _slider(self, name: str, low: int, high: int) -> ui.slider:
+    def _slider(self, name: str, low: int, high: int) -> Slider:
         with ui.row().classes("items-center gap-2 no-wrap"):
             label = ui.label().classes("text-caption").style("min-width: 7em")
-            slider = ui.slider(min=low, max=high, value=100, step=5, on_change=self.update)
+            slider = Slider(min=low, max=high, value=100, step=5, on_change=self.update)
         slider.props(f'dense aria-label="{name} in percent of the drive file"').style("width: 130px").mark(name)
         label.bind_text_from(slider, "value", lambda value: f"{name} {value:g} %")
         return slider
