@@ -33,6 +33,8 @@ class Option(NamedTuple):
         Whether it must be given.
     about : str
         What it means.
+    takes_unit : bool
+        Whether a number may have a unit.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Option(NamedTuple):
     default: str
     required: bool
     about: str
+    takes_unit: bool = False
 
     @property
     def suffixes(self) -> tuple[str, ...]:
@@ -60,6 +63,8 @@ class Option(NamedTuple):
         try:
             number: int | float = self.kind(text)
         except ValueError:
+            if self.takes_unit:
+                return text
             whole = "a whole number" if self.kind is int else "a number"
             raise ModelError(f"{self.name} = {shorten(text)} must be {whole}.") from None
         return number
@@ -85,7 +90,7 @@ def options_of(name: str) -> tuple[Option, ...]:
             required = one.default is Parameter.empty
             default = "" if required or one.default is None else str(one.default)
             about = " ".join(told[one.name].replace("`", "").split())
-            found.append(Option(one.name, kind, default, required, about))
+            found.append(Option(one.name, kind, default, required, about, _takes_unit(one.annotation)))
     return tuple(sorted(found, key=lambda option: not option.required))
 
 
@@ -96,5 +101,17 @@ def _own(name: str) -> list[Parameter]:
 
 def _kind(annotation: Any) -> type | None:
     """What an option takes as it is typed or chosen; None where it is neither file, text nor number."""
-    kinds = get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)
+    if _takes_unit(annotation):
+        return float
+    kinds = _kinds(annotation)
     return next((kind for kind in (Path, str, float, int) if kind in kinds), None)
+
+
+def _takes_unit(annotation: Any) -> bool:
+    """Whether an option is a number that may have a unit."""
+    return {float, str} <= set(_kinds(annotation))
+
+
+def _kinds(annotation: Any) -> tuple[Any, ...]:
+    """The types of an option."""
+    return get_args(annotation) if isinstance(annotation, UnionType) else (annotation,)

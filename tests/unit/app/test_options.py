@@ -12,7 +12,7 @@ def test_analyses_are_offered_with_their_options() -> None:
     options = {one.name: one for one in options_of("campbell")}
     assert options["speed"].required
     assert options["points"] == Option("points", int, "40", False, "Number of speeds of a range.")
-    assert options_of("static") == ()
+    assert [(one.name, one.kind) for one in options_of("static")] == [("force_tolerance", float)]
     assert {"from_", "to"} <= {one.name for one in options_of("sweep") if one.required}
 
 
@@ -22,6 +22,14 @@ def test_options_are_read_as_what_they_are() -> None:
     for wrong in ("1.5", "many"):
         with pytest.raises(ModelError, match="must be a whole number"):
             points.read(wrong)
+
+
+def test_numbers_may_have_their_unit() -> None:
+    at = next(one for one in options_of("steady") if one.name == "at")
+    assert (at.read("0.5"), at.read("500 ms")) == (0.5, "500 ms")
+    tolerance = next(one for one in options_of("steady") if one.name == "force_tolerance")
+    with pytest.raises(ModelError, match=r"force_tolerance = 1 % must be a number"):
+        tolerance.read("1 %")
 
 
 def test_options_that_are_files_say_what_they_end_with() -> None:
