@@ -43,7 +43,7 @@ class AnalysisView:
             self._name = ui.select(
                 {name: f"{name}: {about}" for name, about in names.items()}, value=RUN, label="analysis"
             )
-            self._name.props("dense options-dense").classes("grow").style("max-width: 30em").mark("analysis")
+            self._name.props("dense options-dense").classes("grow").style("max-width: min(30em, 100%)").mark("analysis")
             self._name.on_value_change(self._ask_options)
             self._start = ui.button("Run", icon="play_arrow", on_click=self.start).props("dense no-caps").mark("run")
             self._cancel = (
