@@ -26,35 +26,43 @@ WIDER = """() => [...document.querySelectorAll("main *, body *")].filter(one => 
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Of steady running, of its modes, and of two loads beside each other."""
     folder = tmp_path_factory.mktemp("report")
     drive = bd.loads(files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8"))
-    return bd.write_report(bd.steady_state(drive), folder / "steady.html")
+    steady = bd.steady_state(drive)
+    more = bd.steady_state(drive.with_({"pulley[alternator].load[1].constant": 14.0}))
+    shown = {"steady": steady, "modes": bd.modes(drive, about=steady), "several": [steady, more]}
+    return {name: bd.write_report(one, folder / f"{name}.html") for name, one in shown.items()}
 
 
 def opened(browser: Any, report: Path, width: int) -> Any:
     page = browser.new_context(viewport={"width": width, "height": 900}).new_page()
     page.set_default_timeout(300_000)
     page.goto(report.as_uri())
-    page.locator(".bk-Figure").first.wait_for()
+    page.locator(".bk-Figure, .motion canvas").first.wait_for()
     return page
 
 
+@pytest.mark.parametrize("name", ["steady", "modes", "several"])
 @pytest.mark.parametrize("width", [1600, 1000, 420])
-def test_a_report_fits_screens(browser: Any, report: Path, width: int, shoot: Callable[[Any, str], None]) -> None:
-    page = opened(browser, report, width)
-    shoot(page, f"report_{width}")
+def test_a_report_fits_screens(
+    browser: Any, reports: dict[str, Path], width: int, name: str, shoot: Callable[[Any, str], None]
+) -> None:
+    page = opened(browser, reports[name], width)
+    shoot(page, f"report_{name}_{width}")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.context.close()
 
 
-def test_a_report_is_printed_whole(browser: Any, report: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["steady", "modes", "several"])
+def test_a_report_is_printed_whole(browser: Any, reports: dict[str, Path], name: str, tmp_path: Path) -> None:
     """Every section is on paper, nothing goes past its edge, and no page is empty for want of a place to break."""
-    page = opened(browser, report, PAPER_WIDTH)
+    page = opened(browser, reports[name], PAPER_WIDTH)
     page.emulate_media(media="print")
     assert page.evaluate(WIDER) == []
     height = page.evaluate("document.documentElement.scrollHeight")
-    printed = page.pdf(path=str(Path(os.environ.get("BELTDYN_PICTURES", tmp_path)) / "steady.pdf"), format="A4")
+    printed = page.pdf(path=str(Path(os.environ.get("BELTDYN_PICTURES", tmp_path)) / f"{name}.pdf"), format="A4")
     count = len(re.findall(rb"/Type\s*/Page\b", printed))
     assert height / PAPER_HEIGHT <= count <= 2.0 * height / PAPER_HEIGHT + 1.0
     page.context.close()
