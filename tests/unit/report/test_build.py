@@ -69,7 +69,7 @@ MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[
     ),
     "sweep": (
         lambda _: bd.sweep(
-            _given(ribs=COARSE), pulley="crank", from_="1400 rpm", to="1500 rpm", duration=0.04, settling=0.01
+            _given(ribs=COARSE), pulley="crank", from_="1400 rpm", to="1500 rpm", duration=0.04, settling=0.1
         ),
         ("Least capstan margin", "sweep, completed"),
         ("speeds-0",),
