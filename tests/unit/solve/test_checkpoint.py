@@ -3,6 +3,7 @@
 import errno
 import os
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
@@ -91,12 +92,19 @@ def test_a_killed_run_goes_on_to_the_bit(alternator: Drive, tmp_path: Path) -> N
     require_same(simulate(given, path, resume=True), whole)
 
 
+@pytest.fixture(scope="module")
+def interrupted(travelling: Drive, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the result file of a run that was interrupted, and of its checkpoint."""
+    folder = tmp_path_factory.mktemp("interrupted")
+    simulate(travelling, folder / "run.nc", stopping_after(0.005), checkpoint=OFTEN).dataset.close()
+    return folder
+
+
 @pytest.fixture
-def stopped(travelling: Drive, tmp_path: Path) -> Path:
-    """The result file of a run that was interrupted."""
-    path = tmp_path / "run.nc"
-    simulate(travelling, path, stopping_after(0.005), checkpoint=OFTEN).dataset.close()
-    return path
+def stopped(interrupted: Path, tmp_path: Path) -> Path:
+    """A copy of the result file, with the checkpoint beside it."""
+    shutil.copytree(interrupted, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "run.nc"
 
 
 def test_checkpoints_are_told_from_other_files(stopped: Path) -> None:

@@ -1,5 +1,6 @@
 """An earlier result file stays until there is a new result to put in its place, whatever ends an analysis."""
 
+import shutil
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from pathlib import Path
@@ -65,14 +66,19 @@ def fitting(name: str, drive: Drive) -> Drive:
     return drive
 
 
+@pytest.fixture(scope="module")
+def saved(run: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return run.save(tmp_path_factory.mktemp("saved") / "result.nc")
+
+
 @pytest.fixture
-def earlier(tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> Path:
+def earlier(saved: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A result file, with tables to be read beside it."""
     monkeypatch.chdir(tmp_path)
     Path("duty.csv").write_text("duration [s], driver speed [rpm]\n60, 90\n30, 120\n", encoding="utf-8")
     rows = ["driven torque [N m], pulley_slip[driven] [%]", "-0.5, 0.06", "-1, 0.12", "-2, 0.24"]
     Path("slip.csv").write_text("\n".join(rows), encoding="utf-8")
-    return run.save(tmp_path / "result.nc")
+    return Path(shutil.copy(saved, tmp_path))
 
 
 def contents(folder: Path) -> dict[str, bytes]:

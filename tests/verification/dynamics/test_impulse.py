@@ -172,14 +172,20 @@ def test_standard_integrators_see_pulses(follow: Follow, name: Any, width: float
     assert speed.speeds[0] == pytest.approx(exact.speeds[0], abs=ALLOWED)
 
 
+@pytest.fixture(scope="module")
+def quiet(drive: Drive) -> xr.Dataset:
+    """A run without a pulse."""
+    return _run(drive, {"kind": "constant", "value": 0.0})
+
+
 @pytest.mark.parametrize("place", [0.9002, 0.9005])
 @pytest.mark.parametrize(("width", "height"), [(1e-4, 400.0), (5e-4, 400.0), (2e-3, 100.0)])
 def test_pulse_of_a_load_on_a_running_drive(
-    drive: Drive, measured: Measured, width: float, height: float, place: float
+    drive: Drive, quiet: xr.Dataset, measured: Measured, width: float, height: float, place: float
 ) -> None:
     """Within the pulse the belt takes up to a hundredth of its impulse: it swings at 9 Hz, and creeps."""
     table = {"kind": "table", "times": [place, place + 0.5 * width, place + width], "values": [0.0, -height, 0.0]}
-    quiet, struck = (_run(drive, torque) for torque in ({"kind": "constant", "value": 0.0}, table))
+    struck = _run(drive, table)
     loss = 0.5 * width * height / drive.pulleys[1].inertia
     after = float(np.ceil(1e3 * (place + width)) / 1e3)
     change = struck.pulley_speed[:, 1].sel(time=after) - quiet.pulley_speed[:, 1].sel(time=after)

@@ -39,7 +39,7 @@ BAR = Belt(
 )
 WAVE = np.sqrt(BAR.axial_stiffness / BAR.mass_per_length)
 NUMBER = np.pi / (2 * LENGTH)
-REFERENCE = 1e-5
+REFERENCE = 1e-6
 """Tolerance of the run that others are compared with."""
 
 
@@ -146,8 +146,8 @@ def short(small: Drive, change: Change) -> Drive:
 
 @pytest.fixture(scope="module")
 def converged(short: Drive, change: Change) -> xr.Dataset:
-    """By the method of the highest order."""
-    return simulate(change(short, simulation={"integrator": "radau", "rtol": REFERENCE})).dataset
+    """By CVODE, which is there in two seconds; Radau, whose order is the highest, takes two minutes for 1e-5."""
+    return simulate(change(short, simulation={"integrator": "cvode", "rtol": REFERENCE})).dataset
 
 
 @pytest.mark.parametrize(
@@ -157,7 +157,7 @@ def converged(short: Drive, change: Change) -> xr.Dataset:
         ("cvode", (1e-3, 1e-4, 1e-5)),
         ("ida", (1e-3, 1e-4, 1e-5)),
         ("bdf", (1e-3, 1e-4)),
-        ("radau", (1e-3, 1e-4)),
+        pytest.param("radau", (1e-3, 1e-4), marks=pytest.mark.slow),
     ],
 )
 def test_integrators_agree_and_approach_each_other(
@@ -181,7 +181,7 @@ def test_integrators_agree_and_approach_each_other(
         assert error < 2.0 * rtol, (
             f"{integrator} at {rtol}"
         )  # a local tolerance per unit of time, over a fraction of a second
-    settled = 0.1 * REFERENCE  # where the error of the reference counts too: Radau is there at every tolerance
+    settled = REFERENCE  # where the error of the reference counts too: Radau is there at every tolerance
     assert errors[rtols[-1]] < max(0.3 * errors[rtols[0]], settled)
 
 

@@ -84,7 +84,7 @@ def test_every_published_case_closes(
         ("cvode", (1e-3, 1e-4, 1e-5)),
         ("ida", (1e-3, 1e-4, 1e-5)),
         ("bdf", (1e-2, 1e-3)),
-        ("radau", (1e-2, 1e-3)),
+        pytest.param("radau", (1e-2, 1e-3), marks=pytest.mark.slow),
     ],
 )
 def test_every_integrator_closes(

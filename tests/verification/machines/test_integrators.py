@@ -52,7 +52,9 @@ def reference(solve: Callable[..., xr.Dataset]) -> xr.Dataset:
     return solve("generalized_alpha", 1e-6)
 
 
-@pytest.mark.parametrize("integrator", TOLERANCES)
+@pytest.mark.parametrize(
+    "integrator", [pytest.param(name, marks=[pytest.mark.slow] if name == "radau" else []) for name in TOLERANCES]
+)
 def test_agree(solve: Callable[..., xr.Dataset], reference: xr.Dataset, measured: Measured, integrator: str) -> None:
     run = solve(integrator, TOLERANCES[integrator])
     scales = {

@@ -35,8 +35,8 @@ def resting(drive: Drive) -> Resting:
 
 def slopes(found: Callable[[float], FoundState], step: float) -> FloatArray:
     """Derivatives of results of modes by a relative change of a number."""
-    up, down = (np.array([found(sense * step).value(name) for name in NAMES]) for sense in (1.0, -1.0))
-    return np.asarray((up - down) / (2.0 * step))
+    up, down = (found(sense * step) for sense in (1.0, -1.0))
+    return np.array([up.value(name) - down.value(name) for name in NAMES]) / (2.0 * step)
 
 
 @pytest.mark.parametrize(
