@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import beltdyn as bd
+from beltdyn.results import Result
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 pytestmark = pytest.mark.browser
@@ -32,7 +33,11 @@ def reports(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     drive = bd.loads(files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8"))
     steady = bd.steady_state(drive)
     more = bd.steady_state(drive.with_({"pulley[alternator].load[1].constant": 14.0}))
-    shown = {"steady": steady, "modes": bd.modes(drive, about=steady), "several": [steady, more]}
+    shown: dict[str, Result | Sequence[Result]] = {
+        "steady": steady,
+        "modes": bd.modes(drive, about=steady),
+        "several": [steady, more],
+    }
     return {name: bd.write_report(one, folder / f"{name}.html") for name, one in shown.items()}
 
 

@@ -283,7 +283,7 @@ def _given(**settings: str) -> bd.Drive:
     )
     for key, value in settings.items():
         text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
-    return bd.loads(f"{MARK}{text}\n[limits]\nleast_margin = 1.2\nlargest_hub_load = 10\n")
+    return bd.loads(f"{MARK}{text}\n[limits]\nleast_margin = 1.5\nlargest_hub_load = 10\n")
 
 
 Reported = Callable[[str], tuple[Result, str]]
