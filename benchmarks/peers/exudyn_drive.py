@@ -47,7 +47,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class PeerRun:
-    """Driven speed over time, and seconds of computing of the transient alone."""
+    """Driven speed over time, and seconds of the processor for the transient alone."""
 
     time: FloatArray
     speed: FloatArray
@@ -109,16 +109,16 @@ class _Model:
         integration.newton.absoluteTolerance = self._settings.atol
         integration.discontinuous.maxIterations, integration.discontinuous.iterationTolerance = 5, 1e-3
         integration.generalizedAlpha.spectralRadius = self._settings.spectral_radius
-        begin = time.perf_counter()
+        begin = time.process_time()
         self._system.SolveDynamic(options, solverType=exu.DynamicSolverType.GeneralizedAlpha)
-        seconds = time.perf_counter() - begin
+        seconds = time.process_time() - begin
         rows = np.array(self._system.GetSensorStoredData(self._sensor))
         return PeerRun(rows[:, 0], rows[:, 3], seconds)
 
     def _options(self) -> Any:
-        options = exu.SimulationSettings()
+        options: Any = exu.SimulationSettings()
         options.solutionSettings.writeSolutionToFile = False
-        options.linearSolverType = exu.LinearSolverType.EigenSparse
+        options.linearSolver.solverType = exu.LinearSolverType.EigenSparse
         options.parallel.numberOfThreads = 1
         options.timeIntegration.verboseMode = options.staticSolver.verboseMode = 0
         return options
