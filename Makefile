@@ -5,6 +5,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
 PARALLEL := --numprocesses auto --dist worksteal
+BY_FILE := --numprocesses auto --dist loadfile
 
 help: ## list the targets
 	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -32,7 +33,7 @@ test: install ## linters, types, layers, unit and verification tests
 
 validate: install ## slow verification tests and comparisons with the literature
 	$(BIN)/pytest $(PARALLEL) -m slow $(wildcard tests/unit tests/verification tests/fuzz)
-	$(if $(wildcard tests/validation),$(BIN)/pytest $(PARALLEL) tests/validation)
+	$(if $(wildcard tests/validation),$(BIN)/pytest $(BY_FILE) tests/validation)
 	$(MAKE) compatibility
 
 compatibility: ## kernels with the oldest Numba, the last one known and the newest, each in an environment of its own
