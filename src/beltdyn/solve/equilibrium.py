@@ -1,5 +1,6 @@
 """An analysis: the static equilibrium of a drive at rest."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from beltdyn.errors import ModelError
@@ -53,9 +54,10 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     tolerance = drive.simulation.force_tolerance if force_tolerance is None else force_tolerance
     if tolerance is not None:
         return _refined(drive, tolerance, progress)
-    drive = on_equal_elements(drive)
+    given, drive = drive.text, on_equal_elements(drive)
     rest = bring_to_rest(drive, progress)
-    return _seen(drive, rest.drive, standing(rest.system), rest.state, rest.unstable, progress)
+    said = {"drive_as_given": given}
+    return _seen(drive, rest.drive, standing(rest.system), rest.state, rest.unstable, progress, said)
 
 
 def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticResult:
@@ -68,22 +70,22 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
         )
     unstable = bring_to_rest(drive, progress).unstable
     rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), tolerance)
-    found = {mesh_error_attribute(name): error for name, error in errors.items()}
-    return _seen(drive, rest.drive, rest.system, rest.state, unstable, progress, **found)
+    said = {"drive_as_given": drive.text} | {mesh_error_attribute(name): error for name, error in errors.items()}
+    return _seen(drive, rest.drive, rest.system, rest.state, unstable, progress, said)
 
 
 def _seen(
-    given: Drive,
     drive: Drive,
+    found: Drive,
     system: System,
     state: State,
     unstable: tuple[str, ...],
     progress: Report | None,
-    **attributes: Any,
+    said: Mapping[str, Any],
 ) -> StaticResult:
-    """A state as results; the drive as given, and with the length that was found."""
-    with Recording(given, system, None, f"{drive.title} at rest, in static equilibrium", progress) as recording:
-        recording.start(drive, system, unstable)
-        recording.note(drive_as_given=given.text, **attributes)
+    """A state as results, of a drive and of the one with the length that was found, with what is said of it."""
+    with Recording(drive, system, None, f"{drive.title} at rest, in static equilibrium", progress) as recording:
+        recording.start(found, system, unstable)
+        recording.note(**said)
         recording.take(Chunk.start(system, state), "equilibrium")
     return static_result(recording.run())
