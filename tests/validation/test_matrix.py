@@ -20,7 +20,9 @@ from beltdyn import Drive, Pulley
 from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
 from beltdyn.published import CASES as PUBLISHED
 from beltdyn.published import better, loaded_two_pulley, two_pulley
+from beltdyn.results.checks.energy import CLOSURE_LIMIT
 from beltdyn.results.checks.flutter import GROWTH_LIMIT
+from beltdyn.results.closure import largest_closure
 from beltdyn.results.recorded import attribute
 from beltdyn.solve import simulate_all
 
@@ -131,11 +133,17 @@ class Runs(NamedTuple):
     """Of vibrations where the belt slides, as the logarithm of a factor."""
     rejected: dict[str, float]
     """Part of the steps tried that was rejected."""
+    missing: dict[str, float]
+    """Largest part of the energy put in that the account misses."""
     failures: dict[str, str]
 
     def warns(self, key: Key) -> bool:
         """Whether a run warns that its belt may flutter."""
         return self.growth[str(key)] > GROWTH_LIMIT
+
+    def adds_up(self, key: Key) -> bool:
+        """Whether a run does not warn that its energies do not add up."""
+        return abs(self.missing[str(key)]) <= CLOSURE_LIMIT
 
     def promise(self, key: Key) -> float:
         """Largest error of a run over the speed of the driver."""
@@ -145,13 +153,14 @@ class Runs(NamedTuple):
 def run_all(drives: dict[str, Drive], folder: Path) -> Runs:
     paths = {name: folder / f"{name}.nc" for name in drives}
     endings = simulate_all({paths[name]: drive for name, drive in drives.items()})
-    runs = Runs({}, {}, {}, {name: endings[path].error for name, path in paths.items() if endings[path].error})
+    runs = Runs({}, {}, {}, {}, {name: endings[path].error for name, path in paths.items() if endings[path].error})
     for name in drives.keys() - runs.failures:
         with h5py.File(paths[name], "r") as file:
             runs.speeds[name] = file["pulley_speed"][...]
             runs.growth[name] = attribute(file, "flutter_growth", 0.0)
             steps, rejected = (attribute(file, count, np.nan) for count in ("steps", "rejected_steps"))
             runs.rejected[name] = rejected / (steps + rejected)
+            runs.missing[name] = largest_closure(file).error
     return runs
 
 
@@ -196,7 +205,7 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Runs:
 def test_every_run_lands_or_stops(
     matrix: Runs, measured: Callable[..., None], curve: Callable[..., None], case: str, start: str, radius: float
 ) -> None:
-    """Only without numerical damping, and with coarse tolerances, does a run stop."""
+    """Only without numerical damping, and with coarse tolerances, does a run stop, or miss where energies do not add up."""
     keys = list(keys_of(case, start, radius))
     stopped = [key for key in keys if str(key) in matrix.failures]
     ratios = {key: error(matrix, str(key), str(key.reference)) / key.rtol for key in keys if key not in stopped}
@@ -204,9 +213,10 @@ def test_every_run_lands_or_stops(
     measured(**{f"rtol_{rtol:.0e}": ratio for rtol, ratio in largest.items()}, stopped=len(stopped))
     landed = {rtol: ratio * rtol for rtol, ratio in largest.items() if ratio > 0.0}
     curve(f"matrix/{start}", list(landed), list(landed.values()), f"{case}, ρ = {radius:g}")
-    assert all(ratio <= matrix.promise(key) / key.rtol for key, ratio in ratios.items())
+    missed = [key for key, ratio in ratios.items() if ratio > matrix.promise(key) / key.rtol]
+    assert not any(matrix.adds_up(key) for key in missed)
     assert all(CLEAR.match(matrix.failures[str(key)]) for key in stopped)
-    assert all(key.radius == 1.0 and key.rtol > RTOLS[-1] for key in stopped)
+    assert all(key.radius == 1.0 and key.rtol > RTOLS[-1] for key in (*stopped, *missed))
 
 
 @pytest.mark.parametrize("radius", RADII)
@@ -254,7 +264,7 @@ def test_runs_that_miss_say_so(
     growth = [matrix.growth[str(key)] for key in landed]
     ratios = {key: error(matrix, str(key), str(key.reference)) / key.rtol for key in landed}
     measured(least=min(growth), median=float(np.median(growth)), most=max(growth), largest_ratio=max(ratios.values()))
-    assert all(matrix.warns(key) for key, ratio in ratios.items() if ratio > PROMISE)
+    assert all(matrix.warns(key) or not matrix.adds_up(key) for key, ratio in ratios.items() if ratio > PROMISE)
     assert case == "case 1" or not any(matrix.warns(key) for key in landed)
     assert elements > SURE or not any(matrix.warns(key) for key in landed)
 
