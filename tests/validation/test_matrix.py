@@ -205,7 +205,7 @@ def published(tmp_path_factory: pytest.TempPathFactory) -> Runs:
 def test_every_run_lands_or_stops(
     matrix: Runs, measured: Callable[..., None], curve: Callable[..., None], case: str, start: str, radius: float
 ) -> None:
-    """Without numerical damping, and with coarse tolerances, a run may stop, or miss with energies that do not close."""
+    """Without numerical damping and with coarse tolerances a run may stop, or miss with energies that do not close."""
     keys = list(keys_of(case, start, radius))
     stopped = [key for key in keys if str(key) in matrix.failures]
     ratios = {key: error(matrix, str(key), str(key.reference)) / key.rtol for key in keys if key not in stopped}
