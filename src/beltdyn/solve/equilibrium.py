@@ -41,7 +41,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     Raises
     ------
     ModelError
-        If the tolerance is not above zero, or there is one for a belt with ends.
+        If the tolerance does not lie between 0 and 1, or there is one for a belt with ends.
     ConvergenceError
         If no equilibrium is found in which the belt touches every pulley.
 
