@@ -202,10 +202,28 @@ def extrapolated_load(system: System, pulley: int, load: int, motion: Motion, ti
 
 @kernel(inline=True)
 def _extrapolated(system: System, pulley: int, motion: Motion, time: float) -> tuple[float, float]:
-    """Angle and speed of a shaft at an instant (s), with its acceleration kept."""
+    """Angle and speed of a shaft at an instant (s), with its acceleration kept while it lasts."""
     i, since = system.first_body + system.pulleys[pulley].shaft, time - motion.time
-    speed = motion.velocity[i] + since * motion.acceleration[i]
-    return motion.position[i] + 0.5 * since * (motion.velocity[i] + speed), speed
+    lasting = _acceleration_lasts(system, pulley, motion, since)
+    speed = motion.velocity[i] + lasting * motion.acceleration[i]
+    return motion.position[i] + since * speed - 0.5 * lasting * (speed - motion.velocity[i]), speed
+
+
+@kernel
+def _acceleration_lasts(system: System, pulley: int, motion: Motion, since: float) -> float:
+    """For how much of a time (s) since the beginning of a step a shaft's acceleration is kept.
+
+    What slows a shaft lasts no longer than its own torque takes to stop it, J / |dM/dω|: a shaft that stiff dry
+    friction holds trembles, and comes to rest long before the end of the step.
+    """
+    body = system.pulleys[pulley].shaft
+    i = system.first_body + body
+    if motion.velocity[i] * motion.acceleration[i] >= 0.0:
+        return since
+    angle, speed, states = motion.position[i], motion.velocity[i], motion.position[system.first_body :]
+    start = after_jump(motion.time)
+    slope = shaft_torque(system.profiles, system.shaft_loads, pulley, start, angle, speed, states).by_speed
+    return min(since, -system.bodies[body].inertia / slope) if slope < 0.0 else since
 
 
 @kernel
@@ -224,8 +242,10 @@ def next_instant(system: System, source: int, motion: Motion, time: float, lengt
                 frequency = max(frequency, profiles.harmonic[h].order * mean)
         else:
             i = system.first_body + body
+            speed = _extrapolated(system, source, motion, time)[1]
             rate = motion.acceleration[i]
-            speed = motion.velocity[i] + (time - motion.time) * rate
+            if _acceleration_lasts(system, source, motion, time - motion.time) < time - motion.time:
+                rate = 0.0
             for load in range(system.shaft_loads.first[source], system.shaft_loads.first[source + 1]):
                 at, wave = load_bend(profiles, system.shaft_loads, load, time, speed, rate)
                 kink, frequency = min(kink, at), max(frequency, wave)

@@ -218,3 +218,12 @@ def test_a_jump_of_a_prescribed_speed_takes_the_kinetic_energy(drive: Drive) -> 
         assert jump_work(system, motion.velocity, after_step(system, motion, 7.0, 0.0).velocity) == pytest.approx(
             expected
         )
+
+
+def test_dry_friction_that_holds_a_shaft_does_not_turn_round(drive: Drive) -> None:
+    """A trembling shaft rests long before the end of the step: no step waits for friction of a speed that never is."""
+    dry = {"kind": "resistance", "constant": 9.0, "harmonics": [{"order": 5, "amplitude": 0.15}]}
+    speed, length = 3e-3, 0.3
+    torque = 9.0 * 1.15 * np.tanh(speed / 0.1)
+    system, motion = turning(drive, free(load=[dry]), speed, -torque / J)
+    assert missed_action(system, 0, motion, length, np.inf)[0] < 0.5 * torque * length
