@@ -28,14 +28,14 @@ from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 
 ROUNDS, REPEATS = 15, 300
-FACTORS = ContactFactors(1.0, 2e3, 2e3, 0.0, 0.0)
+FACTORS = ContactFactors(1.0, 2e3, 2e3, 0.0, 0.0, False)
 
 
 @kernel
 def repeat_assembly(system: System, motion: Motion, work: Equations, none: FloatArray) -> None:
     """Residual and tangent."""
     for _ in range(REPEATS):
-        assemble(system, motion, none, TangentFactors(1.0, 2e3, 4e6), work)
+        assemble(system, motion, none, TangentFactors(1.0, 2e3, 4e6, False), work)
 
 
 @kernel

@@ -51,9 +51,11 @@ class ContactFactors(NamedTuple):
     through its mesh at this speed, m/s."""
     by_flow: float
     """By that speed of the flow."""
+    secant: bool
+    """Friction changes by its secant from no slip, in place of its slope."""
 
 
-NO_CONTACT_TANGENT: Final = ContactFactors(0.0, 0.0, 0.0, 0.0, 0.0)
+NO_CONTACT_TANGENT: Final = ContactFactors(0.0, 0.0, 0.0, 0.0, 0.0, False)
 
 
 def contact_record(count: int, vectors: int) -> np.dtype[np.void]:
@@ -151,7 +153,7 @@ def contact_force(
             here = approach(x, y, vx, vy, pulley)
             if here.penetration < 0.0:
                 continue
-            force = point_force(here, pulley, law)
+            force = point_force(here, pulley, law, factors.secant)
             fill_shape_functions(curve.basis, work.weights, work.functions)
             _add_pairs(work.force, work.functions, weight * force.x, weight * force.y)
             totals = _add_point(totals, weight, here, force, pulley)

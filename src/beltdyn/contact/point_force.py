@@ -74,7 +74,7 @@ class PointTurn(NamedTuple):
 
 
 @kernel
-def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointForce:
+def point_force(here: Approach, pulley: PulleyState, law: ContactLaw, secant: bool = False) -> PointForce:
     """Contact force at a point.
 
     Parameters
@@ -85,6 +85,8 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
         The pulley.
     law
         Laws of contact.
+    secant
+        Whether `by_slip` is the secant of friction from no slip, in place of its slope.
     """
     normal = normal_force(law.normal, here.penetration, -here.radial)
     slip = slip_velocity(here, pulley)
@@ -92,6 +94,8 @@ def point_force(here: Approach, pulley: PulleyState, law: ContactLaw) -> PointFo
     friction, by_slip, by_normal, by_rim = friction_force(
         law.friction, slip, normal.force, pulley.friction, pulley.speed * radius
     )
+    if secant and slip != 0.0:
+        by_slip = friction / slip
     rolling = rolling_resistance(pulley.rolling, normal.force, here.circumferential)
     along = friction + rolling.force
     arm, arm_slope = moment_arm(here, law)

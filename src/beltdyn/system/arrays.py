@@ -123,6 +123,9 @@ class TangentFactors(NamedTuple):
     """1/s."""
     by_acceleration: float = 0.0
     """1/s^2."""
+    secant: bool = False
+    """Friction changes by its secant from no slip, in place of its slope: as a first guess may slide where the solution
+    sticks."""
 
 
 NO_TANGENT: Final = TangentFactors()

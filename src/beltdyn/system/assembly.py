@@ -124,7 +124,7 @@ def _contact(
                 pulley,
                 system.law,
                 system.contact,
-                ContactFactors(by_position, by_velocity, by_velocity, 0.0, 0.0),
+                ContactFactors(by_position, by_velocity, by_velocity, 0.0, 0.0, factors.secant),
                 work.contact,
             )
             if last == 0:

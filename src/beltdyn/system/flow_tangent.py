@@ -34,6 +34,8 @@ class FlowFactors(NamedTuple):
     """r, of the speed of the belt."""
     turning: float = 0.0
     """Of the speeds of pulleys, 1/s; their angles change by p."""
+    secant: bool = False
+    """Friction changes by its secant from no slip, in place of its slope."""
 
 
 NO_FLOW_TANGENT: Final = FlowFactors()
@@ -100,7 +102,7 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
     law, rule = system.law, system.contact
     wanted, piece = factors.place != 0.0 or factors.rate != 0.0, centreline(system, element, 0, work)
     by_slope = factors.place * flow_speed(system.frame, motion.velocity)
-    by = ContactFactors(factors.place, factors.rate, factors.turning, by_slope, factors.flow)
+    by = ContactFactors(factors.place, factors.rate, factors.turning, by_slope, factors.flow, factors.secant)
     for p in range(system.pulleys.size):
         pulley = pulley_state(system, p, motion.position, motion.velocity)
         if out_of_reach(piece.control, pulley):
@@ -108,7 +110,7 @@ def _add_contact(system: System, motion: Motion, element: int, factors: FlowFact
         center = moving_center(system, p, motion.position, motion.velocity)
         drifting = factors.rate != 0.0 and center.unknown >= 0 and center.turning
         if drifting:
-            contact_force(piece, pulley, law, rule, ContactFactors(0.0, 1.0, 0.0, 0.0, 0.0), work.contact)
+            contact_force(piece, pulley, law, rule, ContactFactors(0.0, 1.0, 0.0, 0.0, 0.0, False), work.contact)
             keep_drift(system, center, work.contact, work.drift)
         add_contact(equations.forces, p, contact_force(piece, pulley, law, rule, by, work.contact))
         take_contact(system, wanted, work)

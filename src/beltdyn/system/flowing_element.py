@@ -41,7 +41,7 @@ def flowing_element(
     wanted, differentiated = factors.by_acceleration != 0.0 or differentiates_forces(factors), NO_FLOW_TANGENT
     if differentiates_forces(factors):
         place, rate = factors.by_position, factors.by_velocity
-        differentiated = FlowFactors(place, rate, rate, rate)
+        differentiated = FlowFactors(place, rate, rate, rate, factors.secant)
     find_rate(system, element, work)
     flow.by_speed[:] = 0.0
     _add_inertia(frame, system, motion, factors, element, wanted, work)

@@ -207,7 +207,7 @@ def _touch_points(
         x, y = result.contact_position[k, row, 0], result.contact_position[k, row, 1]
         here = approach(x, y, vx, vy, pulley)
         if here.penetration >= 0.0:
-            force = point_force(here, pulley, system.law)
+            force = point_force(here, pulley, system.law, False)
             result.contact_pulley[k, row] = number
             result.normal_force[k, row] = force.normal.force
             result.friction_force[k, row] = force.friction

@@ -58,7 +58,7 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     work, matrix, forces = equations.work, equations.matrix, equations.forces
     clear(matrix, wanted)
     clear_body_forces(forces)
-    of_flow = FlowFactors(1.0, 0.0, 1.0, 1.0) if wanted else NO_FLOW_TANGENT
+    of_flow = FlowFactors(1.0, 0.0, 1.0, 1.0, False) if wanted else NO_FLOW_TANGENT
     for element in range(system.length.size):
         gather_motion(system, element, motion.position, motion.velocity, work.coordinates)
         elastic_force(system.element, work.coordinates[0], system.length[element], wanted, work.element)
@@ -68,7 +68,7 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
         scatter(system, element, wanted, work, matrix)
         if wanted and not anchor.at_rest:
             scatter_column(system, element, equations)
-    factors = TangentFactors(1.0, 1.0, 0.0) if wanted else NO_TANGENT
+    factors = TangentFactors(1.0, 1.0, 0.0, False) if wanted else NO_TANGENT
     add_machines(system, motion, factors, matrix.corner, forces)
     for body in range(system.bodies.size):
         unknown = system.bodies[body].unknown

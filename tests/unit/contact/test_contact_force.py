@@ -20,7 +20,7 @@ from beltdyn.contact.surface import Round
 from beltdyn.quadrature import gauss_points
 
 DEGREES = [1, 3, 5]
-BOTH = ContactFactors(1.0, 300.0, 300.0, 0.0, 0.0)
+BOTH = ContactFactors(1.0, 300.0, 300.0, 0.0, 0.0, False)
 RULE = gauss_points(6)
 LENGTH = 0.06
 BLOCKS = ("xx", "xy", "yx", "yy")
@@ -50,7 +50,7 @@ def act(
     work = contact_workspace(*basis.shape)
     curve = Curve(basis @ vectors, basis @ rates, basis, LENGTH)
     totals = contact_force(
-        curve, pulley, law, RULE, ContactFactors(by_position, by_velocity, by_velocity, 0.0, 0.0), work
+        curve, pulley, law, RULE, ContactFactors(by_position, by_velocity, by_velocity, 0.0, 0.0, False), work
     )
     return work, totals
 

@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import ForceSlope
 from beltdyn.contact.law import ContactLaw, PulleyState
 from beltdyn.contact.normal import Published
-from beltdyn.contact.penetration import Approach, approach
+from beltdyn.contact.penetration import Approach, approach, slip_velocity
 from beltdyn.contact.point_force import point_force, point_tangent
 
 Place = Callable[[PulleyState, float, float], tuple[float, float]]
@@ -60,6 +60,19 @@ def test_force_is_made_of_normal_and_friction(state: FloatArray, pulley: PulleyS
     along = force.friction + force.rolling.force
     assert force.x * tangent[0] + force.y * tangent[1] == pytest.approx(along, abs=1e-10)
     assert abs(force.friction) <= pulley.friction * abs(force.normal.force) * (1 + 1e-15)
+
+
+def test_secant_of_friction_reaches_back_to_no_slip(
+    state: FloatArray, pulley: PulleyState, every_law: ContactLaw
+) -> None:
+    here = point(state, pulley)
+    force, secant = (point_force(here, pulley, every_law, wanted) for wanted in (False, True))
+    assert secant.by_slip * slip_velocity(here, pulley) == pytest.approx(force.friction, rel=1e-14)
+    assert secant._replace(by_slip=force.by_slip) == force  # the force itself is the same
+    faster = pulley._replace(speed=pulley.speed + 100.0)
+    force, secant = (point_force(point(state, faster), faster, every_law, wanted) for wanted in (False, True))
+    assert force.by_slip == 0.0  # it slides: by its slope nothing would hold the belt
+    assert secant.by_slip < 0.0 or force.friction == 0.0
 
 
 @pytest.mark.parametrize(("by_position", "by_velocity"), [(1.0, 0.0), (0.0, 1.0), (1.0, 250.0)])

@@ -83,7 +83,7 @@ def test_tangent(with_machines: Callable[[str], Drive], tensioner: str, law: str
         free = system.bodies.unknown >= 0
         step[nodes:][free] = change[nodes + system.bodies.unknown[free]]
         vectors = (state.position, state.velocity, state.acceleration)
-        moved = State(*(vector + factor * step for vector, factor in zip(vectors, FACTORS, strict=True)))
+        moved = State(*(vector + factor * step for vector, factor in zip(vectors, FACTORS[:3], strict=True)))
         return residual(system, moved, equations)
 
     scale = np.concatenate([np.tile([1.0, 1.0, 10.0, 10.0, 100.0, 100.0], system.nodes), np.ones(size)])[:size]

@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.surface import RoundRims, ShapedRims
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, Path
-from beltdyn.system.arrays import Motion, RingMatrix, System, TangentFactors
+from beltdyn.system.arrays import NO_TANGENT, Motion, RingMatrix, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.build import drive_system
 from beltdyn.system.motion import new_equations
@@ -63,16 +63,16 @@ def test_tangent_by_the_angle_of_the_driven_pulley(
     system, state = turned
     equations, driven, step = new_equations(system), system.first_body + 1, 1e-8
 
-    def linear(side: float, *wanted: float) -> tuple[FloatArray, FloatArray]:
+    def linear(side: float, wanted: TangentFactors = NO_TANGENT) -> tuple[FloatArray, FloatArray]:
         position, velocity = state.position.copy(), state.velocity.copy()
         position[driven] += side * step * factors[0]
         velocity[driven] += side * step * factors[1]
         motion = Motion(0.3, position, velocity, state.acceleration)
-        assemble(system, motion, np.zeros(len(system.scale)), TangentFactors(*wanted), equations)
+        assemble(system, motion, np.zeros(len(system.scale)), wanted, equations)
         return dense(equations.matrix, system.closed)
 
     found = (linear(1.0)[1] - linear(-1.0)[1]) / (2.0 * step)
-    column = linear(0.0, *factors)[0][:, -1]
+    column = linear(0.0, TangentFactors(*factors))[0][:, -1]
     np.testing.assert_allclose(column, found, atol=1e-5 * np.abs(found).max())  # rounding of 1e2 N over the step
 
 

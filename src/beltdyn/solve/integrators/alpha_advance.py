@@ -14,6 +14,7 @@ import numpy as np
 from beltdyn.kernel import kernel
 from beltdyn.solve.integrators.alpha_impulse import follow_torques
 from beltdyn.solve.integrators.alpha_method import Method, method_of
+from beltdyn.solve.integrators.alpha_predictor import follow_trend
 from beltdyn.solve.integrators.alpha_step import Step, new_step, try_step
 from beltdyn.solve.integrators.integrator_state import (
     IntegratorState,
@@ -183,6 +184,7 @@ def _accept(
         state.work[k] += 0.5 * step.length * (state.power[k] + power[k]) + state.missed[k]
         state.power[k] = power[k]
     _average_losses(settings, state, step.length, taken)
+    follow_trend(system, state, step.length)
     for i in range(state.position.size):
         state.position[i], state.velocity[i] = state.trial.position[i], state.trial.velocity[i]
         state.acceleration[i], state.auxiliary[i] = state.trial.acceleration[i], state.trial.auxiliary[i]

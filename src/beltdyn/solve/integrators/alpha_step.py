@@ -14,13 +14,12 @@ from math import inf, isfinite, sqrt
 from typing import Final, NamedTuple
 
 from beltdyn.kernel import kernel
-from beltdyn.solve.integrators.alpha_impulse import add_missed_impulses
 from beltdyn.solve.integrators.alpha_method import Method
+from beltdyn.solve.integrators.alpha_predictor import predict
 from beltdyn.solve.integrators.integrator_state import IntegratorState, Settings, allowed_error, trial_motion
 from beltdyn.system.arrays import NO_TANGENT, Equations, System, TangentFactors
 from beltdyn.system.assembly import assemble
 from beltdyn.system.motion import subtract_multipliers, subtract_solution
-from beltdyn.system.prescribed import prescribe
 from beltdyn.system.ring_matrix import factorise_ring, substitute
 
 _MAX_ITERATIONS: Final = 16
@@ -73,6 +72,7 @@ def new_step(method: Method, start: float, length: float, stop: float) -> Step:
             1.0,
             method.gamma / (method.beta * length),
             (1.0 - method.am) / ((1.0 - method.af) * method.beta * length * length),
+            False,
         ),
     )
 
@@ -81,13 +81,14 @@ def new_step(method: Method, start: float, length: float, stop: float) -> Step:
 def try_step(
     system: System, settings: Settings, method: Method, state: IntegratorState, step: Step, equations: Equations
 ) -> int:
-    """Solve the equations of motion at the end of a step, from a constant A as first guess.
+    """Solve the equations of motion at the end of a step, from the first guess of `alpha_predictor`.
 
     The unknown is the change of the position.  Where a change jumps over a kink of contact or friction, the residual
     along it turns against it; then only the part up to the balance is kept: forces of friction and contact resist
     motion the more the faster it is, so that this part brings the solution nearer, where longer ones may go around it.
-    The tangent of the first guess serves as long as changes shrink quickly, where they did so
-    in the step before too.
+    The tangent of the first guess serves as long as changes shrink quickly, where they did so in the step before too.
+    Where they did not, the first change takes friction by its secant: where the first guess slides and the solution
+    sticks, the slope would let the belt go.
 
     Parameters
     ----------
@@ -109,14 +110,14 @@ def try_step(
     int
         Iterations, or 0 if they did not converge.
     """
-    _predict(system, method, state, step)
+    predict(system, method, state, step.length, step.end)
     allowed = settings.newton_fraction * allowed_error(settings, step.length)
     before, slope, steepest, renewed = inf, 0.0, inf, True
     quick, slowest, growing = state.clock.contraction <= _QUICK, 0.0, 0
     state.clock.contraction = 1.0
     for iteration in range(_MAX_ITERATIONS):
         state.counts.iterations += 1
-        _assemble(system, state, step, equations, renewed)
+        _assemble(system, state, step, equations, renewed, iteration == 0 and not quick)
         factor = _cut_back(system, state, step, equations, slope, renewed) if slope > 0.0 else 1.0
         if renewed and not factorise_ring(equations.matrix, system.closed):
             return 0
@@ -142,22 +143,12 @@ def try_step(
 
 
 @kernel(inline=True)
-def _predict(system: System, method: Method, state: IntegratorState, step: Step) -> None:
-    """Overwrite the trial state by that of a constant A."""
-    length = step.length
-    for i in range(state.position.size):
-        a = state.auxiliary[i]
-        state.trial.position[i] = state.position[i] + length * state.velocity[i] + 0.5 * length * length * a
-        state.trial.velocity[i] = state.velocity[i] + length * a
-        state.trial.acceleration[i] = (a - method.af * state.acceleration[i]) / (1.0 - method.af)
-    add_missed_impulses(system, method, state, length)
-    prescribe(system, trial_motion(state, step.end))
-
-
-@kernel(inline=True)
-def _assemble(system: System, state: IntegratorState, step: Step, equations: Equations, renewed: bool) -> None:
+def _assemble(
+    system: System, state: IntegratorState, step: Step, equations: Equations, renewed: bool, secant: bool
+) -> None:
     """Assemble the residual at the trial state, and the tangent if it is renewed."""
-    factors = step.factors if renewed else NO_TANGENT
+    by = step.factors
+    factors = TangentFactors(by.by_position, by.by_velocity, by.by_acceleration, secant) if renewed else NO_TANGENT
     assemble(system, trial_motion(state, step.end), state.multipliers, factors, equations)
 
 
@@ -177,7 +168,7 @@ def _cut_back(
         place = short + (far - short) * max(_SHORTEST, ahead / (ahead - behind))
         _move(system, state, step, equations, place - factor)
         factor = place
-        _assemble(system, state, step, equations, False)
+        _assemble(system, state, step, equations, False, False)
         now = _imbalance(equations)
         if abs(now) <= _OVERSHOOT * slope:
             break
@@ -187,7 +178,7 @@ def _cut_back(
             short, ahead, behind = factor, now, behind if beyond else 0.5 * behind
         beyond = now < 0.0
     if renewed:
-        _assemble(system, state, step, equations, True)
+        _assemble(system, state, step, equations, True, False)
     return factor
 
 

@@ -185,6 +185,7 @@ def restart(system: System, state: IntegratorState, equations: Equations) -> Non
             "a part of the drive that moves has no mass. Give belt, pulleys, tensioners and hubs mass or inertia."
         )
     state.auxiliary[:] = state.acceleration
+    state.trend[:] = state.clock.persistence = 0.0
     state.lagged[:] = np.nan
     state.work[DRIVER_WORK] += jump_work(system, speeds, state.velocity)
     state.power[:] = equations.forces.power

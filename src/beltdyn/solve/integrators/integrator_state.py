@@ -15,6 +15,7 @@ CLOCK = record(
     time="f8",  # s
     next_step="f8",  # length of the step to try next, s
     contraction="f8",  # largest Newton change of the last step over the one before it
+    persistence="f8",  # part of the change of A over the last step that the next is expected to go on with
 )
 """How far an integration is."""
 
@@ -76,6 +77,8 @@ class IntegratorState(NamedTuple):
     acceleration: FloatArray
     auxiliary: FloatArray
     """A of the method."""
+    trend: FloatArray
+    """Its change over the last step per unit of time, zero after a restart, shape (n N + D,)."""
     multipliers: FloatArray
     work: FloatArray
     """In the order of `ENERGY_WORKS`, J, shape (9,)."""
@@ -171,6 +174,7 @@ def grown(state: IntegratorState, position: FloatArray, velocity: FloatArray) ->
         velocity=velocity.copy(),
         acceleration=longer(state.acceleration),
         auxiliary=longer(state.auxiliary),
+        trend=longer(state.trend),
         impulse=longer(state.impulse),
         trial=Trial(*map(longer, state.trial)),
     )
@@ -201,6 +205,7 @@ def new_state(system: System, time: float, step: float, position: FloatArray, ve
         velocity=velocity.copy(),
         acceleration=np.zeros(size),
         auxiliary=np.zeros(size),
+        trend=np.zeros(size),
         multipliers=no_multipliers(system),
         work=np.zeros(len(ENERGY_WORKS)),
         power=np.zeros(len(POWERS)),
