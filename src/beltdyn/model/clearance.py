@@ -1,12 +1,11 @@
 """Where a path would cross itself, or run through a pulley or through belt that lies on one."""
 
-from itertools import combinations
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from beltdyn.arrays import FloatArray
+from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.model.path import Path
 
 
@@ -43,15 +42,12 @@ def crossings(path: Path) -> list[tuple[int, int]]:
         Numbers of two spans, the smaller first.
     """
     starts, directions, lengths = path.span_points[:, 0], path.span_directions, path.span_lengths
-    found = []
-    for one, other in combinations(range(path.spans), 2):
-        sine = _cross(directions[one], directions[other])
-        between = starts[other] - starts[one]
-        if sine != 0.0:
-            along, across = (_cross(between, directions[span]) / sine for span in (other, one))
-            if 0.0 < along < lengths[one] and 0.0 < across < lengths[other]:
-                found.append((one, other))
-    return found
+    between = starts - starts[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):  # of parallel spans
+        sine = _cross(directions[:, None], directions)
+        along, across = _cross(between, directions) / sine, _cross(between, directions[:, None]) / sine
+        meet = (along > 0.0) & (along < lengths[:, None]) & (across > 0.0) & (across < lengths)
+    return [(one, other) for one, other in np.argwhere(np.triu(meet & (sine != 0.0), 1)).tolist()]
 
 
 def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
@@ -67,22 +63,19 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
     Obstacle or None
         The first that is found.
     """
-    for arc in range(path.count):
-        for pulley in range(path.count):
-            between = path.centers[pulley] - path.centers[arc]
-            if pulley == arc or not _covers(path, arc, between):
-                continue
-            if np.linalg.norm(between) < _extent(path, around, arc, between) + _extent(path, around, pulley, -between):
-                return Obstacle("arc", arc, pulley)
-    for span, (start, direction) in enumerate(zip(path.span_points[:, 0], path.span_directions, strict=True)):
-        for pulley in range(path.count):
-            if pulley in (span, (span + 1) % path.spans):
-                continue
-            across = path.centers[pulley] - start
-            nearest = across - np.clip(across @ direction, 0, path.span_lengths[span]) * direction
-            facing = around.inside if _cross(direction, across) > 0 else around.back
-            if np.linalg.norm(nearest) < _extent(path, around, pulley, -nearest) + facing:
-                return Obstacle("span", span, pulley)
+    between = path.centers - path.centers[:, None]
+    covered = _covers(path, -between).T
+    reach = _extents(path, around, -between)
+    hit = covered & (np.linalg.norm(between, axis=-1) < reach + reach.T)
+    np.fill_diagonal(hit, False)
+    for arc, pulley in np.argwhere(hit).tolist():
+        return Obstacle("arc", arc, pulley)
+    across, nearest = _from_spans(path, path.centers)
+    facing = np.where(_cross(path.span_directions[:, None], across) > 0.0, around.inside, around.back)
+    hit = np.linalg.norm(nearest, axis=-1) < _extents(path, around, -nearest) + facing
+    for span, pulley in np.argwhere(hit).tolist():
+        if pulley not in (span, (span + 1) % path.spans):
+            return Obstacle("span", span, pulley)
     return None
 
 
@@ -98,37 +91,36 @@ def distance_from_belt(path: Path, around: Surroundings, center: ArrayLike, radi
     radius : float
         Its radius, m.
     """
-    found, place = list[float](), np.asarray(center, dtype=float)
-    for start, direction, length in zip(
-        path.span_points[:, 0], path.span_directions, path.span_lengths.tolist(), strict=True
-    ):
-        across = place - start
-        nearest = across - np.clip(across @ direction, 0.0, length) * direction
-        surface = around.inside if _cross(direction, across) > 0.0 else around.back
-        found.append(float(np.linalg.norm(nearest)) - surface)
-    for arc in range(path.count):
-        between = place - path.centers[arc]
-        if _covers(path, arc, between):
-            above = float(np.linalg.norm(between)) - abs(float(path.radii[arc]))
-            outwards = (above > 0.0) == (path.radii[arc] > 0.0)
-            found.append(abs(above) - (around.back if outwards else around.inside))
-    return min(found) - radius
+    place = np.asarray(center, dtype=float)
+    across, nearest = _from_spans(path, place[None])
+    surface = np.where(_cross(path.span_directions[:, None], across) > 0.0, around.inside, around.back)
+    from_spans = np.linalg.norm(nearest, axis=-1) - surface
+    between = place - path.centers
+    above = np.linalg.norm(between, axis=-1) - np.abs(path.radii)
+    outwards = (above > 0.0) == (path.radii > 0.0)
+    from_arcs = np.abs(above) - np.where(outwards, around.back, around.inside)
+    return float(min([*from_spans.ravel(), *from_arcs[_covers(path, between)]])) - radius
 
 
-def _extent(path: Path, around: Surroundings, pulley: int, direction: FloatArray) -> float:
-    """How far a pulley reaches in a direction, with the belt on it where it lies there, m."""
-    if not _covers(path, pulley, direction):
-        return float(around.radii[pulley])
-    return float(abs(path.radii[pulley]) + (around.back if path.radii[pulley] > 0 else around.inside))
+def _from_spans(path: Path, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ways to places from the beginnings of spans, and from their nearest points, shape (spans, places, 2), m."""
+    across, directions = places - path.span_points[:, None, 0], path.span_directions[:, None]
+    along = np.clip(np.sum(across * directions, axis=-1), 0.0, path.span_lengths[:, None])
+    return across, across - along[..., None] * directions
 
 
-def _covers(path: Path, pulley: int, direction: FloatArray) -> bool:
-    """Tell whether belt lies on a pulley in a direction from its center."""
-    sense = np.sign(path.radii[pulley])
-    enters = path.span_points[pulley - 1, 1] - path.centers[pulley]
-    angle = sense * np.arctan2(_cross(enters, direction), enters @ direction)
-    return bool(angle % (2 * np.pi) <= path.wrap_angles[pulley])
+def _extents(path: Path, around: Surroundings, directions: FloatArray) -> FloatArray:
+    """How far pulleys reach in directions, with the belt on them where it lies there, m; shapes as for `_covers`."""
+    with_belt = np.abs(path.radii) + np.where(path.radii > 0.0, around.back, around.inside)
+    return np.where(_covers(path, directions), with_belt, around.radii)
 
 
-def _cross(one: FloatArray, other: FloatArray) -> float:
-    return float(one[0] * other[1] - one[1] * other[0])
+def _covers(path: Path, directions: FloatArray) -> BoolArray:
+    """Tell whether belt lies on pulleys in directions from their centers, shape (..., n, 2)."""
+    enters = np.roll(path.span_points[:, 1], 1, axis=0)[: path.count] - path.centers
+    angle = np.sign(path.radii) * np.arctan2(_cross(enters, directions), np.sum(enters * directions, axis=-1))
+    return np.asarray(angle % (2.0 * np.pi) <= path.wrap_angles)
+
+
+def _cross(one: FloatArray, other: FloatArray) -> FloatArray:
+    return np.asarray(one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0])

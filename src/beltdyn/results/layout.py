@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from beltdyn.results.friction_work import ARC_PARTS, arc_shares
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, Variable
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Layout:
     """Names and reference coordinates of what is recorded.
 
@@ -77,7 +78,7 @@ class Layout:
         }
         return {name: np.asarray(value, COORDINATES[name].dtype) for name, value in values.items() if len(value)}
 
-    @property
+    @cached_property
     def sizes(self) -> dict[str, int]:
         """Size of every dimension but times; those of size zero are left out."""
         sizes = {
@@ -94,7 +95,7 @@ class Layout:
         }
         return {name: size for name, size in sizes.items() if size}
 
-    @property
+    @cached_property
     def recorded(self) -> dict[str, Variable]:
         """The variables of `RECORDED` without those that have a dimension of size zero."""
         sizes = self.sizes

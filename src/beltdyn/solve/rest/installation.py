@@ -13,6 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Installation, describe, install
 from beltdyn.model import Path as BeltPath
+from beltdyn.model.tensioner_balance import balance_tensioners
 from beltdyn.parts.finding import listing
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.progress import Phase, Progress, Report
@@ -39,6 +40,8 @@ _MOST_TRIALS = 30
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""
 _LEAST_CHANGE = 1e-7
+_SHORTER = 1e-5
+"""Part of its length by which a belt is shortened for the slope of its tension."""
 
 
 class Rest(NamedTuple):
@@ -177,8 +180,7 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
         If the tension is not reached.
     """
     length = first.drive.belt_length
-    rest, done = first, 0.0
-    slope = first.drive.belt.axial_stiffness / length
+    rest, done, slope = first, 0.0, _tension_over_length(first.drive)
     for _ in range(_MOST_TRIALS):
         missing = wanted - rest.tension
         if abs(missing) <= _ACCURACY * wanted:
@@ -198,6 +200,21 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
         f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt_length:.6g} m, and "
         f"{first.tension:.5g} N with {length:.6g} m, since tensioners hold it.",
     )
+
+
+def _tension_over_length(drive: Drive) -> float:
+    """By how much a belt gets tighter with each metre that it is shorter by, as estimated, N/m.
+
+    Where tensioners yield, that is a small part of the belt's own stiffness over its length.
+    """
+    belt, length = drive.loaded_belt, drive.belt_length
+    shorter = belt.replace(length=(1.0 - _SHORTER) * length)
+    try:
+        ahead = balance_tensioners(drive.path, shorter, drive.completed.contact, drive.carriers)[0].tension
+    except ValueError:
+        ahead = drive.tension_at_rest
+    slope = (ahead - drive.tension_at_rest) / (_SHORTER * length)
+    return slope if slope > 0.0 else belt.axial_stiffness / length
 
 
 def _shortened(drive: Drive, done: float, change: float, at_rest: Callable[[Drive], At]) -> tuple[At, float]:
