@@ -11,7 +11,7 @@ import numpy as np
 
 from beltdyn.arrays import ComplexArray, FloatArray
 
-_BATCH = 30
+_BATCH = 40
 """Steps after which eigenvalues are looked at."""
 
 

@@ -20,7 +20,7 @@ _SMALL = 160
 """Order of the pencil up to which all eigenvalues are found by the QZ algorithm."""
 _AT_A_TIME, _MOST_AT_A_TIME = 24, 96
 """Eigenvalues that are found around a shift, at least."""
-_BATCHES, _TOLERANCE = 11, 1e-9
+_BATCHES, _TOLERANCE = 8, 1e-9
 """Batches of steps of the Arnoldi method, at most, and the residual of an eigenvalue that is found."""
 _BAND = 0.5
 """Half of the band of frequencies around a shift whose eigenvalues are taken, over the radius within which all are."""

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
 
-_BATCHES = 3
+_BATCHES = 2
 """Batches of steps of the Arnoldi method, at most."""
 _TOLERANCE = 1e-6
 """Residual of an eigenvalue that counts as found, relative; with 1e-3 some would be none."""
