@@ -70,8 +70,7 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
     np.fill_diagonal(hit, False)
     for arc, pulley in np.argwhere(hit).tolist():
         return Obstacle("arc", arc, pulley)
-    across, nearest = _from_spans(path, path.centers)
-    facing = np.where(_cross(path.span_directions[:, None], across) > 0.0, around.inside, around.back)
+    nearest, facing = _from_spans(path, around, path.centers)
     hit = np.linalg.norm(nearest, axis=-1) < _extents(path, around, -nearest) + facing
     for span, pulley in np.argwhere(hit).tolist():
         if pulley not in (span, (span + 1) % path.spans):
@@ -92,9 +91,8 @@ def distance_from_belt(path: Path, around: Surroundings, center: ArrayLike, radi
         Its radius, m.
     """
     place = np.asarray(center, dtype=float)
-    across, nearest = _from_spans(path, place[None])
-    surface = np.where(_cross(path.span_directions[:, None], across) > 0.0, around.inside, around.back)
-    from_spans = np.linalg.norm(nearest, axis=-1) - surface
+    nearest, facing = _from_spans(path, around, place[None])
+    from_spans = np.linalg.norm(nearest, axis=-1) - facing
     between = place - path.centers
     above = np.linalg.norm(between, axis=-1) - np.abs(path.radii)
     outwards = (above > 0.0) == (path.radii > 0.0)
@@ -102,11 +100,15 @@ def distance_from_belt(path: Path, around: Surroundings, center: ArrayLike, radi
     return float(min([*from_spans.ravel(), *from_arcs[_covers(path, between)]])) - radius
 
 
-def _from_spans(path: Path, places: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Ways to places from the beginnings of spans, and from their nearest points, shape (spans, places, 2), m."""
+def _from_spans(path: Path, around: Surroundings, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ways to places from the nearest points of spans, and how far off the surface is that faces them, m.
+
+    Shapes are (spans, places, 2) and (spans, places).
+    """
     across, directions = places - path.span_points[:, None, 0], path.span_directions[:, None]
     along = np.clip(np.sum(across * directions, axis=-1), 0.0, path.span_lengths[:, None])
-    return across, across - along[..., None] * directions
+    facing = np.where(_cross(directions, across) > 0.0, around.inside, around.back)
+    return across - along[..., None] * directions, facing
 
 
 def _extents(path: Path, around: Surroundings, directions: FloatArray) -> FloatArray:

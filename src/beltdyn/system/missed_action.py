@@ -241,11 +241,10 @@ def next_instant(system: System, source: int, motion: Motion, time: float, lengt
             for h in range(profiles.table[source].harmonic, profiles.table[source + 1].harmonic):
                 frequency = max(frequency, profiles.harmonic[h].order * mean)
         else:
-            i = system.first_body + body
-            speed = _extrapolated(system, source, motion, time)[1]
-            rate = motion.acceleration[i]
-            if _acceleration_lasts(system, source, motion, time - motion.time) < time - motion.time:
-                rate = 0.0
+            i, since = system.first_body + body, time - motion.time
+            lasting = _acceleration_lasts(system, source, motion, since)
+            speed = motion.velocity[i] + lasting * motion.acceleration[i]
+            rate = 0.0 if lasting < since else motion.acceleration[i]
             for load in range(system.shaft_loads.first[source], system.shaft_loads.first[source + 1]):
                 at, wave = load_bend(profiles, system.shaft_loads, load, time, speed, rate)
                 kink, frequency = min(kink, at), max(frequency, wave)
