@@ -174,7 +174,7 @@ def sliding_velocity(
     """
     rim = np.take_along_axis(pulley_speed * drive.radii, touched, axis=-1)
     creep = drive.friction_parameters.saturation(normal, drive.frictions[touched], rim)
-    beyond = np.sign(slip_velocity) * np.maximum(np.abs(slip_velocity) - creep, 0.0)
+    beyond = slip_velocity - np.clip(slip_velocity, -creep, creep)
     return np.where((touched >= 0) & (normal > 0.0), beyond, 0.0)
 
 
@@ -185,7 +185,7 @@ def sliding_shares(sliding: FloatArray, pressed: BoolArray, cell: FloatArray) ->
     ----------
     sliding : ndarray, shape (k, points)
         Result of `sliding_velocity`.
-    pressed : ndarray of bool, shape (k, points, pulleys)
+    pressed : ndarray of bool, shape (k, pulleys, points)
         Where the belt presses on each pulley; see `pressing`.
     cell : ndarray, shape (points,)
         Result of `cells`.
@@ -195,14 +195,14 @@ def sliding_shares(sliding: FloatArray, pressed: BoolArray, cell: FloatArray) ->
     ndarray, shape (k, pulleys)
         Zero without contact.
     """
-    lengths = np.einsum("kpn,p->kn", pressed, cell)
-    slid = np.einsum("kpn,kp->kn", pressed, cell * (sliding != 0.0))
+    lengths = pressed @ cell
+    slid = (pressed & (sliding != 0.0)[:, None]) @ cell
     return np.asarray(np.divide(slid, lengths, out=np.zeros_like(lengths), where=lengths > 0.0))
 
 
 def pressing(normal: FloatArray, touched: IntArray, pulleys: int) -> BoolArray:
-    """Where the belt presses on each pulley, shape (k, points, pulleys)."""
-    return np.asarray((touched[..., None] == np.arange(pulleys)) & (normal > 0.0)[..., None])
+    """Where the belt presses on each pulley, shape (k, pulleys, points)."""
+    return np.asarray((touched[:, None] == np.arange(pulleys)[:, None]) & (normal > 0.0)[:, None])
 
 
 def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> FloatArray:
@@ -225,9 +225,8 @@ def gross_sliding(sliding: FloatArray, pressed: BoolArray, drive: Drive) -> Floa
     ndarray, shape (k, pulleys)
         Belt faster than the rim in the direction of ascending belt coordinate.
     """
-    values = np.broadcast_to(sliding[..., None], pressed.shape)
-    lowest = np.min(values, axis=-2, where=pressed, initial=np.inf)
-    highest = np.max(values, axis=-2, where=pressed, initial=-np.inf)
+    lowest = np.where(pressed, sliding[:, None], np.inf).min(axis=-1)
+    highest = np.where(pressed, sliding[:, None], -np.inf).max(axis=-1)
     turning = np.array([pulley.turning for pulley in drive.pulleys])
     nearest = np.where(lowest > 0.0, lowest, np.minimum(highest, 0.0))
-    return np.asarray(turning * np.where(np.any(pressed, axis=-2), nearest, 0.0))
+    return np.asarray(turning * np.where(np.any(pressed, axis=-1), nearest, 0.0))

@@ -18,6 +18,7 @@ from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
 from beltdyn.solve.integrators.engine import accelerate
+from beltdyn.solve.observation.band_limit import compile_filter
 from beltdyn.system.arrays import System
 from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
@@ -54,6 +55,7 @@ def _compile_observing(system: System) -> None:
     done = WorkSoFar(np.empty((2, 0, 0)), states)
     add_friction_work(touch, np.empty((0, 0, 3)), time, time, shown, done, work)
     fill_mid_spans(np.empty((0, 0, 2, 2)), places, touched, 0, states)
+    compile_filter()
 
 
 def compile_solving(system: System, state: State) -> None:

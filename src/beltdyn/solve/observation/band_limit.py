@@ -8,19 +8,24 @@ is an ideal low-pass filter at half the rate of outputs in a Blackman window (Ha
 ends of steps by cubics.  `transfer` is the closed form of what a sinusoid is multiplied by.
 """
 
+from math import cos, pi, sin, sqrt
+from typing import NamedTuple
+
 import numpy as np
 
 from beltdyn.arrays import FloatArray
+from beltdyn.kernel import kernel
 from beltdyn.results.schema import FILTER_REACH
 
 _WINDOW = (0.42, 0.5, 0.08)
 _FINEST = 0.25
 """Length of the pieces of the integral at most, in intervals."""
-_BLOCK = 8
-"""Instants that are filtered at a time: many more would mostly meet points beyond the reach of the filter."""
-_NEAR = 1e-8
-"""Distance from an instant, in intervals, below which sin(pi x) / (pi x) is one."""
-_GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
+_NEAR = 1e-4
+"""Distance from an output, in intervals, below which sin(pi x) / (pi x) is 1 - (pi x)^2 / 6 up to rounding."""
+_TURN = pi / FILTER_REACH
+"""Of the window, rad per interval."""
+_GAUSS = ((-sqrt(0.6), 5.0 / 18.0), (0.0, 8.0 / 18.0), (sqrt(0.6), 5.0 / 18.0))
+"""Places from -1 to 1, and weights, of the Gauss points of a piece."""
 
 
 def transfer(frequency: FloatArray) -> FloatArray:
@@ -41,6 +46,28 @@ def transfer(frequency: FloatArray) -> FloatArray:
 
     frequency = np.asarray(frequency, dtype=float)
     return integral(frequency + 0.5) - integral(frequency - 0.5)
+
+
+class Curves(NamedTuple):
+    """What was seen, as curves of time."""
+
+    time: FloatArray
+    """Ends of steps, in intervals between outputs, shape (k,)."""
+    values: FloatArray
+    """Shape (k, channels)."""
+    slopes: FloatArray
+    """The same, per interval."""
+    there: FloatArray
+    """Room for the values at an instant, shape (channels,)."""
+
+
+class Outputs(NamedTuple):
+    """When outputs are."""
+
+    time: FloatArray
+    """Ascending, in intervals, shape (m,)."""
+    waves: FloatArray
+    """Sines and cosines of pi and of `_TURN` times it, shape (m, 4)."""
 
 
 class BandLimit:
@@ -95,49 +122,80 @@ class BandLimit:
         """
         if not len(instants):
             return np.empty((0, self._values.shape[1]))
-        points, weighted = self._integrand(instants[0] - self._reach, instants[-1] + self._reach)
-        filtered = np.empty((len(instants), weighted.shape[1]))
-        for first in range(0, len(instants), _BLOCK):
-            some = instants[first : first + _BLOCK]
-            part = slice(*np.searchsorted(points, (some[0] - self._reach, some[-1] + self._reach)))
-            filtered[first : first + _BLOCK] = self._kernel(some, points[part]) @ weighted[part]
+        when, time = ((given - instants[0]) / self._interval for given in (instants, self._time))
+        waves = np.stack([of(rate * when) for rate in (pi, _TURN) for of in (np.sin, np.cos)], axis=1)
+        slopes = np.asarray(np.gradient(self._values, time, axis=0))  # of parabolas through three ends
+        curves = Curves(time, self._values, slopes, np.empty(self._values.shape[1]))
+        filtered = np.zeros((len(when), self._values.shape[1]))
+        add_filtered(curves, _pieces(time, when), Outputs(when, waves), filtered)
         needed = max(0, int(np.searchsorted(self._time, instants[-1] - self._reach)) - 2)
         self._time, self._values = self._time[needed:], self._values[needed:]
-        return filtered / (self._interval * self._gain)
-
-    def _integrand(self, start: float, end: float) -> tuple[FloatArray, FloatArray]:
-        """Gauss points of pieces between ends of steps, none of them long, and values there times their weights."""
-        steps = self._time[np.searchsorted(self._time, start) : np.searchsorted(self._time, end)]
-        grid = np.linspace(start, end, int(np.ceil((end - start) / (_FINEST * self._interval))) + 1)
-        edges = np.union1d(steps, grid)
-        half = 0.5 * np.diff(edges)[:, None]
-        points = (edges[:-1, None] + half * (1.0 + _GAUSS)).ravel()
-        return points, (half * _WEIGHTS).ravel()[:, None] * self._interpolate(points)
-
-    def _kernel(self, instants: FloatArray, points: FloatArray) -> FloatArray:
-        """K(t - s) by the sums of angles: sines and cosines of instants and of points alone."""
-        there, here = (instants[:, None] - instants[0]) / self._interval, (points - instants[0]) / self._interval
-        away = there - here
-        wave = _sine_of_difference(np.pi * there, np.pi * here)
-        turn = np.pi / FILTER_REACH
-        cosine = _sine_of_difference(turn * there + 0.5 * np.pi, turn * here)
-        constant, first, second = _WINDOW
-        window = constant - second + cosine * (first + 2.0 * second * cosine)
-        near = np.abs(away) < _NEAR
-        ideal = wave / np.where(near, 1.0, np.pi * away)
-        return np.where(np.abs(away) < FILTER_REACH, np.where(near, 1.0, ideal) * window, 0.0)
-
-    def _interpolate(self, points: FloatArray) -> FloatArray:
-        """Cubics through the values at both ends of a step, with the slopes of parabolas through three ends."""
-        slopes = np.asarray(np.gradient(self._values, self._time, axis=0))
-        end = np.clip(np.searchsorted(self._time, points), 1, len(self._time) - 1)
-        step = (self._time[end] - self._time[end - 1])[:, None]
-        x = (points - self._time[end - 1])[:, None] / step
-        before, after = self._values[end - 1], self._values[end]
-        bends = (1.0 - x) * (slopes[end - 1] * step - (after - before)) + x * ((after - before) - slopes[end] * step)
-        return np.asarray(before + x * (after - before) + x * (1.0 - x) * bends)
+        return filtered / self._gain
 
 
-def _sine_of_difference(left: FloatArray, right: FloatArray) -> FloatArray:
-    """Give sin(left - right) for a column and a row."""
-    return np.asarray(np.sin(left) * np.cos(right) - np.cos(left) * np.sin(right))
+def compile_filter() -> None:
+    """Compile the kernel of the filter."""
+    empty, table = np.empty(0), np.empty((0, 0))
+    add_filtered(Curves(empty, table, table, empty), empty, Outputs(empty, table), table)
+
+
+def _pieces(time: FloatArray, when: FloatArray) -> FloatArray:
+    """Give the ends of the pieces of the integral: ends of steps, and others where these lie far apart."""
+    start, end = when[0] - FILTER_REACH, when[-1] + FILTER_REACH
+    steps = time[np.searchsorted(time, start) : np.searchsorted(time, end)]
+    return np.union1d(steps, np.linspace(start, end, int(np.ceil((end - start) / _FINEST)) + 1))
+
+
+@kernel
+def add_filtered(curves: Curves, pieces: FloatArray, outputs: Outputs, filtered: FloatArray) -> None:
+    """Add the integrals of curves times K at some outputs.
+
+    Parameters
+    ----------
+    curves
+        What is filtered.
+    pieces : ndarray, shape (p + 1,)
+        Ends of the pieces of the integrals, each in one step, in intervals.
+    outputs
+        When outputs are.
+    filtered : ndarray, shape (m, channels)
+        The sums.
+    """
+    constant, first, second = _WINDOW
+    step, reached = 1, 0
+    for piece in range(pieces.size - 1):
+        middle, half = 0.5 * (pieces[piece] + pieces[piece + 1]), 0.5 * (pieces[piece + 1] - pieces[piece])
+        while step < curves.time.size - 1 and curves.time[step] < middle:
+            step += 1
+        for place, weight in _GAUSS:
+            point = middle + half * place
+            _interpolate(curves, step, point)
+            sine, cosine = sin(pi * point), cos(pi * point)
+            slow_sine, slow_cosine = sin(_TURN * point), cos(_TURN * point)
+            while reached < outputs.time.size and outputs.time[reached] <= point - FILTER_REACH:
+                reached += 1
+            for output in range(reached, outputs.time.size):
+                away = outputs.time[output] - point
+                if away >= FILTER_REACH:
+                    break
+                waves = outputs.waves[output]
+                ideal = 1.0 - (pi * away) ** 2 / 6.0
+                if abs(away) > _NEAR:
+                    ideal = (waves[0] * cosine - waves[1] * sine) / (pi * away)
+                wave = waves[3] * slow_cosine + waves[2] * slow_sine
+                factor = 2.0 * half * weight * ideal * (constant - second + wave * (first + 2.0 * second * wave))
+                for channel in range(filtered.shape[1]):
+                    filtered[output, channel] += factor * curves.there[channel]
+
+
+@kernel(inline=True)
+def _interpolate(curves: Curves, step: int, point: float) -> None:
+    """Cubic between the ends of a step, by values and slopes."""
+    length = curves.time[step] - curves.time[step - 1]
+    x = (point - curves.time[step - 1]) / length
+    for channel in range(curves.there.size):
+        before = curves.values[step - 1, channel]
+        rise = curves.values[step, channel] - before
+        bend = (1.0 - x) * (curves.slopes[step - 1, channel] * length - rise)
+        bend += x * (rise - curves.slopes[step, channel] * length)
+        curves.there[channel] = before + x * (rise + (1.0 - x) * bend)
