@@ -36,6 +36,8 @@ class DampingFactors(NamedTuple):
     by_flow: float
     """By the rates that follow the coordinates as D e, the vectors of dr/dx: the belt flows through the element at this
     speed, m/s. It is zero for elements that travel with the belt."""
+    secant: bool = False
+    """Hysteresis of bending changes by its secant from no rate, in place of its slope."""
 
 
 @kernel

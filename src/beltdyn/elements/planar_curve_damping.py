@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.elements.hysteretic import Hysteretic, hysteretic
+from beltdyn.elements.hysteretic import hysteretic
 from beltdyn.elements.kind import DampingFactors
 from beltdyn.elements.planar_curve import (
     Density,
@@ -129,7 +129,8 @@ def add_curve_damping(
             force * stretch_g + moment * by_g, moment * by_c, force * stretch_gg + moment * by_gg, moment * by_gc, 0.0
         )
         fill_density_tangent(density, work)
-        _add_products(damping, law, work)
+        by_rate = law.stress / curvature_rate if damping.tangent.secant and curvature_rate != 0.0 else law.by_rate
+        _add_products(damping, by_rate, law.by_strain, work)
         _spread(damping, slope, bend, third, motion, work)
     return force * strain_rate, moment * curvature_rate
 
@@ -144,10 +145,10 @@ def _add_by_square(factor: float, slope: tuple[float, ...], bend: tuple[float, .
 
 
 @kernel(inline=True)
-def _add_products(damping: PointDamping, law: Hysteretic, work: np.record) -> None:
+def _add_products(damping: PointDamping, by_rate: float, by_strain: float, work: np.record) -> None:
     """Add what the strains and their rates contribute to the tangent of a point; overwrite that by the rate of z."""
     work.by_rate[:] = 0.0
-    for k, factor, share in ((0, damping.axial, 0.0), (1, damping.bending + law.by_rate, law.by_strain)):
+    for k, factor, share in ((0, damping.axial, 0.0), (1, damping.bending + by_rate, by_strain)):
         if factor == 0.0:
             continue
         for column in range(4):

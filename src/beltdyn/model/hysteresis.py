@@ -15,15 +15,12 @@ SMOOTHED = 2.0
 _KEPT = 0.91
 """What smoothing leaves of the loss of the curvature exp(s / l) / R (s < 0), then 1 / R, in the mean over elements of
 any length h, and smoothed over 2 (l + h): within 2 %."""
-_SMOOTHED_AT_POINTS = 10.0
+_SMOOTHED_AT_POINTS = 6.0
 """Length over which slow rates of bending are smoothed where the law holds point by point, over sqrt(EI / T).  The belt
-overshoots and swings about the curvature of a soft pulley, so that 2 leaves 0.69 to 0.88 of the loss; 10 leaves 1.00 to
-1.02, and 20 from 1.01 to 1.08, which is the loss of a law that is not smoothed, overshoot included."""
-OVER_TIME = 0.2
-"""That length in runs over time, over the one in steady running.  With all of it the sign of the rate turns so sharply
-that steps fail: the first 0.3 s of the example washing_machine take 14,044 iterations in place of 731."""
-KEPT_OVER_TIME = 0.795
-"""What this leaves of the loss: 0.78 to 0.81 in the examples with V-ribbed and V-belts."""
+overshoots and swings about the curvature of a soft pulley: 2 leaves 0.69 to 0.88 of the loss, 10 leaves 1.00 to 1.02.
+The longer, the more sharply the sign of the rate turns, and the more steps over time fail."""
+_KEPT_AT_POINTS = 0.97
+"""What this leaves of the loss: 0.95 to 0.99, on pulleys from soft to stiff."""
 _LEAST_FRICTION = 0.1
 """With less the belt is taken to slide on the arc as if it had this."""
 
@@ -60,7 +57,7 @@ def bending_at_points(drive: Drive) -> BendingAtPoints:
     drive : Drive
     """
     belt = drive.belt
-    modulus = BENDING_SHARE * belt.bending_loss_factor * belt.bending_stiffness
+    modulus = BENDING_SHARE / _KEPT_AT_POINTS * belt.bending_loss_factor * belt.bending_stiffness
     return BendingAtPoints(modulus, _SMOOTHED_AT_POINTS * layer_lengths(drive, drive.tension_at_rest)[0])
 
 

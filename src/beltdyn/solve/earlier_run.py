@@ -19,7 +19,7 @@ from beltdyn.solve.checkpoint import is_checkpoint
 from beltdyn.solve.steady_running.flowing_start import DIRECTION, Beginning
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
-from beltdyn.system.build_staying import flowing_system, smoothed_over_time, staying_system
+from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.discretization import point_coordinates
 from beltdyn.system.state import State, at_rest
 
@@ -70,7 +70,7 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
 def staying_mesh(drive: Drive, run: Run) -> System:
     """The arrays of a drive over time on the mesh of a run that stays, with a belt that does not flow."""
     lengths = np.diff(run.dataset["node_coordinate"].values, append=drive.belt_length)
-    return smoothed_over_time(staying_system(drive, lengths))
+    return staying_system(drive, lengths)
 
 
 def recorded_state(run: Run, time: float, system: System) -> State:

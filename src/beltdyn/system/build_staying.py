@@ -7,7 +7,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray
 from beltdyn.elements.quintic import QUINTIC, Quintic
 from beltdyn.model import Belt, Drive
-from beltdyn.model.hysteresis import KEPT_OVER_TIME, OVER_TIME, bending_at_points, passing_strains
+from beltdyn.model.hysteresis import bending_at_points, passing_strains
 from beltdyn.records import records
 from beltdyn.system.arrays import BODY, System
 from beltdyn.system.build import nodal_supports, system_of
@@ -85,24 +85,6 @@ def _staying_belt(drive: Drive, elements: int) -> Belt:
         integration="full",
         quadrature_points=_STAYING_ELASTIC,
         bending_loss_factor=0.0,
-    )
-
-
-def smoothed_over_time(system: System) -> System:
-    """The same belt on a mesh that stays, with the hysteresis of bending that runs over time can afford.
-
-    Parameters
-    ----------
-    system
-        From `staying_system`.
-    """
-    element = system.element
-    if not isinstance(element, Quintic):
-        return system
-    return _with_section(
-        system,
-        bending_hysteresis=element.section.bending_hysteresis / KEPT_OVER_TIME,
-        passing_length=element.section.passing_length * OVER_TIME,
     )
 
 

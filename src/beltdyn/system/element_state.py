@@ -99,7 +99,7 @@ def add_material_damping(
         Changed in place.
     """
     if loses_in_belt(system):
-        by = DampingFactors(factors.by_position, factors.by_velocity, 0.0)
+        by = DampingFactors(factors.by_position, factors.by_velocity, 0.0, factors.secant)
         stretch, bending = material_forces(system, element, by, work)
         forces.power[STRETCH_LOSS] += stretch
         forces.power[BENDING_LOSS] += bending

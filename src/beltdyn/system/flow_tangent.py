@@ -86,7 +86,7 @@ def _add_damping(
     own, flow, derivative = work.element, work.flow, system.frame.derivative[element]
     by_flow = factors.place * flow_speed(system.frame, motion.velocity)
     own.by_flow[:] = 0.0
-    lost = material_forces(system, element, DampingFactors(factors.place, factors.rate, by_flow), work)
+    lost = material_forces(system, element, DampingFactors(factors.place, factors.rate, by_flow, factors.secant), work)
     if factors.place != 0.0 or factors.rate != 0.0:
         if system.hysteresis.size > 0:
             add_hysteresis_flow(system.vectors, derivative, flow.rate, by_flow, work)

@@ -172,6 +172,17 @@ def test_tangent_of_damping_in_a_belt_that_flows(deformed: FloatArray, element: 
     np.testing.assert_allclose(SCALE * work.by_flow, column, atol=1e-11 * np.abs(column).max())
 
 
+def test_the_secant_of_hysteresis_times_the_rates_is_its_force(deformed: FloatArray) -> None:
+    """And what the square of the belt's speed adds to it, which grows with the rates of the nodes too."""
+    work = blank(QUINTIC.workspace)
+    QUINTIC.damping(LOSSY, deformed, VELOCITY, LENGTH, DampingFactors(0.0, 1.0, 0.0, True), work)
+    square = float(np.sum((0.5 * (VELOCITY[:2] + VELOCITY[6:8])) ** 2))
+    force = SCALE * (work.gradient + 2.0 * square * work.by_square)
+    np.testing.assert_allclose(SCALE * (work.tangent @ VELOCITY), force, atol=1e-12 * np.abs(force).max())
+    by_slope = damping(deformed, VELOCITY, 0.0, 1.0, element=LOSSY)[2]
+    assert np.abs(SCALE * (by_slope @ VELOCITY) - force).max() > 0.1 * np.abs(force).max()
+
+
 def test_power_of_hysteresis_is_that_of_the_law_at_points(deformed: FloatArray) -> None:
     """With the curvature c / sqrt(G), its rate by complex steps, and the mean velocity of both ends."""
     moved, expected = (deformed + 1e-30j * VELOCITY).reshape(6, 2), 0.0

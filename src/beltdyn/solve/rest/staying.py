@@ -32,8 +32,8 @@ MOST_ELEMENTS = 1500
 _SETTLED = 1e-3
 """Change of the tension at rest from one mesh to the next, relative, with which a mesh is fine enough for it."""
 _MOST = 60
-_CURVATURE = slice(4, 6)
-"""Second derivatives among the coordinates of a node."""
+_SLOPE, _CURVATURE = slice(2, 4), slice(4, 6)
+"""First and second derivatives among the coordinates of a node."""
 _SAMPLES = 16
 """Points of an element at which the ends of arcs are looked for."""
 
@@ -63,9 +63,9 @@ def laid_state(laid: Laid, system: System, tensioners: FloatArray) -> State:
     return state
 
 
-def anchor_at(system: System, state: State, at_rest: bool) -> Anchor:
+def anchor_at(state: State, at_rest: bool) -> Anchor:
     """Hold node 0 where it is along the belt."""
-    slope = centreline_points(system, state.position, np.zeros(1))[1][0]
+    slope = state.position[_SLOPE]
     return Anchor(state.position[:2].copy(), slope / np.hypot(*slope), at_rest)
 
 
@@ -126,7 +126,7 @@ def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_
     system = staying_system(drive, lengths)
     for start in STARTS:
         state = _lying(drive, system, installation, span, start)
-        if follow(start, partial(_balance, drive, system, state, anchor_at(system, state, True))):
+        if follow(start, partial(_balance, drive, system, state, anchor_at(state, True))):
             tension = looked_at(drive, system, state).tension
             return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
     raise _no_rest(system)
@@ -150,7 +150,7 @@ def stand_like(drive: Drive, like: Standing) -> Standing:
     nodes, bodies = np.split(like.place, [like.system.first_body])
     system, state = carried(drive, like.drive, like.system.length, nodes)
     state.position[system.first_body :] += bodies
-    if not _balance(drive, system, state, anchor_at(system, state, True), 1.0):
+    if not _balance(drive, system, state, anchor_at(state, True), 1.0):
         raise _no_rest(system)
     tension = looked_at(drive, system, state).tension
     return like._replace(drive=drive, system=system, state=state, place=state.position.copy(), tension=tension)
@@ -243,7 +243,9 @@ def found_arcs(system: System, state: State) -> list[Arc]:
 
 def depths(system: System, state: State, places: FloatArray) -> FloatArray:
     """How deep places (k, 2) lie within each pulley, m, negative outside, shape (P, k)."""
-    centers = np.array([pulley_center(system, p, state.position) for p in range(system.pulleys.size)])
+    centers = np.array(system.pulleys.center)
+    for carried in np.flatnonzero(system.pulleys.carrier >= 0).tolist():
+        centers[carried] = pulley_center(system, carried, state.position)
     away = np.hypot(*(places[:, axis] - centers[:, axis, None] for axis in range(2)))
     return np.asarray(system.rims.radius[:, None] - away)
 

@@ -2,7 +2,7 @@
 
 The guess is the parabola through the last three solutions, or the last of fewer: on a line through two of them nodes
 would leave the circles that they follow, and the belt be stretched by half of the square of the angle.  A step that
-fails is halved, and the next one doubled after success.
+fails is halved; after success the next one is doubled, once there is a parabola.
 """
 
 from collections.abc import Callable, Sequence
@@ -20,7 +20,9 @@ Solution = tuple[float, FloatArray]
 """Where on the way, and the unknowns there."""
 
 
-def go_on(solve: Callable[[float, FloatArray], FloatArray | None], *passed: Solution) -> FloatArray | None:
+def go_on(
+    solve: Callable[[float, FloatArray], FloatArray | None], *passed: Solution, step: float = 1.0
+) -> FloatArray | None:
     """Go on from 0 to 1.
 
     Parameters
@@ -29,19 +31,21 @@ def go_on(solve: Callable[[float, FloatArray], FloatArray | None], *passed: Solu
         Gives the unknowns at a place of the way, from a guess; None if there is no solution.
     *passed
         Solutions in the order in which they serve a guess, at least that at 0; it may be the only one.
+    step
+        The first one.
 
     Returns
     -------
     ndarray or None
         The unknowns at 1; None if the way ends before.
     """
-    known, reached, step = list(passed), 0.0, 1.0
+    known, reached = list(passed), 0.0
     while reached < 1.0:
         ahead = min(1.0, reached + step)
         found = solve(ahead, extrapolated(known[-_KNOWN:], ahead) if len(known) >= _KNOWN else known[-1][1])
         if found is not None:
             known.append((ahead, found))
-            reached, step = ahead, 2.0 * step
+            reached, step = ahead, 2.0 * step if len(known) >= _KNOWN else step
             continue
         step = 0.5 * (ahead - reached)
         if step < _SHORTEST:

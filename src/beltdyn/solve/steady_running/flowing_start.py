@@ -17,7 +17,7 @@ from beltdyn.solve.rest.staying import FINER, Standing, anchor_at, bring_to_stan
 from beltdyn.solve.steady_running.refinement import MeshRule, errors_at_rest, refine_at_rest, steady_from_rest
 from beltdyn.solve.steady_running.search import SteadySearch
 from beltdyn.system.arrays import System
-from beltdyn.system.build_staying import flowing_system, on_other_mesh, smoothed_over_time
+from beltdyn.system.build_staying import flowing_system, on_other_mesh
 from beltdyn.system.state import State
 
 DIRECTION = "mesh_direction"
@@ -64,8 +64,8 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
     meshed = _meshed(drive)
     if drive.simulation.start == "steady":
         meshed = _running(meshed, drive.simulation.force_tolerance)
-    system, direction = meshed.system, anchor_at(meshed.system, meshed.state, True).direction
-    flowing = with_angles(meshed.drive, flowing_system(smoothed_over_time(system), direction))
+    system, direction = meshed.system, anchor_at(meshed.state, True).direction
+    flowing = with_angles(meshed.drive, flowing_system(system, direction))
     errors = meshed.errors or {"peak pressure": float("nan")}  # not known
     said = {mesh_error_attribute(name): error for name, error in errors.items()} | {DIRECTION: direction}
     return Beginning(meshed.drive, flowing, with_passage(system, meshed.state, meshed.speed), attributes=said)

@@ -82,20 +82,20 @@ def find_steady(
         substitute(equations.matrix, True, node_part, border_part)
         size, length = _size(system, node_part, border_part), 1.0
         while True:
-            _step(system, motion, anchor, -length, node_part, border_part)
+            make_step(system, motion, anchor.at_rest, -length, node_part, border_part)
             assemble_steady(system, motion, anchor, False, equations)
             substitute(equations.matrix, True, work.ahead_node, work.ahead_border)
             ahead = _size(system, work.ahead_node, work.ahead_border)
             if ahead <= max((1.0 - 0.25 * length) * size, tolerance):
                 break
-            _step(system, motion, anchor, length, node_part, border_part)
+            make_step(system, motion, anchor.at_rest, length, node_part, border_part)
             length *= 0.5
             if length < _SHORTEST or not np.isfinite(size):
                 return NOT_FOUND, iteration
         while length == 1.0 and tolerance < ahead <= _CONTRACTION * size:
             size, ahead = ahead, _once_more(system, motion, anchor, work)
         if ahead <= tolerance:
-            _step(system, motion, anchor, -1.0, work.ahead_node, work.ahead_border)
+            make_step(system, motion, anchor.at_rest, -1.0, work.ahead_node, work.ahead_border)
             return FOUND, iteration
         assemble_steady(system, motion, anchor, True, equations)
     return NOT_FOUND, most
@@ -107,12 +107,12 @@ def _once_more(system: System, motion: Motion, anchor: Anchor, work: SteadyWork)
     equations = work.equations
     node_part, border_part = equations.node_part, equations.border_part
     size = _size(system, work.ahead_node, work.ahead_border)
-    _step(system, motion, anchor, -1.0, work.ahead_node, work.ahead_border)
+    make_step(system, motion, anchor.at_rest, -1.0, work.ahead_node, work.ahead_border)
     assemble_steady(system, motion, anchor, False, equations)
     substitute(equations.matrix, True, node_part, border_part)
     ahead = _size(system, node_part, border_part)
     if not ahead <= size:
-        _step(system, motion, anchor, 1.0, work.ahead_node, work.ahead_border)
+        make_step(system, motion, anchor.at_rest, 1.0, work.ahead_node, work.ahead_border)
         return ahead
     for node in range(system.nodes):
         for c in range(len(system.scale)):
@@ -123,10 +123,26 @@ def _once_more(system: System, motion: Motion, anchor: Anchor, work: SteadyWork)
 
 
 @kernel(inline=True)
-def _step(
-    system: System, motion: Motion, anchor: Anchor, factor: float, node_part: FloatArray, border_part: FloatArray
+def make_step(
+    system: System, motion: Motion, at_rest: bool, factor: float, node_part: FloatArray, border_part: FloatArray
 ) -> None:
-    """Add factor times a solution to the state."""
+    """Add factor times a solution to the state.
+
+    Parameters
+    ----------
+    system
+        The system.
+    motion
+        The state, changed in place.
+    at_rest
+        Whether the belt stands still; otherwise the speed of its frame is changed too.
+    factor
+        Of the solution.
+    node_part : ndarray, shape (N, n)
+        Change of the coordinates of nodes.
+    border_part : ndarray, shape (m + 1,)
+        Change of the other unknowns.
+    """
     dof, first = len(system.scale), system.first_body
     for node in range(system.nodes):
         for c in range(dof):
@@ -139,7 +155,7 @@ def _step(
                 motion.velocity[first + body] += factor * border_part[unknown]
             else:
                 motion.position[first + body] += factor * border_part[unknown]
-    if not anchor.at_rest:
+    if not at_rest:
         system.frame.speed[0] += factor * border_part[border_part.size - 1]
 
 

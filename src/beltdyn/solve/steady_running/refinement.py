@@ -28,6 +28,8 @@ _POINTS = 200
 """Points of an arc at which two meshes are compared."""
 _LEAST_SLIP = 1e-4
 """Slip against which differences of slip are measured, at least."""
+_COMPARED = 1e-6
+"""Tolerance of a search on a coarser mesh, only to be compared: the error of a mesh of 0.9 % changes by 0.002 %."""
 
 
 @dataclass(frozen=True)
@@ -172,7 +174,9 @@ def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, flo
         If the coarser mesh finds no steady running.
     """
     here, coarser = _solution(search), copy(search)
+    coarser.tolerance = _COMPARED
     coarser.move_to(_mesh(search.drive, here, rule.finer(1.0 / FINER)))
+    coarser.tolerance = search.tolerance
     search.iterations = coarser.iterations
     return _differences(_solution(coarser), here), coarser
 

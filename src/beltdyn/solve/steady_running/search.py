@@ -14,7 +14,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.solve.rest.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_running.continuation import go_on
-from beltdyn.solve.steady_running.newton import FOUND, SteadyWork, find_steady, steady_work
+from beltdyn.solve.steady_running.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
 from beltdyn.solve.steady_running.slip_limit import slips_through
 from beltdyn.system.arrays import System
 from beltdyn.system.build_staying import on_other_mesh
@@ -33,10 +33,14 @@ from beltdyn.system.state import State
 
 _MOST = 25
 """Iterations of a step."""
+_ON_THE_WAY = 1e-5
+"""Tolerance of solutions that only lead to others, over the smallest radius."""
 _FIRST_LOAD = 0.05
 _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
+_NEAR = 1e-3
+"""Part of the way to another push at which the tangent still tells the solution."""
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
 
@@ -65,11 +69,17 @@ class SteadySearch:
         The drive on a mesh that stays. The state is changed in place.
     time
         At which speeds, torques and schedules are taken, s.
+
+    Attributes
+    ----------
+    tolerance
+        Of the last step of a search, over the smallest radius.
     """
 
     def __init__(self, drive: Drive, system: System, state: State, time: float) -> None:
         self.drive, self._time = drive, time
         self.state, self.iterations, self.setting = state, 0, Setting()
+        self.tolerance = TOLERANCE
         self._held: int | None = None
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
@@ -131,7 +141,7 @@ class SteadySearch:
         """The factorised tangent at the state, for small changes of the drive."""
         system = self._at(self.setting)
         drive_shafts(system, self.state.velocity)
-        anchor = anchor_at(system, self.state, False)
+        anchor = anchor_at(self.state, False)
         find_steady(system, self.state.at(0.0), anchor, 0.0, 0, False, self._work)
         return self._work
 
@@ -210,7 +220,8 @@ class SteadySearch:
             "tensioner_factor_after_tensioning" and so on: ways to the ends over those by the tangent.
         """
         found, count = dict[str, FloatArray](), self.constant.tensioners.size
-        here, ends = self.state.position[-count:].copy(), list[tuple[FloatArray, FloatArray]]()
+        tensioners = slice(self.state.position.size - count, self.state.position.size)
+        here, ends = self.state.position[tensioners].copy(), list[tuple[FloatArray, FloatArray]]()
         given = {
             name: sense * dry_friction_of(self._tensioners, f"{name}_friction")
             for name, sense in (("tensioning", -1.0), ("yielding", 1.0))
@@ -221,51 +232,54 @@ class SteadySearch:
             mark = f"tensioner_factor_after_{name}"
             factor = None if known is None or mark not in known else np.atleast_1d(known[mark])
             if factor is None:
-                end = self._pushed(push, ends)
+                end = self._pushed(push, way, ends)
                 if end is None:
                     continue
                 ends.append((push, end))
-                moved = end[self.state.position.size - count :][:count] - here
-                factor = np.divide(moved, way, out=np.ones(count), where=way != 0.0)
-            found |= {f"tensioner_position_after_{name}": here + factor * way, mark: factor}
+                moved = end[tensioners] - here
+                factor = np.divide(moved, way[tensioners], out=np.ones(count), where=way[tensioners] != 0.0)
+            found |= {f"tensioner_position_after_{name}": here + factor * way[tensioners], mark: factor}
         return found
 
-    def _pushed(self, push: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]) -> FloatArray | None:
+    def _pushed(
+        self, push: FloatArray, way: FloatArray, ends: Sequence[tuple[FloatArray, FloatArray]]
+    ) -> FloatArray | None:
         """Unknowns where tensioners are pushed, N or N m; None if the way there ends before.
 
-        Ends that are known, each with its push, serve the guesses.
+        The way there to first order, and ends that are known, each with its push, serve the guesses.
         """
         begin, moments, own = self.unknowns(), self._moments, self.constant.tensioners.push
         given = own.copy()
 
         def solve(part: float, guess: FloatArray) -> FloatArray | None:
             own[:] = given + part * push
-            return self._solve(self.setting, guess)
+            return self._solve(self.setting, guess, part)
 
         parts = [(float(other @ push) / float(push @ push), other, end) for other, end in ends]
-        end = go_on(
-            solve, *((part, end) for part, other, end in parts if np.allclose(other, part * push)), (0.0, begin)
-        )
+        known = [(part, end) for part, other, end in parts if np.allclose(other, part * push)]
+        end = go_on(solve, *known, (0.0, begin), (_NEAR, begin + _NEAR * way), step=0.5)
         own[:], self._moments = given, moments
         self.place(begin)
         return end
 
     def _pushed_by_tangent(self, pushes: Iterable[FloatArray]) -> list[FloatArray]:
-        """By how much tensioners move where they are pushed, N or N m, to first order, m or rad."""
-        matrix, found = self.factorised().equations.matrix, list[FloatArray]()
+        """By how much unknowns change where tensioners are pushed, N or N m, to first order."""
+        matrix, found, here = self.factorised().equations.matrix, list[FloatArray](), self.unknowns()
         unknown = self._system.bodies.unknown[-self._system.tensioners.size :]
         for push in pushes:
             clear(matrix, False)
             matrix.border_side[unknown] = push
             substitute(matrix, True, self._work.ahead_node, self._work.ahead_border)
-            found.append(self._work.ahead_border[unknown])
+            make_step(self._system, self.state.at(0.0), False, 1.0, self._work.ahead_node, self._work.ahead_border)
+            found.append(self.unknowns() - here)
+            self.place(here)
         return found
 
-    def _solve(self, setting: Setting, guess: FloatArray) -> FloatArray | None:
-        """Steady running at a setting from a guess; None, and all as it was, if it is not found."""
+    def _solve(self, setting: Setting, guess: FloatArray, part: float) -> FloatArray | None:
+        """Steady running at a part of a way, from a guess; None, and all as it was, if it is not found."""
         before = self.unknowns()
         self.place(guess)
-        if self._try(setting):
+        if self._try(setting, self.tolerance if part == 1.0 else _ON_THE_WAY):
             return self.unknowns()
         self.place(before)
         return None
@@ -297,7 +311,7 @@ class SteadySearch:
         """Go on to another setting; False if the way ends before."""
         begin = self.setting
         return (
-            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess), (0.0, self.unknowns()))
+            go_on(lambda part, guess: self._solve(_between(begin, target, part), guess, part), (0.0, self.unknowns()))
             is not None
         )
 
@@ -310,17 +324,18 @@ class SteadySearch:
         self._supported, self._support, self.setting = driver, reaction - own, Setting(support=1.0)
         self._follow(Setting())
 
-    def _try(self, setting: Setting, *, factorised: bool = False) -> bool:
+    def _try(self, setting: Setting, tolerance: float | None = None, *, factorised: bool = False) -> bool:
         """Look for steady running at a setting from the state that there is, which stays where that fails.
 
-        The first corrections are by the tangent that is factorised already, if it is.
+        The first corrections are by the tangent that is factorised already, if it is.  The tolerance is that of the
+        search by default.
         """
         state, system = self.state, self._at(setting)
         before = self.unknowns()
         drive_shafts(system, state.velocity)
-        tolerance = TOLERANCE * float(np.min(self.drive.radii))
-        anchor = anchor_at(system, state, False)
-        status, iterations = find_steady(system, state.at(0.0), anchor, tolerance, _MOST, factorised, self._work)
+        allowed = (self.tolerance if tolerance is None else tolerance) * float(np.min(self.drive.radii))
+        anchor = anchor_at(state, False)
+        status, iterations = find_steady(system, state.at(0.0), anchor, allowed, _MOST, factorised, self._work)
         self.iterations += iterations
         if status == FOUND:
             self.setting, self._moments = setting, self._work.equations.forces.moment.copy()

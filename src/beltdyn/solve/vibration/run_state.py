@@ -36,9 +36,6 @@ def require_mesh_that_stays(run: Run) -> None:
 def state_of(run: Run, time: float) -> tuple[System, State, float]:
     """A drive at an instant of a run, with speeds, torques and schedules as they are then.
 
-    The belt has the hysteresis of bending of steady running. That of the run, which is smoothed over a fifth of the
-    length, damps spans up to five times as much where their curvature passes slowly.
-
     Parameters
     ----------
     run

@@ -210,7 +210,7 @@ def _linearised(drive: Drive, held: System, state: State, speed: float) -> Small
     for kind in tensioners.dtype.names or ():
         for name in _DRY if "spring" in (tensioners.dtype[kind].names or ()) else ():
             tensioners[kind]["spring"][name] = 0.0
-    system = flowing_system(held._replace(tensioners=tensioners), anchor_at(held, state, True).direction)
+    system = flowing_system(held._replace(tensioners=tensioners), anchor_at(state, True).direction)
     flowing = with_passage(held, state, speed)
     vibrations = Vibrations(system)
     tangents = vibrations.tangents(0.0, flowing.position, flowing.velocity)

@@ -38,6 +38,19 @@ def test_earlier_solutions_serve_the_first_guess() -> None:
     assert guesses == pytest.approx([1.0])
 
 
+@pytest.mark.parametrize("known", [1, 3])
+def test_steps_grow_once_there_is_a_parabola(known: int) -> None:
+    tried = list[float]()
+
+    def solve(place: float, guess: FloatArray) -> FloatArray | None:
+        tried.append(place)
+        return guess
+
+    assert go_on(solve, *((0.1 * number, np.zeros(1)) for number in range(1 - known, 1)), step=0.125) is not None
+    ways = [1.0, 1.0, 2.0, 4.0] if known == 1 else [1.0, 2.0, 4.0, 1.0]
+    assert tried == pytest.approx(0.125 * np.cumsum(ways))
+
+
 def test_a_way_that_ends_before() -> None:
     """No solution beyond a half: steps are halved until they are short."""
     tried = list[float]()
