@@ -18,7 +18,7 @@ from beltdyn.kernel import kernel
 from beltdyn.results.schema import FILTER_REACH
 
 _WINDOW = (0.42, 0.5, 0.08)
-_FINEST = 0.25
+_FINEST = 0.5
 """Length of the pieces of the integral at most, in intervals."""
 _NEAR = 1e-4
 """Distance from an output, in intervals, below which sin(pi x) / (pi x) is 1 - (pi x)^2 / 6 up to rounding."""

@@ -252,10 +252,10 @@ class Recording:
     def _write(self, *, ending: bool = False) -> None:
         """Record what waits, as a whole even if a signal comes meanwhile; at the end all that can be filtered."""
         with uninterrupted():
+            self._ending |= ending
             if self._waiting:
                 self._record()
-            if ending and self._before is not None:
-                self._ending = True
+            if ending and self._before is not None and self._filtered < self._filterable():
                 self._recorder.append(self._outputs(*self._before, np.empty(0, dtype=np.int64)))
         self._last_write = time.perf_counter()
 
@@ -317,7 +317,7 @@ class Recording:
 
         They are filtered in the same groups whenever they come, so that a run that is gone on with is the same.
         """
-        end, first = self._instants.until(self._filter.known_until(last=self._ending)), self._filtered
+        end, first = self._filterable(), self._filtered
         if not self._ending:
             end = min(end - (end - first) % _GROUP, first + _BLOCK)
         starts = range(first, end, _GROUP)
@@ -328,6 +328,10 @@ class Recording:
         parts = zip(self._channels.items(), columns, strict=True)
         found = {f"filtered_{name}": part.reshape(-1, *shape) for (name, shape), part in parts}
         return {"filtered_time": self._instants[np.arange(first, self._filtered)], **found}
+
+    def _filterable(self) -> int:
+        """Number of the first output for spectra that needs states which have not come."""
+        return self._instants.until(self._filter.known_until(last=self._ending))
 
     def _bodies(self, position: FloatArray, velocity: FloatArray) -> Arrays:
         """Coordinates and speeds of bodies, from states of shape (k, n N + D)."""
