@@ -92,7 +92,10 @@ def test_case_2_against_a_run_over_time(factor: float, measured: Callable[..., N
 @pytest.mark.slow
 @pytest.mark.parametrize("hysteresis", [True, False])
 def test_accessory_drive_against_a_run_over_time(hysteresis: bool, measured: Callable[..., None]) -> None:
-    """Seven pulleys, a tensioner without dry friction, clutches and springs behind rims, at a constant speed."""
+    """Seven pulleys, a tensioner without dry friction, clutches and springs behind rims, at a constant speed.
+
+    Both meshes are refined to 0.3 %, so that they leave room for what is no error of a mesh.
+    """
     drive = example("accessory_drive")
     crank = drive.pulleys[0].replace(harmonics=())
     compressor = drive.pulleys[-1]
@@ -101,7 +104,7 @@ def test_accessory_drive_against_a_run_over_time(hysteresis: bool, measured: Cal
     drive = drive.replace(
         pulley=[crank, *drive.pulleys[1:-1], smooth],
         tensioner=[arm],
-        simulation=drive.simulation.replace(duration=4.0, rtol=1e-3),
+        simulation=drive.simulation.replace(duration=4.0, rtol=1e-3, force_tolerance=3e-3),
     )
     if not hysteresis:
         drive = drive.replace(belt=drive.belt.replace(bending_loss_factor=0.0))
