@@ -126,18 +126,23 @@ def test_bending_in_steady_running(
 
 @pytest.mark.parametrize(("speed", "pull"), [(0.3, 75.0), (3.0, 75.0), (3.0, 150.0), (30.0, 150.0)])
 def test_stretch_in_steady_running(speed: float, pull: float, measured: Callable[..., None]) -> None:
-    """Without waves the mesh has no part in it; within a quarter, by the reference at rest and slow arcs."""
+    """Within a quarter, by the reference at rest and slow arcs; without waves the mesh has no part in it.
+
+    But for the 33 elements that contact forces to 1 % need: means over elements, of which arcs have few, lose up to 6 %
+    less where little is lost.
+    """
     drive = make_drive(speed, pull=pull)
     found = []
-    for tolerance in (0.01, 0.002):
+    for tolerance in (0.01, 0.002, 5e-4):
         run = bd.steady_state(drive, force_tolerance=tolerance)
         tensions = run.dataset["span_tension"].values[-1]
         cycle = stretch_loss(drive.belt.axial_stiffness, STRETCH, float(tensions.max()), float(tensions.min()))
         lost = power_balance(run, 0.0).losses["belt stretch"] / float(run.dataset["belt_speed"].mean())
         found.append(lost / cycle)
-    measured(coarse=found[0], fine=found[1])
-    assert found[0] == pytest.approx(found[1], rel=0.02)
-    assert 0.8 < found[1] < 1.25
+    measured(coarse=found[0], fine=found[1], finest=found[2])
+    assert found[0] == pytest.approx(found[2], rel=0.06)
+    assert found[1] == pytest.approx(found[2], rel=0.02)
+    assert 0.8 < found[2] < 1.25
 
 
 def test_the_torque_that_bending_takes_goes_by_the_inverse_radius(
