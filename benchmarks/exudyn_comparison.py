@@ -8,6 +8,7 @@ References are kept in a folder (`--references`), since those of Exudyn take min
 """
 
 import argparse
+import os
 import statistics
 import time
 from collections.abc import Callable, Iterator
@@ -15,6 +16,8 @@ from dataclasses import dataclass, field
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Literal
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # idle threads of linear algebra count as processor time
 
 import numpy as np
 from rich.console import Console
