@@ -102,4 +102,5 @@ def test_at_points_the_whole_loss_is_left(drive: Drive) -> None:
     curvature = np.exp(s / layer)
     slope = curvature / layer
     loss = np.trapezoid(curvature * slope * slope / np.hypot(slope, curvature / length), s)
+    assert loss == pytest.approx(0.5 / np.hypot(1.0, layer / length), rel=1e-5)
     assert share * loss == pytest.approx(0.5, rel=0.02)
