@@ -2,6 +2,7 @@
 
 import os
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Final
 
@@ -67,6 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         Always.
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    warnings.formatwarning = _warning_line
     with ending_in_order():
         code = _exit_code(arguments)
     sys.exit(code)
@@ -92,6 +94,18 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
     except KeyboardInterrupt:
         show_error("interrupted")
         return exit_code()
+
+
+_with_source = warnings.formatwarning
+
+
+def _warning_line(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
+) -> str:
+    """A warning of ours without the line of the source that it comes from, which says nothing to a user."""
+    if category.__module__.startswith("beltdyn."):
+        return f"warning: {message}\n"
+    return _with_source(message, category, filename, lineno, line)
 
 
 def _usage(error: CycloptsError) -> str:

@@ -1,7 +1,7 @@
 """Compiled code: the decorator of kernels and the folder that keeps their machine code."""
 
 from beltdyn.kernel.by_type import by_type
-from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, kernel_cache, source_hash
+from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, KernelCacheWarning, holds_kernels, kernel_cache, source_hash
 from beltdyn.kernel.choice import choice
 from beltdyn.kernel.decorator import Kernel, interpreted, kernel
 from beltdyn.kernel.version import PLAIN_VARIABLE, compiles_quickly
@@ -11,9 +11,11 @@ __all__ = [
     "PACKAGE",
     "PLAIN_VARIABLE",
     "Kernel",
+    "KernelCacheWarning",
     "by_type",
     "choice",
     "compiles_quickly",
+    "holds_kernels",
     "interpreted",
     "kernel",
     "kernel_cache",

@@ -3,13 +3,18 @@
 Numba's own cache watches the file of the compiled function only.  A kernel that calls a law from another file would
 keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source
 file that takes part in compiled code, so that an edit anywhere in them starts an empty cache.
+
+What lies there is run as machine code.  So nobody else may write there, and `beltdyn.kernel.seal` puts a checksum
+around every file.
 """
 
 import atexit
 import hashlib
 import os
 import shutil
+import stat
 import tempfile
+import warnings
 from functools import cache
 from pathlib import Path
 
@@ -22,6 +27,15 @@ PACKAGE = Path(__file__).parents[1]
 CACHE_VARIABLE = "BELTDYN_CACHE_DIR"
 """Environment variable that moves the kernel cache (default: the user's cache folder)."""
 
+ENTRY, NUMBA_FILES = ".kernel", (".nbi", ".nbc")
+"""Endings of the files of kernels: ours, and those of Numba's decorator."""
+
+_WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+class KernelCacheWarning(UserWarning):
+    """Compiled kernels that cannot be kept, or cannot be used again."""
+
 
 @cache
 def kernel_cache() -> Path:
@@ -30,19 +44,54 @@ def kernel_cache() -> Path:
     Returns
     -------
     Path
-        Below ``$BELTDYN_CACHE_DIR`` or the user's cache folder; where neither can be written a temporary folder, which
-        is gone at the end.
+        Below ``$BELTDYN_CACHE_DIR`` or the user's cache folder.  Where neither can be written, or where other users
+        could put their machine code, a temporary folder, which is gone at the end; a `KernelCacheWarning` says so.
     """
-    chosen = os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("beltdyn")
-    folder = Path(chosen) / (source_hash(PACKAGE) + ("" if compiles_quickly() else "-plain"))
+    chosen = Path(os.environ.get(CACHE_VARIABLE) or platformdirs.user_cache_path("beltdyn"))
+    name = source_hash(PACKAGE) + ("" if compiles_quickly() else "-plain")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        temporary = tempfile.mkdtemp(prefix="beltdyn-")
-        atexit.register(shutil.rmtree, temporary, ignore_errors=True)
-        return Path(temporary)
+        fault = _prepare(chosen, name)
+    except OSError as error:
+        fault = f"it cannot be written ({error.strerror or error})"
+    if not fault:
+        return chosen / name
+    warnings.warn(
+        f"The kernel cache {chosen} is not used, and every start compiles the kernels again: {fault}. "
+        f"Correct this, or set {CACHE_VARIABLE} to a folder of your own.",
+        KernelCacheWarning,
+        stacklevel=3,
+    )
+    temporary = tempfile.mkdtemp(prefix="beltdyn-")
+    atexit.register(shutil.rmtree, temporary, ignore_errors=True)
+    os.environ[CACHE_VARIABLE] = temporary  # for the processes that this one starts
+    folder = Path(temporary, name)
+    folder.mkdir()
+    return folder
+
+
+def _prepare(chosen: Path, name: str) -> str:
+    """Make a folder within the chosen one, for this user alone; what speaks against it, if anything does."""
+    if not chosen.is_dir():
+        chosen.parent.mkdir(parents=True, exist_ok=True)
+        chosen.mkdir(mode=0o700, exist_ok=True)
+    folder = chosen / name
+    folder.mkdir(mode=0o700, exist_ok=True)
+    if hasattr(os, "getuid"):
+        trusted = (os.getuid(), 0)
+        for path in (chosen, folder, *(Path(entry) for entry in os.scandir(folder) if entry.is_dir())):
+            status = path.stat()
+            if status.st_uid not in (trusted if path == chosen else trusted[:1]):
+                return f"{path} belongs to another user"
+            shared = path == chosen and status.st_mode & stat.S_ISVTX  # as /tmp: only owners move what is theirs
+            if status.st_mode & _WRITABLE_BY_OTHERS and not shared:
+                return f"other users can write to {path}"
+    with tempfile.TemporaryFile(dir=folder):
+        return ""
+
+
+def holds_kernels(folder: Path) -> bool:
+    """Whether any kernel was compiled into a folder of kernels."""
+    return any(path.suffix in (ENTRY, *NUMBA_FILES) for path in folder.rglob("*"))
 
 
 def source_hash(package: Path) -> str:

@@ -10,7 +10,8 @@ import numba
 from numba.extending import overload
 
 from beltdyn.kernel.by_type import ByType
-from beltdyn.kernel.cache import kernel_cache
+from beltdyn.kernel.cache import holds_kernels, kernel_cache
+from beltdyn.kernel.seal import SealedFolder
 from beltdyn.kernel.setting import setting
 from beltdyn.kernel.version import compiles_quickly
 
@@ -42,14 +43,33 @@ def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
     if compiles_quickly():
         from beltdyn.kernel.quick import QuickDispatcher
 
-        return QuickDispatcher(function, {"nopython": True, **OPTIONS}, inline, str(kernel_cache()))
+        return QuickDispatcher(function, {"nopython": True, **OPTIONS}, inline, kernel_cache())
     _say_once()
+    sealed = _sealed_folder()
     while ByType.unregistered:
         _register(ByType.unregistered.pop())
     dispatcher = numba.njit(forceinline=inline, **OPTIONS)(function)
-    with setting("CACHE_DIR", str(kernel_cache())), suppress(RuntimeError):  # no file holds what was typed
+    with setting("CACHE_DIR", str(sealed.folder)), suppress(RuntimeError):  # no file holds what was typed
         dispatcher.enable_caching()
-    return dispatcher
+    return _Sealing(dispatcher, sealed)
+
+
+class _Sealing:
+    """Numba's dispatcher, with checksums for what it puts on disk."""
+
+    def __init__(self, dispatcher: Any, folder: SealedFolder) -> None:
+        self._dispatcher, self._sealed_folder = dispatcher, folder
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        known = len(self._dispatcher.signatures)
+        try:
+            return self._dispatcher(*args, **kwargs)
+        finally:
+            if len(self._dispatcher.signatures) > known:
+                self._sealed_folder.seal()
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._dispatcher, name)
 
 
 def _register(choice: ByType) -> None:
@@ -60,9 +80,14 @@ def _register(choice: ByType) -> None:
 
 
 @functools.cache
+def _sealed_folder() -> SealedFolder:
+    return SealedFolder(kernel_cache())
+
+
+@functools.cache
 def _say_once() -> None:
     """Say, where nothing is compiled yet, that the first start takes longer."""
-    if any(kernel_cache().rglob("*.nbi")):
+    if holds_kernels(kernel_cache()):
         return
     warnings.warn(
         f"Numba {numba.__version__} compiles the kernels of beltdyn in the plain way: the first start takes some "

@@ -7,25 +7,34 @@ with all that it calls, and kept on disk.
 
 import gc
 import hashlib
+import pickle
+import re
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
 import numba
 from filelock import FileLock
 from llvmlite.binding import parse_assembly
-from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.caching import NullCache
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.registry import CPUDispatcher
+from numba.core.serialize import dumps
 from numba.core.types.misc import unliteral
 
+from beltdyn.kernel.cache import ENTRY
+from beltdyn.kernel.seal import read_sealed, warn_of_damage, write_sealed
 from beltdyn.kernel.setting import setting
 
 _NO_EXTRAS = {"no_cfunc_wrapper": True, "no_rewrites": True, "_nrt": False}
 """Left away: functions for C, rewriting passes, Numba's memory management; kernels need none of them."""
+
+_PATIENCE = 600.0
+"""Seconds after which a kernel is compiled although another process is said to compile it: none takes so long."""
 
 _OPTIMISATION = type(numba.config.OPT)(1)
 """LLVM's level: a higher one takes a fifth longer to compile, and the code is no faster."""
@@ -46,11 +55,11 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
         Where its machine code is kept.
     """
 
-    def __init__(self, function: Any, options: dict[str, Any], inline: bool, folder: str) -> None:
+    def __init__(self, function: Any, options: dict[str, Any], inline: bool, folder: Path) -> None:
         self._options = options | _NO_EXTRAS
         super().__init__(function, targetoptions=self._options)
         self._inline = inline
-        self._folder: str | None = folder
+        self._folder = folder
 
     @cached_property
     def _code(self) -> CPUDispatcher:
@@ -71,33 +80,44 @@ class QuickDispatcher(CPUDispatcher):  # type: ignore[misc]
 
         Where another process compiles the same, it is waited for.
         """
-        if self._folder:
-            with setting("CACHE_DIR", self._folder), suppress(RuntimeError):  # no file holds what was typed
-                self._cache = _Cache(self.py_func)
-            self._folder = None
+        entry = self._entry(sig)
         collecting = gc.isenabled()
         gc.disable()
         try:
-            with setting("OPT", _OPTIMISATION), _alone(self._cache, f"{self.py_func.__qualname__} {sig}"):
+            with setting("OPT", _OPTIMISATION), _alone(entry):
                 return super().compile(sig)
         finally:
             if collecting:
                 gc.enable()
 
+    @cached_property
+    def _files(self) -> "_Cache | None":
+        """Where its machine code is kept; nowhere without a file that its source comes from."""
+        with suppress(OSError):
+            return _Cache(self.py_func, self._folder)
+        return None
+
+    def _entry(self, sig: Any) -> Path | None:
+        if self._files is None:
+            return None
+        self._cache = self._files
+        return self._files.entry(sig, self.targetctx)
+
 
 @contextmanager
-def _alone(cache: Any, task: str) -> Iterator[None]:
-    """Keep other processes from a task in a folder of kernels, where there is one and its file system has locks."""
-    if cache.cache_path is None:
+def _alone(entry: Path | None) -> Iterator[None]:
+    """Keep other processes from what is done for an entry of the cache, where its file system has locks."""
+    if entry is None:
         yield
         return
-    lock = FileLock(Path(cache.cache_path) / f"{hashlib.sha256(task.encode()).hexdigest()[:16]}.lock")
-    with suppress(NotImplementedError, OSError):
+    lock = FileLock(entry.with_suffix(".lock"), timeout=_PATIENCE)
+    with suppress(NotImplementedError, OSError):  # of which a lock that was waited for in vain is one
         lock.acquire()
     try:
         yield
     finally:
-        lock.release()
+        with suppress(OSError):
+            lock.release()
 
 
 def choice_type(kernel_for: Callable[..., Any]) -> Any:
@@ -136,33 +156,65 @@ class _ChoiceType(numba.types.Dispatcher):  # type: ignore[misc]
         super().__init__(choice)
 
 
-class _Stored(CompileResultCacheImpl):  # type: ignore[misc]
-    """What is kept of a compiled function: machine code and its name, without the code that others would take in."""
+class _Cache(NullCache):  # type: ignore[misc]
+    """Machine code on disk, a sealed file for a kernel and some types of arguments.
 
-    def reduce(self, cres: Any) -> Any:
-        """What is written."""
-        (name, kind, (machine_code, _)), *rest = super().reduce(cres)
-        entry = f'define void @"{cres.fndesc.llvm_cpython_wrapper_name}"() {{ ret void }}'
-        return (name, kind, (machine_code, parse_assembly(entry).as_bitcode())), *rest
-
-
-class _Cache(FunctionCache):  # type: ignore[misc]
-    """Numba's cache, which loads machine code without filling the tables that only compilation needs.
-
-    Its list of what it holds is read, lengthened and written by one process at a time.
+    It loads without filling the tables that only compilation needs.
     """
 
-    _impl_class = _Stored
+    def __init__(self, function: Any, folder: Path) -> None:
+        file = function.__code__.co_filename
+        self._folder = folder
+        self._name = f"{Path(file).stem}.{re.sub('[^A-Za-z0-9_.]', '', function.__qualname__)[-80:]}"
+        self._source = (numba.__version__, sys.version_info[:3], file, *_fingerprint(function))
+
+    @property
+    def cache_path(self) -> str:
+        """Folder of the entries."""
+        return str(self._folder)
+
+    def entry(self, sig: Any, target_context: Any) -> Path:
+        """File of the code for some types of arguments."""
+        digest = hashlib.sha256(repr(self._key(sig, target_context)).encode()).hexdigest()
+        return self._folder / f"{self._name}-{digest[:16]}{ENTRY}"
+
+    def _key(self, sig: Any, target_context: Any) -> tuple[Any, ...]:
+        return sig, target_context.codegen().magic_tuple(), self._source
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Load the machine code for some types of arguments; None where there is none."""
-        with self._guard_against_spurious_io_errors():
-            return self._load_overload(sig, target_context)
+        path = self.entry(sig, target_context)
+        content = read_sealed(path)
+        if content is None:
+            return None
+        try:
+            key, stored = pickle.loads(content)
+            return CompileResult._rebuild(target_context, *stored) if key == self._key(sig, target_context) else None
+        except Exception:  # whatever an entry of other libraries lets the unpickler or LLVM raise
+            warn_of_damage(path.parent)
+            return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep the machine code for some types of arguments."""
-        with _alone(self, self._impl.filename_base):
-            super().save_overload(sig, data)
+        """Keep the machine code for some types of arguments, without the code that others would take in."""
+        if data.lifted or data.library.has_dynamic_globals:
+            return
+        (name, kind, (machine_code, _)), *rest = data._reduce()
+        entry = f'define void @"{data.fndesc.llvm_cpython_wrapper_name}"() {{ ret void }}'
+        stored = (name, kind, (machine_code, parse_assembly(entry).as_bitcode())), *rest
+        write_sealed(self.entry(sig, data.target_context), dumps((self._key(sig, data.target_context), stored)))
+
+
+def _fingerprint(function: Any) -> tuple[Any, ...]:
+    """What tells the code of a function from that of others, and from that of its file before an edit."""
+    code, closure = function.__code__, function.__closure__
+    cells = dumps(tuple(cell.cell_contents for cell in closure)) if closure else b""
+    parts = _content(code.co_filename), code.co_code, cells
+    return code.co_firstlineno, code.co_names, *(hashlib.sha256(part).hexdigest() for part in parts)
+
+
+@cache
+def _content(file: str) -> bytes:
+    return Path(file).read_bytes()
 
 
 class _CodeCompiler(Compiler):  # type: ignore[misc]

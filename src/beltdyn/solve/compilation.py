@@ -14,7 +14,7 @@ from tempfile import TemporaryFile
 
 import numpy as np
 
-from beltdyn.kernel import CACHE_VARIABLE, kernel_cache
+from beltdyn.kernel import CACHE_VARIABLE, holds_kernels, kernel_cache
 from beltdyn.results.friction_work import ARC_PARTS, Touch, WorkSoFar, add_friction_work
 from beltdyn.results.mid_span import fill_mid_spans
 from beltdyn.solve.integrators.engine import accelerate
@@ -71,7 +71,7 @@ def _second_process(system: System, state: State) -> Iterator[None]:
     Kernels depend on the classes of elements, laws and surfaces, so that the other process needs the system.
     """
     folder = kernel_cache()
-    if any(folder.rglob("*.nbi")) or usable_cores() < 2 or not sys.executable:
+    if holds_kernels(folder) or usable_cores() < 2 or not sys.executable:
         yield
         return
     with TemporaryFile() as arguments:

@@ -65,7 +65,7 @@ def test_the_type_chooses(tmp_path: Path, plain: bool) -> None:
     """Compiled first, then from the disk."""
     for _ in range(2):
         assert output(_CALLS, tmp_path, plain) == ["30.0 12.0 48.0"]
-    assert list(tmp_path.rglob("*tiled*.nbi"))
+    assert list(tmp_path.rglob("*tiled*.nbi" if plain else "*tiled*.kernel"))
 
 
 @pytest.mark.parametrize("plain", [False, True], ids=["quick", "plain"])

@@ -1,6 +1,7 @@
 """The folder of compiled kernels is that of the sources, and is never stale."""
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -8,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from beltdyn.kernel import CACHE_VARIABLE, PACKAGE, kernel, kernel_cache, source_hash
+from beltdyn.kernel import CACHE_VARIABLE, PACKAGE, KernelCacheWarning, holds_kernels, kernel, kernel_cache, source_hash
 
 
 @pytest.fixture(autouse=True)
@@ -59,8 +60,12 @@ def test_an_unwritable_cache_gives_way_to_a_temporary_one(tmp_path: Path, monkey
     in_the_way = tmp_path / "file"
     in_the_way.touch()
     monkeypatch.setenv(CACHE_VARIABLE, str(in_the_way))
-    assert in_the_way not in kernel_cache().parents
-    assert kernel_cache().is_dir()
+    with pytest.warns(KernelCacheWarning, match=f"{re.escape(str(in_the_way))} is not used.*cannot be written"):
+        folder = kernel_cache()
+    assert in_the_way not in folder.parents
+    assert folder.is_dir()
+    kernel_cache.cache_clear()
+    assert kernel_cache() == folder  # as in the processes that this one starts
 
 
 def test_a_temporary_cache_is_gone_at_the_end(tmp_path: Path) -> None:
@@ -69,8 +74,44 @@ def test_a_temporary_cache_is_gone_at_the_end(tmp_path: Path) -> None:
     words = [sys.executable, "-c", "from beltdyn.kernel import kernel_cache; print(kernel_cache())"]
     environment = os.environ | {CACHE_VARIABLE: str(in_the_way), "TMPDIR": str(tmp_path)}
     folder = subprocess.run(words, env=environment, capture_output=True, text=True, check=True).stdout.strip()
-    assert Path(folder).parent == tmp_path
+    assert Path(folder).parents[1] == tmp_path
     assert list(tmp_path.iterdir()) == [in_the_way]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="rights of files")
+@pytest.mark.parametrize("name", [".", source_hash(PACKAGE), f"{source_hash(PACKAGE)}/law_0"])
+def test_a_folder_that_others_can_write_to_is_not_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """Whoever writes there has code run by this user."""
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    folder = tmp_path / name
+    folder.mkdir(parents=True, exist_ok=True)
+    folder.chmod(0o777)
+    with pytest.warns(KernelCacheWarning, match=f"other users can write to {re.escape(str(folder))}"):
+        assert tmp_path not in kernel_cache().parents
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners of files")
+def test_a_folder_of_another_user_is_not_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid + 1)
+    with pytest.warns(KernelCacheWarning, match="belongs to another user"):
+        assert tmp_path not in kernel_cache().parents
+
+
+@pytest.mark.skipif(os.name == "nt", reason="rights of files")
+def test_a_new_folder_is_for_this_user_alone_even_among_those_of_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tmp_path.chmod(0o1777)  # as that of temporary files
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    before = os.umask(0)
+    try:
+        assert kernel_cache().parent == tmp_path
+    finally:
+        os.umask(before)
+    assert kernel_cache().stat().st_mode & 0o777 == 0o700
 
 
 def test_machine_code_lands_in_the_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,4 +122,5 @@ def test_machine_code_lands_in_the_cache(tmp_path: Path, monkeypatch: pytest.Mon
         return 2.0 * x
 
     assert double(21.0) == 42.0
-    assert list((tmp_path / source_hash(PACKAGE)).rglob("*double*.nbi"))
+    assert list((tmp_path / source_hash(PACKAGE)).rglob("*double*.kernel"))
+    assert holds_kernels(tmp_path)

@@ -32,7 +32,7 @@ def test_only_kernels_that_python_calls_become_machine_code(tmp_path: Path) -> N
         return inner(x, 1) + inner(x, 2)
 
     assert outer(6.0) == 12.0
-    assert [path.name.split("-")[0].split(".")[-1] for path in tmp_path.rglob("*.nbi")] == ["outer"]
+    assert [path.name.split("-")[0].split(".")[-1] for path in tmp_path.rglob("*.kernel")] == ["outer"]
     assert inner(6.0, 2) == 9.0
 
 
