@@ -1,7 +1,10 @@
 """What units of both standards have in common: variables, their description, states, steps and messages."""
 
 import pickle
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from ctypes import c_uint64
+from functools import partialmethod
+from math import nan
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree.ElementTree import Element
@@ -38,10 +41,12 @@ class DriveSlave:
 
     Errors are messages to the host, and make a step fail: an exception that went through would count as fatal, and the
     packages that make units free twice then what they hold, so that a host crashes. After an error at the beginning
-    outputs are nan, and the first step fails.
+    outputs are nan, and the first step fails. What a host must not set changes nothing, and its next step fails; what
+    is not there is nan, zero, false or empty.
     """
 
     standard: Standard
+    vars: Mapping[int, Any]
     register_variable: Callable[..., None]
     log: Callable[..., None]
     resources: str
@@ -51,6 +56,7 @@ class DriveSlave:
         self.component = Component.read(Path(self.resources))
         self.modelName = self.component.interface.identifier
         self.version = __version__
+        self._refused = ""
         self._register()
 
     def _register(self) -> None:
@@ -114,7 +120,63 @@ class DriveSlave:
         size : float
             Its length, s.
         """
+        if self._refused:
+            reason, self._refused = self._refused, ""
+            self._tell(f"a step was not made, as something could not be set before it: {reason}", _ERROR)
+            return False
         return self._attempt(self.component.step, time, size)
+
+    def _get(self, references: Sequence[int]) -> list[float]:
+        """Values of variables; nan, and a message, of those that are not there."""
+        values: list[float] = []
+        for reference in references:
+            if reference in self.vars and self._attempt(lambda one: values.append(one.getter()), self.vars[reference]):
+                continue
+            if reference not in self.vars:
+                self._tell(self._unknown(reference), _ERROR)
+            values.append(nan)
+        return values
+
+    def _set(self, references: Sequence[int], values: Sequence[float]) -> None:
+        """Set variables, all or none."""
+        for reference in references:
+            one = self.vars.get(reference)
+            if one is None or one.setter is None:
+                kind = f"{one.name} is an output" if one else self._unknown(reference)
+                self._refuse(f"{kind}. Set inputs alone: see modelDescription.xml.")
+                return
+        for reference, value in zip(references, values, strict=True):
+            self.vars[reference].setter(value)
+
+    def _refuse(self, reason: str) -> None:
+        """Tell that something cannot be set, now and at the next step: the packages have no status for the former."""
+        self._refused = reason
+        self._tell(reason, _ERROR)
+
+    def _get_nothing(self, nothing: Any, references: Sequence[int]) -> list[Any]:
+        """Values of another type than real numbers, which no variable has."""
+        for reference in references:
+            self._tell(self._wrong_type(reference), _ERROR)
+        return [nothing for _ in references]
+
+    def _set_nothing(self, references: Sequence[int], _values: Sequence[Any]) -> None:
+        for reference in references:
+            self._refuse(self._wrong_type(reference))
+
+    def _wrong_type(self, reference: int) -> str:
+        one = self.vars.get(reference)
+        return f"{one.name} is a real number, and not of another type." if one else self._unknown(reference)
+
+    @staticmethod
+    def _unknown(reference: int) -> str:
+        return f"no variable has the value reference {reference % 2**32}"
+
+    get_real = get_float64 = _get
+    set_real = set_float64 = _set
+    get_integer = get_int32 = get_int64 = partialmethod(_get_nothing, 0)
+    get_uint64 = partialmethod(_get_nothing, c_uint64(0))
+    get_boolean, get_string = partialmethod(_get_nothing, False), partialmethod(_get_nothing, "")
+    set_integer = set_int32 = set_int64 = set_uint64 = set_boolean = set_string = _set_nothing
 
     def _attempt(self, action: Callable[..., None], *arguments: Any) -> bool:
         """Do something, and tell whether it has succeeded; if not, the host is told why."""

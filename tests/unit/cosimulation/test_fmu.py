@@ -6,6 +6,7 @@ A host that is Python itself needs no more than that; the packages bring binarie
 import sys
 import zipfile
 from collections.abc import Callable, Sequence
+from math import isnan
 from pathlib import Path
 from shutil import move
 from typing import Any
@@ -197,6 +198,51 @@ def test_a_step_that_fails_is_told_and_changes_nothing(fmi: str, light: Drive, h
     with pytest.raises(FMICallException, match="DoStep failed"):
         one.step(7)
     assert "a step is to begin at t = 0.007 s, and the drive is at t = 0.002 s" in one.logged[-1]
+
+
+def test_what_a_host_must_not_set_changes_nothing_and_its_next_step_fails(unit: Path, host: Hosts) -> None:
+    """An exception would be fatal, and end the process: outputs, unknown references and other types than numbers."""
+    one, other = host(unit).begin(), host(unit).begin()
+    real, text = ("Float64", "Int64") if one.newer else ("Real", "Integer")
+    attempts: list[tuple[str, list[int], list[Any], str]] = [
+        (f"set{real}", [one.references["pulley_speed[driver]"]], [1.0], "pulley_speed[driver] is an output"),
+        (
+            f"set{real}",
+            [one.references[TORQUE], 2**32 - 1],
+            [9.0, 1.0],
+            "no variable has the value reference 4294967295",
+        ),
+        (f"set{text}", [one.references[TORQUE]], [1], f"{TORQUE} is a real number"),
+        ("setString", [one.references[TORQUE]], ["1"], f"{TORQUE} is a real number"),
+        ("setBoolean", [12345], [True], "no variable has the value reference 12345"),
+    ]
+    for number, (function, references, values, message) in enumerate(attempts):
+        getattr(one.unit, function)(references, values)
+        assert one.logged[-1].startswith(message)
+        with pytest.raises(FMICallException, match=r"DoStep failed with status [23]"):
+            one.step(number)
+        assert message in one.logged[-1]
+        one.step(number)
+        other.step(number)
+    assert one.outputs() == other.outputs()
+
+
+def test_what_is_not_there_is_read_as_nothing_with_a_message(unit: Path, host: Hosts) -> None:
+    one = host(unit).begin()
+    real, text = ("Float64", "Int64") if one.newer else ("Real", "Integer")
+    speed = one.references["pulley_speed[driver]"]
+    known, unknown = getattr(one.unit, f"get{real}")([speed, 12345])
+    assert known == one.get("pulley_speed[driver]")
+    assert isnan(unknown)
+    assert one.logged[-1] == "no variable has the value reference 12345"
+    assert list(getattr(one.unit, f"get{text}")([speed])) == [0]
+    assert one.logged[-1].startswith("pulley_speed[driver] is a real number")
+    assert [bool(value) for value in one.unit.getBoolean([speed])] == [False]
+    assert list(one.unit.getString([speed])) in ([b""], [""])  # FMPy gives bytes in FMI 2.0
+    if one.newer:
+        assert list(one.unit.getUInt64([speed])) == [0]
+        assert list(one.unit.getInt32([speed])) == [0]
+    one.step(0)
 
 
 def test_a_beginning_that_fails_is_told(unit: Path, host: Hosts) -> None:
