@@ -18,11 +18,11 @@ $(STAMP): requirements.lock pyproject.toml
 	$(BIN)/pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 
-demo: install ## run the two-pulley drive, with its summary and figures
+demo: install ## start a fan through V-belts, with a summary and figures
 	$(BIN)/beltdyn demo
 
 paper: install ## the paper's statements beside our results, in beltdyn-paper/paper.html
-	$(BIN)/beltdyn paper
+	$(BIN)/python -m validation.paper
 
 test: install ## linters, types, layers, unit and verification tests
 	$(BIN)/ruff check .

@@ -26,8 +26,8 @@ from rich.table import Table
 from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.published import better, loaded_two_pulley, two_pulley
 from beltdyn.solve import Progress
+from validation.published import better, loaded_two_pulley, two_pulley
 
 Solution = tuple[FloatArray, float]
 """Driven speed at the output instants, rad/s, and seconds of the processor."""
@@ -93,8 +93,8 @@ def ours(case: Case, frame: Frame, elements: int, rtol: float) -> Solution:
 
 def theirs(case: Case, elements: int, step: float, segments: int) -> Solution:
     """Simulate with Exudyn; nan where it gives up."""
-    from peers.exudyn_drive import Settings
-    from peers.exudyn_drive import simulate as simulate_in_exudyn
+    from validation.peers.exudyn_drive import Settings
+    from validation.peers.exudyn_drive import simulate as simulate_in_exudyn
 
     drive = case.drive(elements, 1e-3)
     try:

@@ -18,8 +18,8 @@ from rich.table import Table
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.published import better, two_pulley
 from beltdyn.solve.progress import Progress
+from validation.published import better, two_pulley
 
 ELEMENTS = (20, 50, 100, 200, 500, 1000)
 PULLEYS = (2, 4, 6, 10, 15, 20)

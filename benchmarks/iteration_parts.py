@@ -16,7 +16,6 @@ from beltdyn.contact.contact_force import ContactFactors, contact_force
 from beltdyn.contact.contact_zone import out_of_reach
 from beltdyn.elements.dispatch import elastic_force
 from beltdyn.kernel import kernel
-from beltdyn.published import better, two_pulley
 from beltdyn.solve.rest.installation import bring_to_rest
 from beltdyn.system.arrays import NO_TANGENT, Equations, Motion, System, TangentFactors
 from beltdyn.system.assembly import assemble
@@ -26,6 +25,7 @@ from beltdyn.system.motion import new_equations, no_multipliers
 from beltdyn.system.observe import observe
 from beltdyn.system.pulley_state import pulley_state
 from beltdyn.system.ring_matrix import factorise_ring, substitute
+from validation.published import better, two_pulley
 
 ROUNDS, REPEATS = 15, 300
 FACTORS = ContactFactors(1.0, 2e3, 2e3, 0.0, 0.0, False)

@@ -17,8 +17,8 @@ from rich.table import Table
 
 from beltdyn import load, simulate
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Run
+from validation.published.cases import better, loaded_two_pulley
 
 MINUTE, CYCLE = 60.0, 600.0
 _SWINGS_OF_SPEED, _SWINGS_OF_LOAD = 3, 2

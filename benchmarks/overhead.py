@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from beltdyn.published import better, two_pulley
+from validation.published import better, two_pulley
 
 ROUNDS = 10
 COMMAND = "from beltdyn.cli import main; main()"

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.published import two_pulley
+from validation.published import two_pulley
 
 ROUNDS = 5
 

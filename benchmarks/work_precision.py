@@ -27,8 +27,8 @@ from beltdyn import simulate
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.plot.style import color, new_figure, styled
-from beltdyn.published.cases import better, loaded_two_pulley, two_pulley
 from beltdyn.results import Run
+from validation.published.cases import better, loaded_two_pulley, two_pulley
 
 Frame = Literal["travelling", "staying"]
 MEASURES = ("driven speed", "span tensions", "contact forces")

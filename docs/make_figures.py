@@ -1,12 +1,16 @@
-"""Draw docs/_static/two_pulley.png, the picture of README and documentation: the paper's drive under load."""
+"""Draw the pictures of README (the drive of `beltdyn demo`) and of the theory pages (the paper's drive under load)."""
 
+from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
+
+from matplotlib.axes import Axes
 
 import beltdyn as bd
 from beltdyn.plot.style import new_figure, styled
-from beltdyn.published import demo_text
+from validation.published import demo_text
 
-PICTURE = Path(__file__).parent / "_static" / "two_pulley.png"
+PICTURES = Path(__file__).parent / "_static"
 
 
 def loaded_drive() -> bd.Drive:
@@ -22,25 +26,29 @@ def loaded_drive() -> bd.Drive:
 
 
 @styled
-def draw(run: bd.Run, path: Path) -> None:
-    """Draw the drive, its speeds and its normal contact force side by side.
+def draw(run: bd.Run, panels: Mapping[str, Callable[..., Axes]], path: Path) -> None:
+    """Draw the drive above two panels side by side.
 
     Parameters
     ----------
     run
         The run.
+    panels
+        Name -> figure of the two panels.
     path
         The PNG to write.
     """
     figure = new_figure((8.0, 6.8))
-    panels = figure.subplot_mosaic([["drive", "drive"], ["speeds", "contact"]], height_ratios=(3, 2))
-    bd.plot.configuration(run, ax=panels["drive"])
-    bd.plot.speeds(run, ax=panels["speeds"])
-    bd.plot.contact_forces(run, "driver", ax=panels["contact"])
-    panels["contact"].set_xlabel("Belt from entry to exit [m]")
+    axes = figure.subplot_mosaic([["drive", "drive"], [*panels]], height_ratios=(3, 2))
+    bd.plot.configuration(run, ax=axes["drive"])
+    for name, plot in panels.items():
+        plot(run, ax=axes[name])
     figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":
-    PICTURE.parent.mkdir(exist_ok=True)
-    draw(bd.simulate(loaded_drive()), PICTURE)
+    PICTURES.mkdir(exist_ok=True)
+    fan = bd.simulate(bd.example("fan_direct_start"))
+    draw(fan, {"speeds": bd.plot.speeds, "tensions": bd.plot.span_tensions}, PICTURES / "readme.png")
+    contact = partial(bd.plot.contact_forces, pulley="driver")
+    draw(bd.simulate(loaded_drive()), {"speeds": bd.plot.speeds, "contact": contact}, PICTURES / "two_pulley.png")

@@ -1,4 +1,4 @@
-from . import errors, model, plot, published, results, theory
+from . import errors, model, plot, results, theory
 from .cosimulation import fmu
 from .errors import (
     BeltdynError,
@@ -54,6 +54,7 @@ from .model import (
     advise,
     dumps,
     elements_needed,
+    example,
     install,
     json_schema,
     layer_lengths,
@@ -209,6 +210,7 @@ __all__ = [
     "elements_needed",
     "equilibrium",
     "errors",
+    "example",
     "export",
     "find_equilibrium",
     "fmu",
@@ -227,7 +229,6 @@ __all__ = [
     "optimize",
     "plot",
     "power_balance",
-    "published",
     "read_catalogue",
     "response",
     "results",

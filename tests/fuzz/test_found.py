@@ -10,8 +10,8 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import advise, install, load, loads, tensioner_balances
-from beltdyn.published import demo_text
 from beltdyn.results import open_run
+from validation.published import demo_text
 
 LENGTH, WIDTH = "length = 1.2727", "width = 0.01"
 TORQUE = 'torque = { kind = "cosine_ramp", start = 0.05, end = 0.6, value = 0.0 }'

@@ -1,6 +1,6 @@
 """The examples in docstrings do what they say.
 
-They may use `bd`, the package, and `drive` and `run`: the drive of `beltdyn demo` over 10 ms.
+They may use `bd`, the package, and `drive` and `run`: the example `two_pulley` over 10 ms.
 """
 
 import doctest
@@ -25,14 +25,14 @@ EXAMPLES = [
 
 @pytest.fixture(scope="module")
 def run() -> bd.Run:
-    drive = bd.loads(bd.published.demo_text())
+    drive = bd.example("two_pulley")
     return bd.simulate(drive.replace(simulation=drive.simulation.replace(duration=0.01)))
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name.removeprefix("beltdyn."))
 def test_example(example: doctest.DocTest, run: bd.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    example.globs = {"bd": bd, "drive": bd.loads(bd.published.demo_text()), "run": run}
+    example.globs = {"bd": bd, "drive": bd.example("two_pulley"), "run": run}
     failed, tried = doctest.DocTestRunner(verbose=False).run(example)
     plt.close("all")
     assert tried > 0

@@ -91,9 +91,6 @@ ELSEWHERE = {
     "results/rest_sheet.py": "unit/cli/test_commands.py",
     "results/run_sheet.py": "unit/cli/test_screen.py",
     "results/means.py": "unit/results/test_summary.py",
-    # Statements and runs of the paper, which take minutes.
-    "published/released_belt.py": "verification/test_released_belt.py",
-    "paper/statements/*.py": "validation/test_paper.py",
 }
 """Where modules are tested that have no test of their name."""
 

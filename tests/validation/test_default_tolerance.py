@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from beltdyn import Drive, Run, load, loads, simulate
-from beltdyn.published import cases
 from beltdyn.results.closure import largest_closure
+from validation.published import cases
 
 ALLOWED = 0.01
 """Error of a headline number, of its limit in the tolerance."""

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from beltdyn import Drive, Run, load, loads, simulate
-from beltdyn.published import cases
 from beltdyn.results import summarize
+from validation.published import cases
 
 pytestmark = pytest.mark.slow
 

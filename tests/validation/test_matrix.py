@@ -18,13 +18,13 @@ import pytest
 
 from beltdyn import Drive, Pulley
 from beltdyn.model import CosineRamp, CosineRampPublished, Ramp
-from beltdyn.published import CASES as PUBLISHED
-from beltdyn.published import better, loaded_two_pulley, two_pulley
 from beltdyn.results.checks.energy import CLOSURE_LIMIT
 from beltdyn.results.checks.flutter import GROWTH_LIMIT
 from beltdyn.results.closure import largest_closure
 from beltdyn.results.recorded import attribute
 from beltdyn.solve import simulate_all
+from validation.published import CASES as PUBLISHED
+from validation.published import better, loaded_two_pulley, two_pulley
 
 RTOLS = (1e-2, 1e-3, 1e-4)
 DEFAULT_RTOL = 1e-3

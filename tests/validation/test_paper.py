@@ -1,4 +1,4 @@
-"""The paper: every statement on the page of `beltdyn paper` keeps the verdict that the project claims.
+"""The paper: every statement on the page of `make paper` keeps the verdict that the project claims.
 
 The paper shows curves and no table.  Numbers beside its statements come from an independent implementation of the same
 equations: ripple at 8.5 Hz, root mean square error of the driven speed against a mesh of 240 elements 0.09 rad/s with
@@ -7,8 +7,8 @@ equations: ripple at 8.5 Hz, root mean square error of the driven speed against 
 
 import pytest
 
-from beltdyn.paper import Outcome, build_paper
-from beltdyn.paper.statement import Finding, Statement, Verdict
+from validation.paper import Outcome, build_paper
+from validation.paper.statement import Finding, Statement, Verdict
 
 HOLDS, FAILS, OPEN = Verdict.HOLDS, Verdict.FAILS, Verdict.OPEN
 

@@ -15,7 +15,7 @@ import pytest
 
 from beltdyn import Run, simulate
 from beltdyn.arrays import BoolArray, FloatArray
-from beltdyn.published import better, loaded_two_pulley
+from validation.published import better, loaded_two_pulley
 
 LOAD = 45.0
 ALLOWED = 3e-3

@@ -13,12 +13,12 @@ import pytest
 from scipy.optimize import brentq
 
 from beltdyn.model import Belt, Drive
-from beltdyn.published import two_pulley
-from beltdyn.published.cases import better
 from beltdyn.solve.rest.static import find_equilibrium, standing
 from beltdyn.system.build import belt_system, drive_system
 from beltdyn.system.observe import observe
 from beltdyn.system.state import laid, straight
+from validation.published import two_pulley
+from validation.published.cases import better
 
 TURN = 0.5 * pi
 """Angle through which the moment would turn the end of a belt that does not stretch, rad."""

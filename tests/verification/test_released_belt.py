@@ -13,9 +13,9 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Belt
-from beltdyn.published.released_belt import closed, on_pulleys, release, released_belt
 from beltdyn.system.arrays import System
 from beltdyn.system.state import State
+from validation.published.released_belt import closed, on_pulleys, release, released_belt
 
 Method = Literal["globalised", "newton"]
 Start = Callable[[System], State]

@@ -25,6 +25,7 @@ from types import CodeType
 
 import pytest
 from hypothesis import Phase, settings
+
 from tools.mutation.mutants import Mutant, mutants_of
 from tools.mutation.traces import Trace, read_traces, traces
 from tools.mutation.trial import ROOT, SOURCE, attempt, attempt_at_import, compiled, fork, functions_of, in_session

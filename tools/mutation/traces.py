@@ -17,6 +17,7 @@ from typing import Any
 
 import coverage
 import pytest
+
 from tools.mutation.trial import ROOT, SETUP, SOURCE, fork, silence
 
 

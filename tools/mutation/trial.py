@@ -15,6 +15,7 @@ from types import CodeType, FunctionType
 
 import coverage
 import pytest
+
 from tools.mutation.mutants import Mutant, mutants_of
 
 ROOT = Path(__file__).parents[2]

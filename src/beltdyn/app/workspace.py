@@ -1,6 +1,5 @@
 """What all tabs share: the folder, the drive file that a new tab opens, and the examples."""
 
-from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -8,6 +7,7 @@ from typing import NamedTuple
 from beltdyn.app.calculator import Calculator
 from beltdyn.app.folder import Folder
 from beltdyn.app.jobs import Job
+from beltdyn.model.examples import example_texts
 
 EMPTY = """\
 # A belt drive for beltdyn. Numbers are in SI units (m, kg, s, N, rad); "25 mm" or "720 rpm" work too.
@@ -81,9 +81,7 @@ class Workspace:
 def examples() -> list[Example]:
     """The drives of the gallery; what each is stands in the first lines of its file."""
     found = []
-    for file in sorted(files("beltdyn").joinpath("examples").iterdir(), key=lambda one: one.name):
-        if file.name.endswith(".toml"):
-            text = file.read_text(encoding="utf-8")
-            about = " ".join(line.lstrip("# ") for line in text.partition("\n\n")[0].splitlines() if line[:1] == "#")
-            found.append(Example(file.name.removesuffix(".toml"), about.partition(" # ")[0], text))
+    for name, text in example_texts().items():
+        about = " ".join(line.lstrip("# ") for line in text.partition("\n\n")[0].splitlines() if line[:1] == "#")
+        found.append(Example(name, about.partition(" # ")[0], text))
     return found

@@ -19,7 +19,6 @@ from beltdyn.cli.export import export
 from beltdyn.cli.fmu import fmu
 from beltdyn.cli.new import new
 from beltdyn.cli.page import app as page
-from beltdyn.cli.paper import paper
 from beltdyn.cli.plot import plot
 from beltdyn.cli.report import report
 from beltdyn.cli.schema import schema
@@ -40,7 +39,7 @@ app = App(
 _COMMANDS: tuple[Callable[..., object] | Analysis, ...] = (
     *(new, check),
     *ANALYSES.values(),
-    *(study, plot, report, export, fmu, page, demo, paper, catalogue, schema),
+    *(study, plot, report, export, fmu, page, demo, catalogue, schema),
 )
 for position, one in enumerate(_COMMANDS):
     if isinstance(one, Analysis):

@@ -8,9 +8,11 @@ from beltdyn.cli.new import refuse_existing, write_text
 from beltdyn.cli.output import analyse_to, ended
 from beltdyn.cli.plot import draw
 
+_DRIVE = "fan_direct_start"
+
 
 def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
-    """Run the two-pulley drive of Kerkkänen, García-Vallejo and Mikkola (2006), and draw its figures.
+    """Start a 15 kW fan through three V-belts by an induction motor, and draw the figures of the run.
 
     Parameters
     ----------
@@ -18,14 +20,14 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
         The folder for the drive file, its results and its figures.
     """
     from beltdyn.model import load
-    from beltdyn.published import demo_text
+    from beltdyn.model.examples import example_text
 
-    file = folder / "two_pulley.toml"
-    if not (file.is_file() and file.read_text("utf-8", "replace") == demo_text()):
+    file, text = folder / f"{_DRIVE}.toml", example_text(_DRIVE)
+    if not (file.is_file() and file.read_text("utf-8", "replace") == text):
         refuse_existing(file)
-        write_text(file, demo_text())
+        write_text(file, text)
     show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
-    run = analyse_to(ANALYSES[RUN], load(file), folder / "two_pulley.nc")
+    run = analyse_to(ANALYSES[RUN], load(file), folder / f"{_DRIVE}.nc")
     if run.status == "completed":
         draw([run], folder)
     return ended(run)

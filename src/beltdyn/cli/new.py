@@ -1,7 +1,6 @@
 """`beltdyn new`."""
 
 from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated
 
@@ -25,21 +24,16 @@ def new(
         conveyor, crossed_belt, fan_direct_start, flat_belt_idler, slip_through, tensioner_stop, two_pulley,
         unequal_radii or washing_machine.
     """
-    source = files("beltdyn.cli").joinpath("new_drive.toml") if example is None else _example(example)
-    target = file or Path("drive.toml" if example is None else source.name)
+    if example is None:
+        name, text = "drive", files("beltdyn.cli").joinpath("new_drive.toml").read_text(encoding="utf-8")
+    else:
+        from beltdyn.model.examples import example_text
+
+        name, text = example.removesuffix(".toml").replace("-", "_"), example_text(example)
+    target = file or Path(f"{name}.toml")
     refuse_existing(target)
-    write_text(target, source.read_text(encoding="utf-8"))
+    write_text(target, text)
     show(f"{target} is written. Edit it, then: beltdyn check {target}; beltdyn run {target}")
-
-
-def _example(name: str) -> Traversable:
-    """The drive file of an example, by its name with - or _."""
-    suffix = ".toml"
-    found = {file.name.removesuffix(suffix): file for file in files("beltdyn").joinpath("examples").iterdir()}
-    key = name.removesuffix(suffix).replace("-", "_")
-    if key not in found:
-        raise ModelError(f"example {name!r} is not known. Choose out of {', '.join(sorted(found))}.")
-    return found[key]
 
 
 def refuse_existing(file: Path) -> None:

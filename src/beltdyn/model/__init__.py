@@ -36,6 +36,7 @@ from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.contact import Contact
 from beltdyn.model.drive import Drive
 from beltdyn.model.end import FixedEnd, PulledEnd, WeightEnd
+from beltdyn.model.examples import example
 from beltdyn.model.installation import Installation, describe, install, tensioner_balances
 from beltdyn.model.limits import Limits
 from beltdyn.model.parameter_study import ParameterStudy
@@ -102,6 +103,7 @@ __all__ = [
     "describe_time",
     "dumps",
     "elements_needed",
+    "example",
     "install",
     "json_schema",
     "layer_lengths",

@@ -27,7 +27,7 @@ def tolerances_of(drive: Drive) -> dict[str, float]:
     Examples
     --------
     >>> from beltdyn.model.tolerances import tolerances_of
-    >>> text = bd.published.demo_text().replace('width = 0.01', 'width = "10 ± 0.2 mm"')
+    >>> text = bd.example("two_pulley").text.replace('width = 0.01', 'width = "10 ± 0.2 mm"')
     >>> tolerances_of(bd.loads(text))
     {'belt.width': 0.0002}
     """

@@ -41,7 +41,7 @@ def load(path: str | pathlib.Path) -> Drive:
     Examples
     --------
     >>> with open("drive.toml", "w", encoding="utf-8") as file:
-    ...     _ = file.write(bd.published.demo_text())
+    ...     _ = file.write(bd.example("two_pulley").text)
     >>> bd.load("drive.toml").belt.elements
     20
     """
@@ -112,7 +112,7 @@ def loads(text: str, base: pathlib.Path | None = None) -> Drive:
 
     Examples
     --------
-    >>> drive = bd.loads(bd.published.demo_text())
+    >>> drive = bd.loads(bd.example("two_pulley").text)
     >>> [pulley.name for pulley in drive.pulleys]
     ['driver', 'driven']
     """

@@ -91,7 +91,7 @@ def tolerances(result: Result, of: str | None = None, *, ax: Axes | None = None)
 
     Examples
     --------
-    >>> text = bd.published.demo_text().replace("width = 0.01", 'width = "10 ± 0.1 mm"')
+    >>> text = bd.example("two_pulley").text.replace("width = 0.01", 'width = "10 ± 0.1 mm"')
     >>> found = bd.sensitivity(bd.loads(text), about="rest", of="tension", numbers="belt.width")
     >>> [name.get_text() for name in bd.plot.tolerances(found).get_yticklabels()]
     ['all, independent', 'belt.width']

@@ -27,7 +27,7 @@ def test_version(run_main: RunMain) -> None:
 def test_help_names_every_command(run_main: RunMain) -> None:
     code, output, _ = run_main(["--help"])
     assert code == 0
-    for command in ("new", "check", "run", "sweep", "static", "plot", "demo", "paper", "catalogue", "schema"):
+    for command in ("new", "check", "run", "sweep", "static", "plot", "demo", "catalogue", "schema"):
         assert f" {command} " in output
 
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from beltdyn.published import demo_text
 from beltdyn.results import FileRecorder, Layout, Run
+from validation.published import demo_text
 
 Refuse = Callable[[list[str]], str]
 RunMain = Callable[[list[str]], tuple[int, str, str]]
@@ -22,7 +22,7 @@ def mine(tmp_path: Path) -> Path:
         "drive-tables/pulleys.csv",
         "figures/slip.png",
         "figures/animation.gif",
-        "two_pulley.toml",
+        "fan_direct_start.toml",
     ):
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)
@@ -31,7 +31,9 @@ def mine(tmp_path: Path) -> Path:
 
 
 def unharmed(folder: Path) -> bool:
-    files = [path for path in folder.rglob("*") if path.suffix in (".csv", ".png", ".gif") or path.stem == "two_pulley"]
+    files = [
+        path for path in folder.rglob("*") if path.suffix in (".csv", ".png", ".gif") or path.stem == "fan_direct_start"
+    ]
     return len(files) == 5 and all(path.read_text(encoding="utf-8") == MINE for path in files)
 
 
@@ -56,7 +58,7 @@ def test_several_runs(refuse: Refuse, drive_file: Path, mine: Path) -> None:
 
 
 def test_demo(refuse: Refuse, mine: Path) -> None:
-    assert "two_pulley.toml exists already" in refuse(["demo", str(mine.parent)])
+    assert "fan_direct_start.toml exists already" in refuse(["demo", str(mine.parent)])
     assert unharmed(mine.parent)
 
 

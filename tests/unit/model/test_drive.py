@@ -7,7 +7,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, advise, describe_time, dumps, install, loads
-from beltdyn.published import loaded_two_pulley
+from validation.published import loaded_two_pulley
 
 MakeDrive = Callable[..., Drive]
 

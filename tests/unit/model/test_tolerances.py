@@ -8,7 +8,7 @@ from beltdyn.errors import ModelError
 from beltdyn.model import loads
 from beltdyn.model.tolerances import tolerances_of
 from beltdyn.model.toml_editor import edited
-from beltdyn.published.cases import demo_text
+from validation.published.cases import demo_text
 
 
 def with_radius(text: str) -> str:

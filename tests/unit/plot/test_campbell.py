@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 
 import beltdyn as bd
 from beltdyn import plot
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.campbell import campbell
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 import beltdyn as bd
 from beltdyn import plot
 from beltdyn.errors import ModelError
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.response import response
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

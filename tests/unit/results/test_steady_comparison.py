@@ -9,9 +9,9 @@ import beltdyn as bd
 from beltdyn.cli.result import show_result
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import loaded_two_pulley
 from beltdyn.results import Run, steady_comparison, summarize
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
+from validation.published.cases import loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

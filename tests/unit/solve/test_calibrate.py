@@ -10,7 +10,6 @@ import pytest
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import CalibrationStudy, Drive, loads
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solve.calibrate import _warnings, calibrate
 from beltdyn.solve.progress import Progress
@@ -19,6 +18,7 @@ from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.designs import Free
 from beltdyn.solve.studies.fitting import fit
 from beltdyn.solve.studies.found_state import Resting
+from validation.published.cases import better, loaded_two_pulley
 
 TRUE_MODULUS = 1.08e9
 TORQUES = np.array([-15.0, -30.0, -45.0, -60.0, -75.0])

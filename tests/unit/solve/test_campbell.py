@@ -11,9 +11,9 @@ from beltdyn.cli import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.campbell import campbell
 from beltdyn.solve.modes import modes
+from validation.published.cases import better, loaded_two_pulley
 
 SPEEDS = np.array([60.0, 90.0, 120.0])
 ORDERS = (1.5, 11.0)

@@ -10,7 +10,7 @@ import pytest
 from beltdyn.solve.compilation import usable_cores
 
 COMPILE = """
-from beltdyn.published import loaded_two_pulley
+from validation.published import loaded_two_pulley
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.integrators.engine import dispatch
 from beltdyn.system.build import drive_system

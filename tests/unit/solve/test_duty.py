@@ -7,8 +7,8 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.duty import duty, read_duty
+from validation.published.cases import better, loaded_two_pulley
 
 TABLE = "duration [min], driver speed [rpm], load, driven torque [N m]\n# comment\n2, 1000, 1, -20\n1, 600, 1, -40\n"
 

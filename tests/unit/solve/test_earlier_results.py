@@ -46,7 +46,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
 
 @pytest.fixture(scope="module")
 def demo() -> Drive:
-    return bd.loads(bd.published.demo_text())
+    return bd.example("two_pulley")
 
 
 def short(drive: Drive, duration: float) -> Drive:

@@ -8,8 +8,8 @@ import pytest
 from beltdyn.analyses import ANALYSES
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published import two_pulley
 from beltdyn.solve.instant import instant_given
+from validation.published import two_pulley
 
 _DIMENSION = re.compile(r"[ ,](?:s|m|N|rad/s)[;:.,]")
 """A unit of SI in the text of a parameter."""

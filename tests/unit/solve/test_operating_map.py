@@ -9,11 +9,11 @@ import beltdyn as bd
 from beltdyn.cli import main
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, open_result, summarize, write_csv
 from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.progress import Progress
 from beltdyn.solve.steady import steady_state
+from validation.published.cases import better, loaded_two_pulley
 
 LIMIT = 3.0
 """Factor on the load that is beyond what the belt transmits with a friction of 0.3."""

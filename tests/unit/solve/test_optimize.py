@@ -8,7 +8,6 @@ import pytest
 
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, OptimizationStudy, dumps, loads
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, open_result, summarize
 from beltdyn.solve import Progress
 from beltdyn.solve.optimize import optimize
@@ -16,6 +15,7 @@ from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.designs import Designs, free_number
 from beltdyn.solve.studies.goals import aims_of
 from beltdyn.solve.studies.study_points import held, study_points
+from validation.published.cases import better, loaded_two_pulley
 
 TENSION, SAFETY = 600.0, 2.0
 FREE: dict[str, Any] = {"path": "belt.installed_tension", "least": 200.0, "largest": "900 N"}

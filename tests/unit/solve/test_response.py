@@ -9,9 +9,9 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.response import response
 from beltdyn.solve.steady import steady_state
+from validation.published.cases import better, loaded_two_pulley
 
 LOAD = {"kind": "resistance", "constant": 45.0, "harmonics": [{"order": 3, "amplitude": 0.02, "phase": 1.0}]}
 SPAN = "driver-driven"

@@ -9,7 +9,6 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.parts.change import value_at
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result, summarize
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.sensitivity import sensitivity
@@ -18,6 +17,7 @@ from beltdyn.solve.studies.drive_numbers import numbers_of
 from beltdyn.solve.studies.found_state import Running
 from beltdyn.solve.studies.small_changes import SmallChanges
 from beltdyn.solve.sweep import without_schedules
+from validation.published.cases import better, loaded_two_pulley
 
 TENSION = 600.0
 SPANS = "driver-driven", "driven-driver"

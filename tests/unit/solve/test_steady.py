@@ -10,9 +10,9 @@ import beltdyn as bd
 from beltdyn.cli import main
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Run, open_result, summarize
 from beltdyn.solve.steady import steady_on_mesh, steady_state
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

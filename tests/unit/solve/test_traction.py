@@ -9,9 +9,9 @@ import xarray as xr
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import open_result
 from beltdyn.solve.traction import traction
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

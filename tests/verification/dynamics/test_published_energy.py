@@ -8,7 +8,7 @@ import pytest
 
 from beltdyn import simulate
 from beltdyn.model import Drive
-from beltdyn.published import two_pulley
+from validation.published import two_pulley
 
 Change = Callable[..., Drive]
 CLOSED = 1e-3

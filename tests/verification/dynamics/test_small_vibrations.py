@@ -9,7 +9,6 @@ import pytest
 import beltdyn as bd
 from beltdyn.arrays import ComplexArray, FloatArray
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Run
 from beltdyn.solve.modes import modes
 from beltdyn.solve.response import response
@@ -19,6 +18,7 @@ from beltdyn.solve.vibration.flutter import flutter_shift
 from beltdyn.solve.vibration.forced_motion import ForcedMotion
 from beltdyn.solve.vibration.small_motions import SmallMotions, about_steady
 from beltdyn.solve.vibration.vibrations import Vibrations
+from validation.published.cases import better, loaded_two_pulley
 
 SPEED, TORQUE = 120.0, -45.0
 STEADY = {"kind": "constant", "value": SPEED}

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.traction import traction
+from validation.published.cases import better, loaded_two_pulley
 
 INDEPENDENT = {0.01: 10.24, 0.02: 20.50, 0.04: 40.86, 0.07: 70.23, 0.10: 95.61, 0.15: 116.10}
 """Case 2 of the paper with mu = 0.3 by an independent code without shear, 48 elements: slip, torque (N m)."""

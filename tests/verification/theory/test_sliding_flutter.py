@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Contact, Drive
-from beltdyn.published import better, two_pulley
 from beltdyn.solve import simulate
 from beltdyn.system.arrays import System
 from beltdyn.system.build import belt_system, drive_system
@@ -20,6 +19,7 @@ from beltdyn.system.discretization import belt_section
 from beltdyn.system.first_order import FirstOrder
 from beltdyn.system.state import State
 from beltdyn.theory.sliding_flutter import SlidingBelt, fastest_flutter, flutter_at
+from validation.published import better, two_pulley
 
 HIGHEST = 2e3
 """Hz; above it are vibrations of the section, which no contact touches."""

@@ -9,7 +9,6 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Pulley
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import summarize
 from beltdyn.results.curve import centerline
 from beltdyn.results.derived import wear_by_arc, wear_by_belt
@@ -17,6 +16,7 @@ from beltdyn.results.mechanics import element_lengths, recorded_kind
 from beltdyn.solve.integrators.standard import StandardIntegrator
 from beltdyn.solve.steady_running import refinement
 from beltdyn.solve.steady_running.search import SteadySearch
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

@@ -5,13 +5,13 @@ import pytest
 
 from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
-from beltdyn.published import two_pulley
-from beltdyn.published.cases import better
 from beltdyn.results import Run, Variable
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running import operating_points
 from beltdyn.solve.steady_running.changed_drive import at_speed, held_at
 from beltdyn.solve.steady_running.operating_points import OperatingPoints, serpentine
+from validation.published import two_pulley
+from validation.published.cases import better
 
 FIRST, SPAN = 10.0, 8.0
 """Speed of the first point and the way to the second one, rad/s."""

@@ -8,10 +8,10 @@ import pytest
 import beltdyn as bd
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.rest.installation import bring_to_rest
 from beltdyn.solve.steady_running.travelling_start import steady_state_on
 from beltdyn.system.discretization import point_coordinates
+from validation.published.cases import better, loaded_two_pulley
 
 BEGIN = 1.6
 """When case 2 of the paper has its full speed and load, s."""

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import summarize
 from beltdyn.solve.equilibrium import equilibrium
 from beltdyn.solve.modes import modes
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.found_state import Resting, Running
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

@@ -7,12 +7,12 @@ import pytest
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.rest.staying import bring_to_stand, stand_like
 from beltdyn.solve.steady import steady_on_mesh, steady_state
 from beltdyn.solve.studies import state_modes
 from beltdyn.solve.studies.found_state import FoundState, Resting, Running
 from beltdyn.solve.studies.named_results import MODES
+from validation.published.cases import better, loaded_two_pulley
 
 MODULUS = "belt.youngs_modulus"
 NAMES = [f"mode_{what}[{number}]" for what in ("frequency", "damping_ratio") for number in (1, 2, 3, 6)]

@@ -8,8 +8,8 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.study import Points
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.studies.study_points import held, speed_of, study_points
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

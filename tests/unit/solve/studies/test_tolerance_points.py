@@ -4,10 +4,10 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, dumps, loads
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Result
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.studies.tolerance_points import require_points
+from validation.published.cases import better, loaded_two_pulley
 
 COUNT = 32
 

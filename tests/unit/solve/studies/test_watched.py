@@ -7,12 +7,12 @@ import pytest
 
 from beltdyn.model import Drive
 from beltdyn.model.study import Obstacle, Order
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running.changed_drive import at_speed
 from beltdyn.solve.studies.found_state import Running
 from beltdyn.solve.studies.study_points import OperatingPoint
 from beltdyn.solve.studies.watched import clearance, distance_from_order
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

@@ -7,9 +7,9 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.vibration.excitation import given_excitations, one_line_each, own_excitations
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

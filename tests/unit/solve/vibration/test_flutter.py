@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from beltdyn.contact.friction import ForceSlope
 from beltdyn.model import Drive
-from beltdyn.published import better, two_pulley
 from beltdyn.solve import simulate
 from beltdyn.solve.vibration import flutter
 from beltdyn.solve.vibration.flutter import FlutterWatch, growth_rates, growth_within, longest_pieces
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
+from validation.published import better, two_pulley
 
 Change = Callable[..., Drive]
 FREQUENCY = 1500.0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.results import Run
 from beltdyn.solve.steady import steady_state
 from beltdyn.solve.vibration.forced_motion import ForcedMotion
+from validation.published.cases import better, loaded_two_pulley
 
 RADIUS, INERTIA = 0.08125, 0.25
 

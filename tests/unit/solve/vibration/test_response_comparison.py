@@ -8,9 +8,9 @@ import xarray as xr
 
 import beltdyn as bd
 from beltdyn.errors import ModelError
-from beltdyn.published.cases import loaded_two_pulley
 from beltdyn.solve.vibration.excitation import LOAD, SHAFT, SPEED, Excitation
 from beltdyn.solve.vibration.response_comparison import Place, measured_amplitudes, run_up_amplitudes
+from validation.published.cases import loaded_two_pulley
 
 SPEEDS = np.array([70.0, 100.0, 150.0])
 NAMES = ["driver", "driven"]

@@ -9,11 +9,11 @@ import beltdyn as bd
 from beltdyn.cli.app import main
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.published.cases import better, loaded_two_pulley
 from beltdyn.solve.earlier_run import instant_of
 from beltdyn.solve.modes import modes
 from beltdyn.solve.vibration.run_state import state_of
 from beltdyn.system.build_staying import staying_system
+from validation.published.cases import better, loaded_two_pulley
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ import pytest
 
 import beltdyn as bd
 from beltdyn.model import Drive
-from beltdyn.published.cases import loaded_two_pulley
 from beltdyn.solve.vibration.waves import averaged, speed_waves, torque_orders, torque_waves
+from validation.published.cases import loaded_two_pulley
 
 MEAN, SWING = -12.0, 3.0
 

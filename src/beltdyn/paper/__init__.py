@@ -1,5 +1,0 @@
-"""Pages that compare results with what others published."""
-
-from beltdyn.paper.build import Outcome, build_paper
-
-__all__ = ["Outcome", "build_paper"]

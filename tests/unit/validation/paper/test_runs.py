@@ -1,0 +1,73 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from beltdyn.model import Drive, load
+from beltdyn.results import Run
+from beltdyn.solve import BatchProgress, Ending
+from validation.paper.runs import RunMissingError, Runs, run_all
+from validation.published import two_pulley
+
+
+def short(duration: float, **simulation: object) -> Drive:
+    drive = two_pulley(10)
+    settings = {"duration": duration, "output_interval": 1e-3, **simulation}
+    return drive.replace(simulation=drive.simulation.replace(**settings))
+
+
+@pytest.mark.slow
+def test_runs_go_on_when_one_fails(tmp_path: Path) -> None:
+    """A run whose file cannot be written leaves a reason, the others leave their results."""
+    (tmp_path / "bad.nc").mkdir()
+    stages: list[BatchProgress] = []
+    drives = {"good": short(0.01), "bad": short(0.01), "other": short(0.02)}
+    runs = run_all(drives, tmp_path, stages.append, jobs=2)
+    assert sorted(runs) == ["good", "other"]
+    assert (runs["good"].status, runs["good"].drive) == ("completed", drives["good"])
+    assert "bad.nc cannot be written" in runs.failures["bad"]
+    with pytest.raises(RunMissingError, match="the run bad failed"):
+        runs["bad"]
+    assert "bad" not in runs
+    assert load(tmp_path / "other.toml") == drives["other"]
+    assert (stages[0].total, stages[-1]) == (3, BatchProgress(3, 3, {}))
+
+
+@pytest.mark.parametrize("status", ["interrupted", "not started"])
+def test_an_interruption_goes_on_to_the_caller(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, status: str) -> None:
+    monkeypatch.setattr("validation.paper.runs.simulate_all", lambda *_, **__: {tmp_path / "one.nc": Ending(status)})
+    with pytest.raises(KeyboardInterrupt):
+        run_all({"one": short(0.01)}, tmp_path)
+
+
+def test_no_drives_no_runs(tmp_path: Path) -> None:
+    runs = run_all({}, tmp_path / "runs")
+    assert len(runs) == 0
+    assert (tmp_path / "runs").is_dir()
+
+
+@pytest.mark.slow
+def test_times_are_taken_in_turns_without_outputs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[tuple[float, float]] = []
+
+    def simulate(drive: Drive) -> Run:
+        settings = drive.simulation
+        done.append((settings.duration, settings.output_interval))
+        return Run(xr.Dataset(attrs={"status": "completed", "cpu_time": float(len(done))}), drive)
+
+    runs = run_all({"one": short(0.01), "two": short(0.02)}, tmp_path)
+    monkeypatch.setattr("validation.paper.runs.simulate", simulate)
+    times = runs.cpu_times(["two", "one"], repeats=3)
+    assert done == [(0.02, 0.02), (0.01, 0.01)] * 3
+    np.testing.assert_array_equal(times["two"], [1.0, 3.0, 5.0])
+    np.testing.assert_array_equal(times["one"], [2.0, 4.0, 6.0])
+
+
+def test_timing_that_is_interrupted_ends_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    interrupted = Run(xr.Dataset(attrs={"status": "interrupted"}), short(0.01))
+    monkeypatch.setattr("validation.paper.runs.simulate", lambda _: interrupted)
+    monkeypatch.setattr("validation.paper.runs.open_kept", lambda _: xr.Dataset())
+    runs = Runs({"one": tmp_path / "one.nc"}, {"one": short(0.01)}, {})
+    with pytest.raises(KeyboardInterrupt):
+        runs.cpu_times(["one"])

@@ -1,0 +1,121 @@
+"""From nothing to the page: run every case, judge every statement, write one file."""
+
+import os
+import platform
+import tempfile
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from beltdyn.errors import ModelError
+from beltdyn.model import Drive
+from beltdyn.results import provenance
+from beltdyn.results.atomic import make_folder, unwritable
+from beltdyn.solve import BatchProgress
+from validation.paper.page import write_page
+from validation.paper.runs import RunMissingError, Runs, run_all
+from validation.paper.statement import Section
+from validation.paper.statements import SECTIONS, Part
+
+PAGE = "paper.html"
+RUNS = "runs"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of the page.
+
+    Attributes
+    ----------
+    page : Path
+        The HTML file.
+    sections : tuple of Section
+        Its parts with their statements.
+    failures : dict
+        Name -> reason of every run that failed.
+    """
+
+    page: Path
+    sections: tuple[Section, ...]
+    failures: dict[str, str]
+
+
+def build_paper(
+    folder: Path, progress: Callable[[BatchProgress], None] | None = None, parts: Sequence[Part] = SECTIONS
+) -> Outcome:
+    """Run the cases of the paper and write the page that compares them with its statements.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to write ``paper.html`` and, into the folder ``runs``, a drive file and what is kept of its run for every
+        run; made if need be.
+    progress : callable, optional
+        Told of the runs.
+    parts : sequence of Part
+        Which parts of the page to make.
+
+    Returns
+    -------
+    Outcome
+        The page, and what failed.
+
+    Raises
+    ------
+    ModelError
+        If the folder cannot be written to.
+    """
+    begun = time.perf_counter()
+    _check_folder(folder)
+    runs = run_all(_all_cases(parts), folder / RUNS, progress)
+    sections = tuple(_section(part, runs) for part in parts)
+    facts = _facts(time.perf_counter() - begun, folder, runs)
+    write_page(folder / PAGE, sections, runs.failures, facts)
+    return Outcome(folder / PAGE, sections, runs.failures)
+
+
+def _check_folder(folder: Path) -> None:
+    """Make sure that the folder can be written to before anything is computed."""
+    make_folder(folder)
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            return
+    except OSError as error:
+        raise ModelError(unwritable(folder / PAGE, error)) from error
+
+
+def _all_cases(parts: Sequence[Part]) -> dict[str, Drive]:
+    """What all parts want to have run, each drive once."""
+    drives: dict[str, Drive] = {}
+    for part in parts:
+        for name, drive in part.cases().items():
+            if drives.setdefault(name, drive) != drive:
+                raise ValueError(f"two parts of the page name different drives {name}")
+    return drives
+
+
+def _section(part: Part, runs: Runs) -> Section:
+    """A part of the page, or why it could not be made."""
+    try:
+        return part.section(runs)
+    except RunMissingError as error:
+        name = part.__name__.rpartition(".")[2].replace("_", "-")
+        return Section(name, name.replace("-", " ").capitalize(), f"This part could not be made: {error}")
+
+
+def _facts(seconds: float, folder: Path, runs: Runs) -> dict[str, str]:
+    """Where the page comes from."""
+    origin = provenance("", "")
+    packages = ", ".join(f"{name} {origin[f'{name}_version']}" for name in ("numba", "numpy", "scipy"))
+    return {
+        "Version": f"beltdyn {origin['beltdyn_version']}",
+        "Made": datetime.now(UTC).strftime("%d %B %Y, %H:%M UTC"),
+        "Command": f"beltdyn paper --out {folder}",
+        "Environment": f"Python {origin['python_version']}, {packages}; {platform.system()} {platform.machine()}, "
+        f"{os.cpu_count()} cores",
+        "Runs": f"{len(runs) + len(runs.failures)}; their drive files, and what this page needs of their results, are "
+        f"in the folder {RUNS} beside it",
+        "Run time": f"{seconds:.0f} s, compilation included",
+    }

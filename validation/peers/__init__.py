@@ -1,0 +1,1 @@
+"""The same drives in other codes."""
