@@ -26,7 +26,7 @@ class Limits(Part):
     largest_tension: Force | None = Field(None, gt=0, description="the largest tension of a span at any time, in N")
     least_tension: Force | None = Field(None, ge=0, description="the least tension of a span at any time, in N")
     least_margin: Ratio | None = Field(
-        None, gt=0, description="the least capstan margin: torque before the whole arc slides, over the present one"
+        None, gt=0, description="the least capstan margin: the factor on all loads at which the belt slides through"
     )
 
     @model_validator(mode="after")

@@ -18,6 +18,8 @@ class Finding:
         What to do.
     kind : str
         Name of the check that found it, if one did.
+    weight : float
+        The larger, the worse among findings of its kind: of many operating points the worst speaks for all.
 
     Raises
     ------
@@ -35,6 +37,7 @@ class Finding:
     spoils: str
     remedy: str
     kind: str = ""
+    weight: float = 0.0
 
     def __post_init__(self) -> None:
         for part in (self.fault, self.spoils, self.remedy):

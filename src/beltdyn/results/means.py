@@ -6,11 +6,9 @@ import numpy as np
 
 from beltdyn.model import Drive
 from beltdyn.results.cycles import mean_window
-from beltdyn.results.mechanics import (
-    capstan_margin,
-    rim_speeds,
-)
+from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.recorded import Recorded, names
+from beltdyn.results.slip_margin import capstan_margin
 from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
 
@@ -46,7 +44,8 @@ class PulleySummary:
     sliding_arc : float
         Angle over which friction is fully used, rad.
     margin : float
-        Capstan margin: how many times its load it could transmit before the whole arc slides; NaN without load.
+        Capstan margin: factor on all loads of the drive at which the whole arc slides, if the other pulleys hold; NaN
+        without load.
     wrap_angle : float
         Wrap angle, rad.
     hub_load : float

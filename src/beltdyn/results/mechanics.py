@@ -11,7 +11,6 @@ import numpy as np
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.model import Drive
-from beltdyn.results.arc import arc_ends
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,36 +68,6 @@ def across(spans: FloatArray, drive: Drive) -> tuple[FloatArray, FloatArray]:
     """
     pulleys = len(drive.pulleys)
     return np.roll(spans, 1, axis=-1)[..., :pulleys], spans[..., :pulleys]
-
-
-def capstan_margin(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
-    """How many times its present load a pulley could transmit before the belt slides on the whole arc.
-
-    With the tensions T1 and T2 at the ends of the arc, the coefficient of friction mu, the angle theta between the
-    straight spans and the belt's mass per length m,
-
-        (T1 + T2 - 2 m v^2) (e^(mu theta) - 1) / (e^(mu theta) + 1) / |T1 - T2| :
-
-    Euler and Eytelwein's largest difference of tensions at the same sum. A belt that resists bending touches on less
-    than theta, but it turns by theta, and presses on the ends of its arc by what is missing there. NaN without a load,
-    or where the belt does not touch: where the difference of tensions, over their sum, is below `UNLOADED`.
-
-    Parameters
-    ----------
-    tension, belt_speed : ndarray, shape (..., spans)
-        N and m/s.
-    centers : ndarray, shape (..., pulleys, 2)
-        Where the pulleys are, m.
-    drive : Drive
-        Friction, mass per length and radii.
-    """
-    before, after = across(tension, drive)
-    _, turned = arc_ends(drive, centers)
-    lifted = 0.5 * drive.belt.mass_per_length * sum(speed**2 for speed in across(belt_speed, drive))
-    largest = np.maximum(before + after - 2.0 * lifted, 0.0) * np.tanh(0.5 * drive.frictions * turned)
-    load = np.abs(before - after)
-    loaded = load > UNLOADED * np.abs(before + after)
-    return np.asarray(np.divide(largest, load, out=np.full_like(load, np.nan), where=loaded))
 
 
 def cells(belt_coordinate: FloatArray, length: float) -> FloatArray:

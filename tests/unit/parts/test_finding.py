@@ -1,5 +1,7 @@
 """A finding has three sentences."""
 
+from typing import Any
+
 import pytest
 
 from beltdyn.parts.finding import Finding, listing
@@ -13,7 +15,7 @@ def test_it_says_what_is_wrong_what_that_spoils_and_what_to_do() -> None:
 @pytest.mark.parametrize("part", ["fault", "spoils", "remedy"])
 @pytest.mark.parametrize("words", ["", "no sentence"])
 def test_no_part_may_be_left_out(part: str, words: str) -> None:
-    sentences = {"fault": "It is slack.", "spoils": "Tensions.", "remedy": "Shorten it."}
+    sentences: dict[str, Any] = {"fault": "It is slack.", "spoils": "Tensions.", "remedy": "Shorten it."}
     with pytest.raises(ValueError, match="part of a finding"):
         Finding(**sentences | {part: words})
 

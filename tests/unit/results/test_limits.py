@@ -10,7 +10,7 @@ import xarray as xr
 from beltdyn.model import Drive
 from beltdyn.results import KeyNumber, Result, Run, key_numbers
 
-LIMITS = {"largest_slip": 0.01, "largest_hub_load": 130.0, "least_margin": 3.0}
+LIMITS = {"largest_slip": 0.01, "largest_hub_load": 130.0, "least_margin": 4.0}
 
 
 def by_key(result: Result) -> dict[str, KeyNumber]:

@@ -1,20 +1,16 @@
 """Formulas of belt drives against their own definitions."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from beltdyn.contact.friction import CoefficientSlope, ForceSlope, FrictionParameters, RelativeCreep
 from beltdyn.model import Drive, Path
 from beltdyn.results import Run
 from beltdyn.results.mechanics import (
     across,
-    capstan_margin,
     cells,
     element_lengths,
     gross_sliding,
@@ -24,7 +20,6 @@ from beltdyn.results.mechanics import (
     sliding_velocity,
     slip,
 )
-from beltdyn.theory.capstan import tight_tension
 
 ROUNDING = 1e-9
 CENTERS = np.array([[0.0, 0.0], [0.4, 0.0], [0.2, 0.06]])
@@ -66,31 +61,6 @@ def test_the_last_span_of_an_open_belt_is_the_one_before_the_first_pulley() -> N
     before, after = across(np.array([[1.0, 2.0, 3.0, 4.0]]), serpentine())
     assert before.tolist() == [[4.0, 1.0, 2.0]]
     assert after.tolist() == [[1.0, 2.0, 3.0]]
-
-
-@given(
-    slack=st.floats(50.0, 500.0), speed=st.floats(0.0, 10.0), moved=st.floats(-0.05, 0.05), factor=st.floats(0.1, 1.0)
-)
-def test_margin_of_a_capstan_is_one_and_grows_as_the_load_falls(
-    slack: float, speed: float, moved: float, factor: float
-) -> None:
-    """The second pulley slides on its whole arc; with less load at the same sum of tensions, 1 / factor is left."""
-    drive = serpentine()
-    centers = CENTERS + moved * np.eye(3)[:, 1:]
-    wrap = float(replace(drive.path, centers=centers).wrap_angles[1])
-    tight = tight_tension(slack, drive.frictions[1], wrap, mass_per_length=drive.belt.mass_per_length, speed=speed)
-    mean, half = 0.5 * (tight + slack), 0.5 * (tight - slack)
-    tensions = np.array([mean + factor * half, mean - factor * half, 700.0])
-    margin = capstan_margin(tensions, np.full(3, speed), centers, drive)[1]
-    assert margin == pytest.approx(1.0 / factor, rel=ROUNDING)
-
-
-def test_margin_without_load_or_grip() -> None:
-    drive = serpentine()
-    for tension in ([100.0, 100.0, 100.0], [100.0, 100.0 + 1e-12, 100.0 - 3e-12]):
-        assert np.all(np.isnan(capstan_margin(np.array(tension), np.zeros(3), CENTERS, drive)))
-    flung = capstan_margin(np.array([10.0, 12.0, 11.0]), np.full(3, 50.0), CENTERS, drive)
-    assert np.all(flung == 0.0)  # m v^2 = 500 N lifts the belt off
 
 
 def test_cells_share_out_the_belt(drive: Drive) -> None:

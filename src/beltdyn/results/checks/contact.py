@@ -29,11 +29,13 @@ def slack_spans(evidence: Evidence) -> Iterator[Finding]:
     lowest, slack = known.min(axis=0), (known <= 0.0).any(axis=1)
     names_, times = names(evidence.recorded, "span"), evidence.time[known.argmin(axis=0)]
     falls = [f"{names_[span]} to {lowest[span]:.3g} N at t = {times[span]:.4g} s" for span in spans]
+    missing = -float(lowest.min())
+    by = f" by more than {missing:.2g} N" if missing > 0.0 else ""
     yield Finding(
         f"the belt goes slack, since its tension falls to zero or below: {listing(falls)}.",
         "A slack belt sags and flaps, and this one is pushed: tensions, hub loads and slip are wrong then, in "
         f"{np.mean(slack):.0%} of the run.",
-        f"Raise the installed tension by more than {-lowest.min():.2g} N, start more gently, or lower the load.",
+        f"Raise the installed tension{by}, start more gently, or lower the load.",
     )
 
 

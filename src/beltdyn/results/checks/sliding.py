@@ -1,13 +1,14 @@
 """Pulleys whose whole arc slides, or is near to it."""
 
 from collections.abc import Iterator
+from math import ceil, floor
 
 import numpy as np
 
 from beltdyn.parts.finding import Finding, listing
-from beltdyn.results.arc import arc_ends
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.mechanics import rim_speeds
+from beltdyn.results.slip_margin import STATE, friction_used
 
 SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or up to a lower speed."
 """What to do where a pulley slips through in a run-up."""
@@ -51,19 +52,28 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     if evidence.drive.ends or not near or not _first_rim(evidence) > 0.0:
         return
     worst, number = min(near, key=lambda one: one[0].margin)
-    _, turned = arc_ends(evidence.drive, evidence.window.mean(evidence.recorded, "pulley_center"))
-    half = 0.5 * evidence.drive.frictions[number] * turned[number]
-    least = float(np.arctanh(min(np.tanh(half) / worst.margin, np.tanh(half))) / half)
-    margins = [f"{one.margin:.2f} times this load on {one.name}" for one, _ in near]
+    drive = evidence.drive
+    tension, speed, centers = (evidence.window.mean(evidence.recorded, name) for name in STATE)
+    least = float(friction_used(tension, speed, centers, drive)[number])
+    pressing = 1.0 - drive.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
+    missing = MARGIN_LIMIT / worst.margin - 1.0
+    held = listing([f"the tensioner of {one.pulley}" for one in drive.moving_tensioners] or ["the belt"])
+    margins = [f"{floor(100.0 * one.margin) / 100.0:.2f} times all loads on {one.name}" for one, _ in near]
     yield Finding(
         f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near slipping through: the belt "
         f"would slide on the whole arc at {listing(margins)}, "
         f"less than {MARGIN_LIMIT:g} times.",
-        f"The numbers hold as long as friction does: where it falls by more than {1.0 - least:.0%}, as by water or "
-        f"oil, {worst.name} stops pulling.",
-        f"Raise the tension by about {MARGIN_LIMIT / worst.margin - 1.0:.0%}, lower the load by "
-        f"{1.0 - worst.margin / MARGIN_LIMIT:.0%}, or lay the belt around more of {worst.name}.",
+        f"The numbers hold as long as friction does: where it falls by more than {max(1.0 - least, 0.0):.0%}, as by "
+        f"water or oil, {worst.name} stops pulling.",
+        f"Raise the tension of {held} by about {_percent(missing * pressing)}, lower the loads by "
+        f"{_percent(missing / (1.0 + missing))}, or lay the belt around more of {worst.name}.",
+        weight=1.0 / worst.margin,
     )
+
+
+def _percent(part: float) -> str:
+    """A part that is to be changed, in whole percent and not below one."""
+    return f"{max(ceil(100.0 * part - 1e-9), 1)}%"
 
 
 def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:

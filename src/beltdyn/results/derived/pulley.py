@@ -5,8 +5,8 @@ import xarray as xr
 
 from beltdyn.results.derived.labels import labelled, window
 from beltdyn.results.mechanics import across
-from beltdyn.results.mechanics import capstan_margin as margin_of
 from beltdyn.results.run import Run
+from beltdyn.results.slip_margin import capstan_margin
 
 
 def hub_loads(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
@@ -42,9 +42,9 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
 
 
 def capstan_margins(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """How many times its present load each pulley could transmit before its whole arc slides.
+    """Factor on all loads at which the whole arc of each pulley slides, from the state of each instant.
 
-    See `beltdyn.results.mechanics.capstan_margin`: 1 at the edge of gross slip, NaN without load.
+    See `beltdyn.results.slip_margin.capstan_margin`: 1 at the edge of gross slip, NaN without load.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def capstan_margins(run: Run, start: float | None = None, end: float | None = No
     """
     dataset = window(run, start, end)
     tension, speed, centers = (dataset[name].values for name in ("span_tension", "belt_speed", "pulley_center"))
-    return labelled(margin_of(tension, speed, centers, run.drive), dataset["wrap_angle"], "1", "Capstan margin")
+    return labelled(capstan_margin(tension, speed, centers, run.drive), dataset["wrap_angle"], "1", "Capstan margin")
 
 
 def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:

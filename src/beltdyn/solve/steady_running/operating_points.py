@@ -83,7 +83,7 @@ class OperatingPoints:
         self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
         kept = {name: one for name, one in VARIABLES.items() if name in names and self._holds(one)}
         self.arrays = {name: self._blank(variable) for name, variable in kept.items()}
-        self._warned: dict[str, list[tuple[str, str]]] = {}
+        self._warned: dict[str, list[tuple[float, str, str]]] = {}
         self._done, self._written, self._status = 0, time.perf_counter(), "running"
         self._near: Run | None = None
         self.more: Axes = {}
@@ -263,19 +263,23 @@ class OperatingPoints:
             self.arrays["mesh_error"][index] = run.resolution.errors["peak pressure"]
         for finding in run.findings:
             if finding.kind not in self.expected:
-                self._warn(index, finding.kind, str(finding))
+                self._warn(index, finding.kind, str(finding), finding.weight)
 
-    def _warn(self, index: tuple[int, ...], kind: str, text: str) -> None:
+    def _warn(self, index: tuple[int, ...], kind: str, text: str, weight: float = 0.0) -> None:
         """Note a warning of a point, beside those of the same kind of other points."""
-        self._warned.setdefault(kind, []).append((self._place(index), text))
+        self._warned.setdefault(kind, []).append((weight, self._place(index), text))
 
     def _warnings(self) -> Iterator[str]:
-        """The warnings of points, each but once."""
+        """The warnings of points, each but once: that of the worst point, or else of the first one."""
         for said in self._warned.values():
-            place, text = said[0]
-            others = len(said) - 1
-            more = f" So at {others} more point{'s'[: others != 1]}, up to {said[-1][0]}." if others else ""
-            yield f"at {place}: {text}{more}"
+            weight, place, text = max(said, key=lambda one: one[0])
+            first, last, others = said[0][1], said[-1][1], len(said) - 1
+            if not others:
+                yield f"at {place}: {text}"
+            elif weight > 0.0:
+                yield f"at {place}: {text} That is the worst of {others + 1} points, from {first} to {last}."
+            else:
+                yield f"at {place}: {text} So at {others} more point{'s'[: others != 1]}, up to {last}."
 
     def _place(self, index: tuple[int, ...]) -> str:
         """Where a point is, in words."""

@@ -28,7 +28,7 @@ VARIABLES = {
     "elastic_creep": Variable(PULLEY, "1", "Elastic creep"),
     "regularisation": Variable(PULLEY, "1", "Slip that the slope of the friction law adds"),
     "sliding": Variable(PULLEY, "1", "Slip of arcs that slide as a whole"),
-    "slip_safety": Variable(PULLEY, "1", "Slip safety: torque before the whole arc slides, over the present one"),
+    "slip_safety": Variable(PULLEY, "1", "Slip safety: factor on all loads at which the whole arc slides"),
     "sliding_arc": Variable(PULLEY, "rad", "Arc that slides"),
     "wrap_angle": Variable(PULLEY, "rad", "Wrap angle"),
     "hub_load": Variable(PULLEY, "N", "Hub load"),

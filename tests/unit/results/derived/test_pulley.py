@@ -18,12 +18,12 @@ def test_hub_loads_as_vectors(make_run: MakeRun) -> None:
 
 
 def test_margins_over_time_end_where_the_summary_does(run: Run) -> None:
-    """Tensions of 30 and 60 N: (90 - 2 m v^2) tanh(0.6 pi) / 30."""
+    """Tensions of 30 and 60 N: (90 - 2 m v^2) tanh(0.6 pi) / 30 at the same sum, which fixed centers let grow."""
     speed, mass = 12.0 * 0.08125, run.drive.belt.mass_per_length
-    expected = (90.0 - 2.0 * mass * speed**2) * np.tanh(0.6 * np.pi) / 30.0
+    at_same_sum = (90.0 - 2.0 * mass * speed**2) * np.tanh(0.6 * np.pi) / 30.0
     margins = capstan_margins(run, start=0.7)
-    np.testing.assert_allclose(margins, expected, rtol=1e-9)
-    assert [pulley.margin for pulley in summarize(run).pulleys] == pytest.approx([expected] * 2)
+    assert [pulley.margin for pulley in summarize(run).pulleys] == pytest.approx(margins[-1].values)
+    assert np.all((margins > at_same_sum) & (margins < 1.4 * at_same_sum))
     assert np.isnan(capstan_margins(run, end=0.04)).all()
 
 
