@@ -1,6 +1,6 @@
 """Figures over time."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 
 import numpy as np
@@ -9,10 +9,11 @@ from matplotlib.axes import Axes
 
 from beltdyn.parts.quantity import RPM
 from beltdyn.plot.registry import figure, over_time
-from beltdyn.plot.style import Dash, axes_or_new, color, dash, label, name_lines, reserve, unit
+from beltdyn.plot.style import SHADE, Dash, axes_or_new, color, dash, label, name_lines, reserve, unit
 from beltdyn.results import Run
 from beltdyn.results.balance import losses_of
 from beltdyn.results.closure import largest_closure
+from beltdyn.results.incidents import GROSS_SLIP, SLACK, STOP, incidents
 
 _ENERGIES = (
     "driver_work",
@@ -23,6 +24,10 @@ _ENERGIES = (
     "spring_energy",
     "potential_energy",
 )
+_PARTS, _LINE = 100, 0.06
+"""Parts of a run that periods are at least apart from each other, and height of a line of words over that of axes."""
+_LATE = 0.6
+"""Part of a run from which on periods are named to their left."""
 _WAVES = 5.0
 """Vibrations as high as the figure above which dashes cannot be told from them."""
 
@@ -30,6 +35,8 @@ _WAVES = 5.0
 @figure(over_time, compares=True)
 def speeds(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the speeds of the pulleys over time, in rad/s and rpm, and those of the shafts behind hub chains.
+
+    Shaded where the belt slides through on a pulley.
 
     Parameters
     ----------
@@ -58,7 +65,7 @@ def speeds(run: Run, ax: Axes | None = None) -> Axes:
         scale = ax.secondary_yaxis("right", functions=(partial(np.multiply, RPM), partial(np.multiply, 1.0 / RPM)))
         scale.set_ylabel("[rpm]")
     name_lines(ax)
-    return ax
+    return mark_incidents(run, ax, (GROSS_SLIP,))
 
 
 @figure(over_time, compares=True)
@@ -89,6 +96,8 @@ def torques(run: Run, ax: Axes | None = None) -> Axes:
 def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the tensions of the spans over time, marked where the mesh does not resolve them.
 
+    Shaded where the belt slides through on a pulley or goes slack, and where a tensioner lies on a stop.
+
     Parameters
     ----------
     run : Run
@@ -109,7 +118,7 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     ax = axes_or_new(ax)
     if not run.resolution.resolves("tension"):
         reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.elements} elements")
-    return lines(run.dataset["span_tension"], ax)
+    return mark_incidents(run, lines(run.dataset["span_tension"], ax), (GROSS_SLIP, SLACK, STOP))
 
 
 @figure(over_time)
@@ -149,6 +158,39 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     ax.set(xlabel=label(run.dataset["time"]), ylabel=f"Energy [{unit(run.dataset[_ENERGIES[0]])}]")
     ax.set_title(f"Closure error up to {closure:.1e} of the energy put in")
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return ax
+
+
+def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:
+    """Shade the periods in which a belt slides through or goes slack, or a tensioner lies on a stop, and name them.
+
+    Periods that are closer than a hundredth of the run are drawn as one.
+    """
+    with run.recorded() as recorded:
+        found = [one for one in incidents(recorded, run.drive) if one.kind in kinds]
+        time = np.asarray(recorded["time"])
+    gap = float(np.ptp(time)) / _PARTS
+    for number, one in enumerate(found):
+        merged = list[list[float]]()
+        for begin, end in one.periods:
+            if merged and begin - merged[-1][1] < gap:
+                merged[-1][1] = end
+            else:
+                merged.append([begin, end])
+        for begin, end in merged:
+            ax.axvspan(begin, max(end, begin + 0.2 * gap), color=SHADE, alpha=0.7, linewidth=0.0, zorder=0)
+        if merged:
+            late = merged[0][0] - time[0] > _LATE * np.ptp(time)
+            at, side = (merged[-1][1], "right") if late else (merged[0][0], "left")
+            ax.annotate(
+                f"{one.kind}: {one.name}",
+                (at, 0.98 - _LINE * number),
+                xycoords=("data", "axes fraction"),
+                ha=side,
+                va="top",
+                fontsize=8,
+                bbox={"facecolor": SHADE, "edgecolor": "none", "pad": 0.5, "alpha": 0.8},
+            )
     return ax
 
 

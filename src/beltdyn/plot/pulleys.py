@@ -10,11 +10,12 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.history import envelope, lines
+from beltdyn.plot.history import envelope, lines, mark_incidents
 from beltdyn.plot.registry import Choice, figure, over_time
 from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, new_figure, note, polar_or_new, shade
 from beltdyn.results import Run, derived, summarize
 from beltdyn.results.cycles import mean_window
+from beltdyn.results.incidents import GROSS_SLIP
 
 _LARGEST_MARGIN = 10.0
 _RUNNING = 0.98
@@ -27,7 +28,8 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the first over time, and dotted the part of it that is elastic creep.
 
     Means over a turn of the belt and a period of what repeats besides; the numbers are those of the summary. Where
-    whole arcs slide, all creep is dotted. The scale is that of the running drive: at the start slip may go beyond it.
+    whole arcs slide, all creep is dotted, and the time is shaded. The scale is that of the running drive: at the start
+    slip may go beyond it.
 
     Parameters
     ----------
@@ -66,7 +68,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     )
     note(ax, "\n".join(notes))
     _limit(ax, parts["slip"], _after_start(run, summary.start))
-    return ax
+    return mark_incidents(run, ax, (GROSS_SLIP,))
 
 
 def _after_start(run: Run, latest: float) -> float:
@@ -78,7 +80,7 @@ def _after_start(run: Run, latest: float) -> float:
 
 @figure(over_time, compares=True)
 def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw how many times its load each pulley could transmit, over time; below 1 its whole arc slides.
+    """Draw the factor on all loads at which the belt slides through on each pulley, over time; below 1 it slides.
 
     Pulleys that hardly carry a load, whose margin is mostly above ten, are left out where others are below. A margin
     that vibrates is drawn as a band from its least to its largest value within a hundredth of the time, and its median.

@@ -5,7 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beltdyn.results import KeyNumber, Result, key_numbers
+from beltdyn.parts.finding import listing
+from beltdyn.results import KeyNumber, Result, Run, key_numbers
+from beltdyn.results.incidents import Incident, incidents
 
 _WHOLE, _HUGE = 1e4, 1e9
 """Between these a number is written without an exponent."""
@@ -67,17 +69,31 @@ def verdict(results: Sequence[Result]) -> tuple[str, str]:
     Returns
     -------
     kind : {"pass", "fail", "open"}
-        "open" where no limit is stated.
+        "fail" also where a belt slid through or a span went slack at any time, "open" where no limit is stated, or a
+        tensioner lay on a stop.
     words : str
         In a sentence.
     """
     judged = [one.passes for result in results for one in key_numbers(result) if one.passes is not None]
     kept = sum(judged)
+    happened = [one for result in results for one in _incidents(result)]
+    said = listing(list(map(str, happened))) if happened else ""
     if not judged:
-        return "open", "No limit is judged"
-    if kept == len(judged):
-        return "pass", f"All {kept} limits are kept" if kept > 1 else "The limit is kept"
-    return "fail", f"{kept} of {len(judged)} limits are kept"
+        return "open", f"No limit is judged{said and f'; {said}'}"
+    if kept < len(judged):
+        return "fail", f"{kept} of {len(judged)} limits are kept{said and f'; {said}'}"
+    words = f"All {kept} limits are kept" if kept > 1 else "The limit is kept"
+    if not happened:
+        return "pass", words
+    return ("fail" if any(one.severe for one in happened) else "open"), f"{words}, but {said}"
+
+
+def _incidents(result: Result) -> tuple[Incident, ...]:
+    """What happened at any time of a run; nothing of other results."""
+    if not isinstance(result, Run) or result.outputs == 0:
+        return ()
+    with result.recorded() as recorded:
+        return incidents(recorded, result.drive)
 
 
 def limit_in_words(number: KeyNumber | None) -> str:

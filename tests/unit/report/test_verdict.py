@@ -1,7 +1,11 @@
 """What is said of limits and differences."""
 
+from collections.abc import Callable
+
+import numpy as np
 import pytest
 
+from beltdyn.model import Drive
 from beltdyn.report.verdict import SideBySide, in_unit, limit_in_words, verdict
 from beltdyn.results import KeyNumber, Run
 
@@ -20,6 +24,32 @@ def number(value: float, limit: float | None = None) -> KeyNumber:
 )
 def test_the_verdict(run: Run, limits: dict[str, float], said: tuple[str, str]) -> None:
     assert verdict([Run(run.dataset, run.drive.replace(limits=limits))]) == said
+
+
+KEPT = {"largest_hub_load": 1e4, "largest_tension": 1e4}
+
+
+def test_gross_slip_and_slack_at_any_time_fail(make_run: Callable[..., Run]) -> None:
+    sliding, tension = np.zeros((101, 2)), np.full((101, 2), 40.0)
+    sliding[10:20, 1], tension[5, 0] = 0.5, -1.0
+    for changed, words in (
+        ({"sliding_speed": sliding}, "All 2 limits are kept, but the belt slid through on driven from"),
+        ({"span_tension": tension}, "All 2 limits are kept, but driver-driven went slack at"),
+    ):
+        run = make_run(**changed)
+        kind, said = verdict([Run(run.dataset, run.drive.replace(limits=KEPT))])
+        assert kind == "fail"
+        assert said.startswith(words)
+        assert verdict([run])[1].startswith("No limit is judged; ")
+
+
+def test_a_stop_qualifies(make_run: Callable[..., Run], drive: Drive) -> None:
+    slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
+    stopped = {**slide, "stops": [-0.01, 0.01], "stop_stiffness": 1e5}
+    dataset = make_run().dataset.assign(tensioner_position=(("time", "tensioner"), np.full((101, 1), 0.02)))
+    kind, said = verdict([Run(dataset, drive.replace(limits=KEPT, tensioner=[stopped]))])
+    assert kind == "open"
+    assert "but the tensioner of driven lay on its upper stop from" in said
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Path
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Run, summarize
-from beltdyn.results.checks.sliding import SLIDING_LIMIT
+from beltdyn.results.incidents import SLIDING_LIMIT
 from beltdyn.solve import steady_state
 from beltdyn.solve.steady_running.changed_drive import with_load
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
 from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.slip_margin import STATE, friction_used
 
@@ -15,9 +16,6 @@ SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep m
 
 MARGIN_LIMIT = 1.5
 """Smallest capstan margin that passes without a warning."""
-
-SLIDING_LIMIT = 1e-3
-"""Largest velocity of sliding of a whole arc, over the speed of the belt, that passes without a warning."""
 
 
 def gross_slip(evidence: Evidence) -> Iterator[Finding]:
@@ -81,13 +79,8 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     if evidence.drive.ends:
         return
     first, drive = evidence.window.first, evidence.drive
-    sliding, speed, torque = (
-        np.asarray(evidence.recorded[name]) for name in ("sliding_speed", "pulley_speed", "pulley_torque")
-    )
-    limit = SLIDING_LIMIT * np.max(np.abs(rim_speeds(speed, drive)[:, 0]))
-    times, slid = evidence.time[:first], np.abs(sliding[:first]) > limit
-    beside = np.pad(slid, ((1, 1), (0, 0)))
-    reached = slid & (beside[:-2] | beside[2:])
+    torque, times = np.asarray(evidence.recorded["pulley_torque"]), evidence.time[:first]
+    reached = slides_through(evidence.recorded, drive)[:first]
     found, longest = [], 0.0
     for number in np.flatnonzero(reached.any(axis=0)).tolist():
         when = reached[:, number]

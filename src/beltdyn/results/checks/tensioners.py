@@ -8,6 +8,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.model import off_the_stop, unstable_balance
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.incidents import on_stops
 
 
 def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
@@ -22,9 +23,8 @@ def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
     for number, tensioner in enumerate(evidence.drive.moving_tensioners):
         if tensioner.stops is None:
             continue
-        position = np.asarray(evidence.recorded["tensioner_position"])[:, number]
-        lower, upper = tensioner.stops
-        for name, on in (("lower", position <= lower), ("upper", position >= upper)):
+        lower, upper = (on[:, number] for on in on_stops(evidence.recorded, evidence.drive))
+        for name, on in (("lower", lower), ("upper", upper)):
             if on.any():
                 tension = float(np.nanmean(np.asarray(evidence.recorded["span_tension"])[on]))
                 yield Finding(

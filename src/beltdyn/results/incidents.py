@@ -1,0 +1,118 @@
+"""What happens at any time of a run: belts that slide through, spans that go slack, tensioners on a stop."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from beltdyn.arrays import BoolArray
+from beltdyn.model import Drive
+from beltdyn.results.mechanics import rim_speeds
+from beltdyn.results.recorded import Recorded, names
+
+SLIDING_LIMIT = 1e-3
+"""Largest velocity of sliding of a whole arc, over the speed of the belt, that is not yet gross slip."""
+GROSS_SLIP, SLACK, STOP = "gross slip", "slack", "stop"
+
+
+@dataclass(frozen=True, slots=True)
+class Incident:
+    """Something that happened at any time of a run.
+
+    Attributes
+    ----------
+    kind : str
+        `GROSS_SLIP`, `SLACK` or `STOP`.
+    name : str
+        Name of the pulley or the span.
+    periods : tuple of tuples of float
+        From when to when, s; none in a result without time.
+    side : str
+        "lower" or "upper" stop.
+    """
+
+    kind: str
+    name: str
+    periods: tuple[tuple[float, float], ...]
+    side: str = ""
+
+    @property
+    def severe(self) -> bool:
+        """Whether no drive may do that."""
+        return self.kind != STOP
+
+    def __str__(self) -> str:
+        words = {
+            GROSS_SLIP: f"the belt slid through on {self.name}",
+            SLACK: f"{self.name} went slack",
+            STOP: f"the tensioner of {self.name} lay on its {self.side} stop",
+        }[self.kind]
+        if not self.periods:
+            return words
+        often = f", {len(self.periods)} times" if self.periods[1:] else ""
+        begin, end = self.periods[0][0], self.periods[-1][1]
+        when = f"at {begin:.4g} s" if begin == end else f"from {begin:.4g} to {end:.4g} s"
+        return f"{words} {when}{often}"
+
+
+def incidents(recorded: Recorded, drive: Drive) -> tuple[Incident, ...]:
+    """Find what happened at any time of a run.
+
+    Parameters
+    ----------
+    recorded : Recorded
+        What was recorded, with at least one output.
+    drive : Drive
+        The drive. A belt with ends that slides does what it is there for.
+    """
+    found = [
+        (GROSS_SLIP, name, "", on) for name, on in _each(names(recorded, "pulley"), slides_through(recorded, drive))
+    ]
+    found += [(SLACK, name, "", on) for name, on in _each(names(recorded, "span"), is_slack(recorded))]
+    for side, stopped in zip(("lower", "upper"), on_stops(recorded, drive), strict=True):
+        found += [
+            (STOP, name, side, on) for name, on in _each([one.pulley for one in drive.moving_tensioners], stopped)
+        ]
+    time = np.asarray(recorded["time"])
+    return tuple(Incident(kind, name, _periods(time, on), side) for kind, name, side, on in found)
+
+
+def slides_through(recorded: Recorded, drive: Drive) -> BoolArray:
+    """Whether the belt slides on whole arcs, at two outputs or more, shape (outputs, pulleys)."""
+    sliding, speed = (np.asarray(recorded[name]) for name in ("sliding_speed", "pulley_speed"))
+    slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, drive)[:, 0]))
+    if drive.ends:
+        return np.zeros_like(slid)
+    beside = np.pad(slid, ((1, 1), (0, 0)))
+    return np.asarray(slid & (beside[:-2] | beside[2:])) if len(slid) > 1 else slid
+
+
+def is_slack(recorded: Recorded) -> BoolArray:
+    """Whether the tension of each span is zero or below, shape (outputs, spans)."""
+    tension = np.asarray(recorded["span_tension"])
+    return np.asarray(np.isfinite(tension) & (tension <= 0.0))
+
+
+def on_stops(recorded: Recorded, drive: Drive) -> tuple[BoolArray, BoolArray]:
+    """Whether tensioners lie on their lower and on their upper stop, shape (outputs, tensioners) each."""
+    moving = drive.moving_tensioners
+    if not moving:
+        none = np.zeros((len(np.asarray(recorded["time"])), 0), dtype=bool)
+        return none, none
+    stops = np.array([one.stops or (-np.inf, np.inf) for one in moving])
+    position = np.asarray(recorded["tensioner_position"])
+    return position <= stops[:, 0], position >= stops[:, 1]
+
+
+def _each(labels: list[str], on: BoolArray) -> Iterator[tuple[str, BoolArray]]:
+    """Those that it happens to at all, and when."""
+    return ((name, column) for name, column in zip(labels, on.T, strict=True) if column.any())
+
+
+def _periods(time: np.ndarray, on: BoolArray) -> tuple[tuple[float, float], ...]:
+    """First and last instant of each period."""
+    if len(time) == 1:
+        return ()
+    edges = np.diff(np.concatenate([[0], on.astype(int), [0]]))
+    begins, ends = np.flatnonzero(edges > 0), np.flatnonzero(edges < 0) - 1
+    return tuple(zip(time[begins].tolist(), time[ends].tolist(), strict=True))
