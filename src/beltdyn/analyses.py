@@ -120,5 +120,8 @@ _ALL = (
     # one line for each
 )
 
+STEADY_KINDS = ("map", "traction", "duty", "tensioner", "sensitivity", "modes", "campbell", "response")
+"""Kinds of results about the belt at rest or in steady running on a mesh that stays."""
+
 ANALYSES = {analysis.name: analysis for analysis in _ALL}
 """All analyses by name."""

@@ -197,7 +197,7 @@ def _penetration(drive: Drive, installation: Installation) -> list[Finding]:
 
 def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
     """Judge the mesh as that of a drive that runs slowly with the tension at rest."""
-    if not installation.tension > 0 or drive.simulation.frame == "staying":
+    if not installation.tension > 0 or drive.frame.stays:
         return []
     running = Running(installation.tension)
     errors, needed = mesh_errors(drive, running, drive.elements), elements_needed(drive, running)
@@ -218,7 +218,7 @@ def other_creep(drive: Drive, factor: float) -> str:
 def describe_time(drive: Drive) -> str:
     """Say about how long a run will take, and what makes it so where that is long; empty where nothing is known."""
     settings, belt = drive.simulation, drive.belt
-    if settings.integrator != "generalized_alpha" or settings.frame == "staying":
+    if settings.integrator != "generalized_alpha" or drive.frame.stays:
         return ""
     element = drive.belt_length / drive.elements
     passage = element / belt.wave_speed

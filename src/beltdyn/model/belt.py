@@ -132,7 +132,11 @@ class Belt(Part):
         description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
     )
     elements: Count | None = Field(None, ge=3, le=100_000, description="the number of belt elements")
-    discretization: ElementName = Field(ANCF.name, description=f"the kind of elements: {_MEANINGS}")
+    discretization: ElementName | None = Field(
+        None,
+        description=f"the kind of elements: {_MEANINGS}; by default quintic on a mesh that stays, and ancf on one that "
+        "travels",
+    )
     integration: Literal["full", "reduced"] = Field(
         "full",
         description="the integration of the elastic forces: over Gauss points, or over three Lobatto points, "
@@ -288,8 +292,8 @@ class Belt(Part):
 
     @property
     def element_kind(self) -> ElementKind:
-        """What the elements are: `discretization` by its name."""
-        return ELEMENTS[self.discretization]
+        """The elements: `discretization` by its name, or the paper's; `Drive.element_kind` knows those of the mesh."""
+        return ELEMENTS[self.discretization or ANCF.name]
 
     @property
     def has_hysteresis(self) -> bool:

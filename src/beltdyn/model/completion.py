@@ -109,10 +109,9 @@ def _choices(given: Given, estimate: StaticEstimate) -> tuple[Choice, ...]:
         chosen.append(choose_standstill_creep(ratio, _largest_speed(given, path, strain)))
     if belt.elements is None:
         on_path = OnPath(belt, estimate.length, np.abs(path.radii), estimate.stiffness)
-        graded = given.staying and not given.ends
         chosen.append(
             choose_graded_elements(on_path, path, estimate.tension)
-            if graded
+            if given.graded
             else choose_elements(on_path, estimate.tension)
         )
     return tuple(chosen)

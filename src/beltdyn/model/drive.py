@@ -10,6 +10,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
+from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.machines import MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
@@ -19,6 +20,7 @@ from beltdyn.model.completion import Completed, complete, take_up
 from beltdyn.model.contact import Contact
 from beltdyn.model.defaults import critical_damping
 from beltdyn.model.end import AnyEnd, PathEnd, ends_on_path
+from beltdyn.model.frame import Frame, choose_frame, element_of
 from beltdyn.model.layout import Given, Layout, lay_out, loaded
 from beltdyn.model.limits import Limits
 from beltdyn.model.path import Path
@@ -96,22 +98,37 @@ class Drive(Part):
 
     @model_validator(mode="after")
     def _joint_fits_the_belt(self) -> Self:
-        if self.simulation.joint == "multipliers" and not self.belt.element_kind.has_ends:
+        if self.simulation.joint == "multipliers" and not self.element_kind.has_ends:
             raise ValueError(
-                f'simulation.joint = "multipliers" does not fit belt.discretization = "{self.belt.discretization}": '
+                f'simulation.joint = "multipliers" does not fit belt.discretization = "{self.element_kind.name}": '
                 'its elements have no ends to tie. Choose joint = "shared_node", or discretization = "ancf".'
             )
         return self
 
     @model_validator(mode="after")
     def _ends_fit_the_belt(self) -> Self:
-        kind = f'belt.discretization = "{self.belt.discretization}"'
+        kind = f'belt.discretization = "{self.element_kind.name}"'
         if self.ends and self.simulation.joint == "multipliers":
             raise ValueError('simulation.joint = "multipliers" ties the ends of a belt that has [[end]]. Remove one')
-        if self.ends and not self.belt.element_kind.has_ends:
+        if self.ends and not self.element_kind.has_ends:
             raise ValueError(f'[[end]] does not fit {kind}, whose elements have no ends. Choose "ancf"')
-        if any(end.turning_held for end in self.ends) and self.belt.element_kind.turned < 0:
+        if any(end.turning_held for end in self.ends) and self.element_kind.turned < 0:
             raise ValueError(f'end.clamped does not fit {kind}, whose nodes do not turn. Choose "ancf"')
+        return self
+
+    @model_validator(mode="after")
+    def _fits_its_mesh(self) -> Self:
+        tolerance, frame = self.simulation.force_tolerance, self.frame
+        if tolerance is not None and not frame.stays:
+            raise ValueError(
+                f"simulation.force_tolerance = {tolerance:g} does not fit a mesh that travels, as this one does, "
+                f"{frame.reason}: it is not refined. Remove one of them"
+            )
+        if self.ends and frame.stays:
+            raise ValueError(
+                'simulation.frame = "staying" does not fit an open belt: no belt flows past its ends. Set '
+                'simulation.frame = "travelling", or leave it out'
+            )
         return self
 
     @property
@@ -153,10 +170,21 @@ class Drive(Part):
         return loaded(self.completed.belt, self.path_ends)
 
     @cached_property
+    def frame(self) -> Frame:
+        """On which mesh the drive is simulated over time, and why."""
+        return choose_frame(self.simulation, self.belt, self.contact, bool(self.ends))
+
+    @property
+    def element_kind(self) -> ElementKind:
+        """The elements of that mesh."""
+        return ELEMENTS[element_of(self.belt, self.frame)]
+
+    @cached_property
     def layout(self) -> Layout:
         """The belt laid around its pulleys, before anything is computed of its state."""
-        staying = (self.simulation.frame, self.simulation.mesh) == ("staying", "auto")
-        return lay_out(Given(self.belt, self.pulleys, self.contact, self.tensioners, self.path_ends, staying))
+        graded = self.frame.stays and self.simulation.mesh == "auto"
+        belt = self.belt.replace(discretization=self.element_kind.name)
+        return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded))
 
     @cached_property
     def completed(self) -> Completed:
@@ -313,6 +341,7 @@ class Drive(Part):
             belt = belt.replace(length=self.belt_length - distance)
         else:
             tensioners = take_up(completed, distance)
+        belt = belt.replace(discretization=self.belt.discretization)
         return self.replace(belt=belt, contact=completed.contact, tensioner=tensioners)
 
     @cached_property

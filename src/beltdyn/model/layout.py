@@ -31,8 +31,8 @@ class Given(NamedTuple):
     contact: Contact
     tensioners: tuple[Tensioner, ...]
     ends: tuple[PathEnd, ...] = ()
-    staying: bool = False
-    """Whether the mesh is to stay in place while the belt flows through it."""
+    graded: bool = False
+    """Whether the mesh is to be graded towards the ends of arcs, and stays in place."""
 
     def path_around(self, pulleys: Sequence[Pulley]) -> Path:
         """The path of the belt around pulleys, checked."""

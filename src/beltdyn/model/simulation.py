@@ -32,9 +32,10 @@ class Simulation(Part):
         description="the time between two outputs of what is recorded along the belt, in s; by default a hundredth of "
         "the duration",
     )
-    frame: Literal["travelling", "staying"] = Field(
-        "travelling",
-        description="whether the mesh travels with the belt, or stays in place while the belt flows through it",
+    frame: Literal["staying", "travelling"] | None = Field(
+        None,
+        description="whether the mesh stays in place while the belt flows through it, or travels with the belt; by "
+        "default it stays, unless the drive asks for what only a mesh that travels has",
     )
     mesh: Literal["auto", "uniform"] = Field(
         "auto",
@@ -102,10 +103,24 @@ class Simulation(Part):
             )
         return self
 
+    @property
+    def misfits_staying(self) -> list[tuple[str, str, str]]:
+        """Settings that only a mesh that travels has: key, value, and the value with which a mesh may stay."""
+        settings = (
+            ("start", self.start, ("equilibrium", "steady")),
+            ("integrator", self.integrator, ("generalized_alpha",)),
+            ("joint", self.joint, ("shared_node",)),
+        )
+        return [
+            (key, value, fits[0])
+            for key, value, fits in settings
+            if not (isinstance(value, EarlierRun) or value in fits)
+        ]
+
     @model_validator(mode="after")
     def _is_refined_or_not(self) -> Self:
         other = 'frame = "travelling"' if self.frame == "travelling" else 'mesh = "uniform"'
-        if self.force_tolerance is not None and (self.frame, self.mesh) != ("staying", "auto"):
+        if self.force_tolerance is not None and (self.frame == "travelling" or self.mesh == "uniform"):
             raise ValueError(
                 f"force_tolerance = {self.force_tolerance:g} does not fit {other}, which is not refined. Remove it, or "
                 'set frame = "staying" and mesh = "auto"'
@@ -114,17 +129,10 @@ class Simulation(Part):
 
     @model_validator(mode="after")
     def _fits_the_frame(self) -> Self:
-        if self.frame == "travelling":
-            return self
-        for key, value, fits in (
-            ("start", self.start, ("equilibrium", "steady")),
-            ("integrator", self.integrator, ("generalized_alpha",)),
-            ("joint", self.joint, ("shared_node",)),
-        ):
-            if not (value in fits or isinstance(value, EarlierRun)):
+        if self.frame == "staying":
+            for key, value, fit in self.misfits_staying:
                 raise ValueError(
-                    f'{key} = "{value}" does not fit frame = "staying". Set {key} = "{fits[0]}", or '
-                    'frame = "travelling"'
+                    f'{key} = "{value}" does not fit frame = "staying". Set {key} = "{fit}", or frame = "travelling"'
                 )
         return self
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from beltdyn.parts.messages import show
 from beltdyn.plot.several import given_keys
 from beltdyn.results import Result, Run
+from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.recorded import runs_steadily
 
 _MOST_DIFFERENCES = 40
@@ -40,7 +41,7 @@ def origin(result: Result) -> list[tuple[str, str]]:
     if isinstance(result, Run):
         integrator = said.get("integrator", settings.integrator)
         facts += [("integrator", f"{integrator}, rtol {settings.rtol:g}, start {settings.start}")]
-    facts += [("belt elements", f"{result.drive.elements}, {result.drive.belt.discretization}")]
+    facts += mesh_facts(said)
     facts += [(choice.key, choice.words) for choice in result.drive.completed.choices]
     return facts
 

@@ -75,10 +75,10 @@ def turn_window(recorded: Recorded, drive: Drive) -> Window:
         since_change = max(SHORTEST * elapsed, float(time[-1]) - _last_change(drive, time))
         longest = min(LONGEST * elapsed, since_change)
         turn = _belt_turns(recorded, drive, time)
-        element = Cycle(turn.phase * (drive.belt.element_kind.curves * drive.elements), 1)
+        element = Cycle(turn.phase * (drive.element_kind.curves * drive.elements), 1)
         waves = tuple(_waves(recorded, drive, turn))
         repeats = [((turn, *waves), 1), ((element, *waves), 0), ((turn,), 1), ((element,), 0)]
-        if drive.simulation.frame == "staying":
+        if drive.frame.stays:
             repeats = [*repeats[::2], (waves, 0)] if waves else repeats[::2]
         for cycles, turns in repeats:
             window = Window(time, cycles, turns)

@@ -118,7 +118,7 @@ def recorded_kind(dataset: "xr.Dataset", drive: Drive) -> ElementKind:
     ElementKind
         The drive's, or that of a mesh that stays in place.
     """
-    given, names = drive.belt.element_kind, tuple(dataset["coordinate"].values.tolist())
+    given, names = drive.element_kind, tuple(dataset["coordinate"].values.tolist())
     return next(kind for kind in (given, *ELEMENTS.values()) if kind.coordinates == names)
 
 

@@ -1,14 +1,23 @@
-"""Where a result comes from: the drive, the versions and the hour."""
+"""Where a result comes from: the drive, the mesh that was used, the versions and the hour."""
 
 import platform
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
+from typing import Any
 
 from beltdyn.analyses import RUN
+from beltdyn.elements import ANCF, QUINTIC
+from beltdyn.model import Drive
+from beltdyn.model.frame import Frame, unused_settings
 from beltdyn.results.schema import FORMAT
 
 _PACKAGES = ("beltdyn", "numba", "numpy", "scipy")
+MESH = ("mesh_frame", "mesh_frame_reason", "mesh_element", "mesh_elements", "mesh_unused")
+"""Attributes of results that tell of the mesh."""
+STAYING = Frame("staying", "as all analyses about rest or steady running")
+"""The mesh of these, whatever the drive asks for in runs."""
 
 
 def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
@@ -44,3 +53,40 @@ def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
 def _versions() -> dict[str, str]:
     """Of the packages that results depend on; finding them takes milliseconds."""
     return {f"{package}_version": version(package) for package in _PACKAGES}
+
+
+def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[str, Any]:
+    """Attributes that tell on which mesh an analysis has found its results, and what of the drive that leaves unused.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    frame : Frame
+        The mesh, and why.
+    elements : int, optional
+        Number of its elements, where there is one mesh.
+    """
+    element = QUINTIC.name if frame.stays else drive.belt.discretization or ANCF.name
+    unused = unused_settings(drive) if frame.stays else []
+    known = {} if elements is None else {"mesh_elements": elements}
+    values = (*frame, element, ", ".join(unused))
+    names = (name for name in MESH if name != "mesh_elements")
+    return dict(zip(names, values, strict=True)) | known
+
+
+def mesh_facts(attributes: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What a sheet tells of the mesh of a result; nothing of a result that does not know.
+
+    Parameters
+    ----------
+    attributes : mapping
+        Of a dataset or its file.
+    """
+    if "mesh_frame" not in attributes:
+        return []
+    count = f"{int(attributes['mesh_elements'])} " if "mesh_elements" in attributes else ""
+    words = Frame(attributes["mesh_frame"], str(attributes["mesh_frame_reason"])).words
+    facts = [("mesh", f"{count}{attributes['mesh_element']} elements, {words}")]
+    unused = str(attributes["mesh_unused"])
+    return [*facts, *([("not used", f"{unused}: only a mesh that travels has it")] if unused else [])]

@@ -3,6 +3,7 @@
 import math
 
 from beltdyn.model import Drive, Installation, describe_time, tensioner_balances
+from beltdyn.model.frame import unused_settings
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
 from beltdyn.parts.columns import aligned
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
@@ -61,12 +62,15 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
 
 def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tuple[str, str]]:
     length, path = drive.belt_length, installation.path.length
+    unused = unused_settings(drive) if drive.frame.stays else []
     return [
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:z.3%} longer on its path of {path:.5g} m"),
         *_taken_up(drive),
-        ("elements", f"{drive.elements} of {1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
+        ("mesh", f"{drive.elements} {drive.element_kind.name} elements, {drive.frame.words}"),
+        ("length of elements", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
+        *([("not used", f"{', '.join(unused)}: only a mesh that travels has it")] if unused else []),
         *_lost_in_the_belt(drive),
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
@@ -75,7 +79,7 @@ def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tu
 
 def _in_the_mean(drive: Drive) -> str:
     """Elements that travel with the belt are all of one length."""
-    return ", in the mean" if drive.simulation.frame == "staying" else ""
+    return ", in the mean" if drive.frame.stays else ""
 
 
 def _taken_up(drive: Drive) -> list[tuple[str, str]]:

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
+from beltdyn.analyses import STEADY_KINDS
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, loads
 from beltdyn.results.atomic import atomic_path
 from beltdyn.results.dataset import is_result, kind_of, unreadable
 from beltdyn.results.netcdf import write_dataset
-from beltdyn.results.provenance import provenance
+from beltdyn.results.provenance import STAYING, mesh_used, provenance
 from beltdyn.results.schema import Variable
 
 if TYPE_CHECKING:
@@ -147,6 +148,8 @@ def build_result(
         return {name: (variable.dims, values, variable.attributes) for name, (variable, values) in parts.items()}
 
     origin = provenance(drive.text, f"Belt drive, {kind}", kind)
+    if kind in STEADY_KINDS:
+        origin |= mesh_used(drive, STAYING)
     attributes = origin | {"status": "completed", "warnings": "\n".join(warnings)}
     return Result(xr.Dataset(labelled(variables), labelled(coordinates), attributes), drive)
 

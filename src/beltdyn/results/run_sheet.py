@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 from beltdyn.parts.columns import aligned
 from beltdyn.parts.quantity import RPM
+from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.recorded import attribute, runs_steadily
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
@@ -43,7 +44,7 @@ def run_sheet(run: Run) -> Sheet:
         ("", "tension N", "least N", "largest N", "belt speed m/s"),
         tuple(_spans(summary)),
     )
-    facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_solver(summary)))
+    facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_mesh_used(run), *_solver(summary)))
     return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *steady_parts(run), facts))
 
 
@@ -55,6 +56,12 @@ def _run_up(run: Run) -> list[tuple[str, str]]:
     part = "an unknown part" if math.isnan(left) else f"{left:.1%}"
     before = f"{time:.3g} s at the first speed, not recorded: {part} of the tensions is left of the start"
     return [*([("settling", before)] if time else []), *([("held constant", held)] if held else [])]
+
+
+def _mesh_used(run: Run) -> list[tuple[str, str]]:
+    """Elements and their number."""
+    with run.recorded() as recorded:
+        return mesh_facts(recorded.attrs)
 
 
 def _pulleys(title: str, summary: Summary) -> Table:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from beltdyn.analyses import STUDY
 from beltdyn.parts.columns import aligned
+from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.result import Result
 from beltdyn.results.run import Run
 from beltdyn.results.run_sheet import run_sheet
@@ -42,6 +43,7 @@ def sheet(result: Result) -> Sheet:
     dataset = result.dataset
     variables = dataset.data_vars.values()
     numbers = [(str(one.attrs["long_name"]), _single(one)) for one in variables if not one.dims]
+    numbers += mesh_facts(dataset.attrs)
     axes = tuple(str(dataset.attrs.get("axes", "")).split())
     tables, left_out = list[Table](), _AMONG_WARNINGS | {dataset.attrs.get("tables_by")}
     for dims in dict.fromkeys([axes, *((str(dimension),) for dimension in dataset.dims)]):

@@ -119,7 +119,7 @@ def _sizes(drive: Drive) -> dict[str, int]:
 def _bodies(drive: Drive) -> int:
     """Number of what has a coordinate beside the belt: rims, hub chains, controllers, belt, tensioners."""
     behind = sum(len(one.hub) + sum(load.state_lag is not None for load in one.load) for one in drive.pulleys)
-    flows = drive.simulation.frame == "staying"
+    flows = drive.frame.stays
     return len(drive.pulleys) + behind + flows + len(drive.moving_tensioners)
 
 

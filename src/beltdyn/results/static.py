@@ -8,6 +8,7 @@ import numpy as np
 
 from beltdyn.analyses import STATIC
 from beltdyn.model import ERROR_LIMITS, layer_lengths
+from beltdyn.results.provenance import MESH
 from beltdyn.results.resolution import Resolution, found_errors, mesh_error_attribute, mesh_resolution
 from beltdyn.results.result import Result, build_result
 from beltdyn.results.schema import COORDINATES, VARIABLES, Variable
@@ -93,6 +94,6 @@ def static_result(run: "Run") -> StaticResult:
         if name in instant.coords and used.issuperset(variable.dims)
     }
     result = build_result(STATIC, run.drive, variables, coordinates, run.warnings)
-    names = ("title", "drive_as_given", *map(mesh_error_attribute, ERROR_LIMITS))
+    names = ("title", "drive_as_given", *MESH, *map(mesh_error_attribute, ERROR_LIMITS))
     kept = {name: run.dataset.attrs[name] for name in names if name in run.dataset.attrs}
     return StaticResult(result.dataset.assign_attrs(kept), run.drive)

@@ -12,12 +12,11 @@ from beltdyn.analyses import ANALYSES, RUN, Analysis
 from beltdyn.model import Drive
 from beltdyn.model.toml_writer import refuse_functions
 from beltdyn.results import Run
-from beltdyn.solve.compilation import compile_kernels, usable_cores
+from beltdyn.solve.beginning import compile_ahead
+from beltdyn.solve.compilation import usable_cores
 from beltdyn.solve.progress import BatchProgress
 from beltdyn.solve.spawning import SPAWN, bare_workers
 from beltdyn.solve.worker import Ending, Work, analyse, start_worker
-from beltdyn.system.build import drive_system
-from beltdyn.system.state import laid
 
 _POLL = 0.2  # s
 
@@ -124,9 +123,8 @@ def _longest_first(drives: Mapping[Path, Drive | Run]) -> list[tuple[Path, Drive
 
 
 def _compile(drive: Drive, stop: SharedEvent) -> None:
-    system = drive_system(drive)
     try:
-        compile_kernels(system, laid(system, drive.path))
+        compile_ahead(drive)
     except KeyboardInterrupt:
         stop.set()
 

@@ -2,10 +2,14 @@
 
 from collections.abc import Callable
 
+import numpy as np
+
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.earlier_run import EarlierRun
-from beltdyn.solve.earlier_run import begin_from
+from beltdyn.model.frame import Frame
+from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.earlier_run import begin_from, with_instant
 from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrators.settling import Start
 from beltdyn.solve.integrators.trajectory import Integrator
@@ -16,10 +20,40 @@ from beltdyn.solve.steady_running.flowing_start import Beginning, begin_flowing
 from beltdyn.solve.steady_running.travelling_start import Held, steady_state_on
 from beltdyn.system.arrays import System
 from beltdyn.system.build import drive_system
+from beltdyn.system.build_staying import flowing_system, staying_system
 from beltdyn.system.state import State, laid
 
 Begin = Callable[[Drive, System, State, Integrator, Report | None], Start]
 """``begin(drive, system, state, integrator, progress) -> Start``, from the drive and its state at rest."""
+
+
+def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
+    """The drive with the instant and the mesh of the earlier run in which it begins, and its mesh with the reason.
+
+    Where the drive leaves the mesh open, it is that of an earlier run, and travels where the integrator needs it.
+
+    Raises
+    ------
+    ModelError
+        If there is no such run, or it has no such state.
+    """
+    begun = with_instant(drive)
+    if begun.simulation.frame != drive.simulation.frame:
+        return begun, begun.frame._replace(reason="as in the run in which it begins")
+    if drive.simulation.frame is None and drive.frame.stays and not isinstance(integrator, GeneralizedAlpha):
+        moved = begun.replace(simulation=begun.simulation.replace(frame="travelling"))
+        return moved, moved.frame._replace(reason=f"since the integrator is {integrator.name}")
+    return begun, begun.frame
+
+
+def compile_ahead(drive: Drive) -> None:
+    """Compile the kernels of a run once, before several processes need them."""
+    if drive.frame.stays:
+        lengths = np.full(drive.elements, drive.belt_length / drive.elements)
+        system = flowing_system(staying_system(drive, lengths), np.array([1.0, 0.0]))
+    else:
+        system = drive_system(drive)
+    compile_kernels(system, laid(system, drive.path))
 
 
 def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None) -> Beginning:
@@ -28,7 +62,7 @@ def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None
     Parameters
     ----------
     drive, integrator, progress
-        As for `simulate`; of an earlier run, with the instant from `with_instant`.
+        As for `simulate`; from `settled`.
 
     Raises
     ------
@@ -36,7 +70,7 @@ def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None
         As `simulate`.
     """
     settings = drive.simulation
-    staying = settings.frame == "staying"
+    staying = drive.frame.stays
     if staying and not isinstance(integrator, GeneralizedAlpha):
         raise ModelError(
             f'the integrator "{integrator.name}" does not fit simulation.frame = "staying", whose flow it does not '
@@ -73,7 +107,7 @@ def begin_on(
         As `simulate`.
     """
     settings = mesh.drive.simulation
-    if settings.frame == "staying" or isinstance(settings.start, EarlierRun):
+    if mesh.drive.frame.stays or isinstance(settings.start, EarlierRun):
         found = mesh
     else:
         found = _travelling(mesh, progress)

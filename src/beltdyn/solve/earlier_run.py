@@ -28,7 +28,6 @@ _SAME = 1e-6
 _FREE = frozenset({"name", "description", "limits", "simulation", "steady"})
 """Groups of a drive file in which drives may differ of which one begins in a state of the other."""
 _FREE_OF_PULLEYS = frozenset({"speed", "harmonics", "torque", "load", "inertia", "mass", "friction"})
-_KEPT_SETTINGS = ("frame", "joint")
 
 
 def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
@@ -99,7 +98,7 @@ def recorded_state(run: Run, time: float, system: System) -> State:
 
 
 def with_instant(drive: Drive) -> Drive:
-    """The drive with the instant of the earlier run in which it begins; any other drive as it is.
+    """The drive with the instant of the earlier run in which it begins, and its mesh; any other drive as it is.
 
     Parameters
     ----------
@@ -116,7 +115,8 @@ def with_instant(drive: Drive) -> Drive:
         return drive
     with _opened(start) as run:
         start = start.replace(time=instant_of(run, start.time, "time"))
-    return drive.replace(simulation=drive.simulation.replace(start=start))
+        frame = drive.simulation.frame or run.drive.frame.name
+    return drive.replace(simulation=drive.simulation.replace(start=start, frame=frame))
 
 
 def begin_from(drive: Drive) -> Beginning:
@@ -144,7 +144,7 @@ def begin_from(drive: Drive) -> Beginning:
     with _opened(start) as run:
         drive = _as_installed(drive, run)
         attributes: dict[str, Any] = {}
-        if drive.simulation.frame == "staying":
+        if drive.frame.stays:
             direction = np.array(run.dataset.attrs[DIRECTION], dtype=float)
             attributes = {DIRECTION: direction}
             system = flowing_system(staying_mesh(drive, run), direction)
@@ -209,7 +209,8 @@ def _fixed(drive: Drive) -> dict[str, Any]:
     data["pulley"] = [
         {key: value for key, value in pulley.items() if key not in _FREE_OF_PULLEYS} for pulley in data["pulley"]
     ]
-    return data | {"simulation": {key: drive.data["simulation"][key] for key in _KEPT_SETTINGS}}
+    data["belt"]["discretization"] = drive.element_kind.name
+    return data | {"simulation": {"frame": drive.frame.name, "joint": drive.simulation.joint}}
 
 
 def _difference(mine: Any, other: Any, path: str = "") -> tuple[str, str, str] | None:

@@ -84,7 +84,8 @@ def _seen(
     said: Mapping[str, Any],
 ) -> StaticResult:
     """A state as results, of a drive and of the one with the length that was found, with what is said of it."""
-    with Recording(drive, system, None, f"{drive.title} at rest, in static equilibrium", progress) as recording:
+    title, reason = f"{drive.title} at rest, in static equilibrium", "as at rest"
+    with Recording(drive, system, None, title, progress, mesh_frame_reason=reason) as recording:
         recording.start(found, system, unstable)
         recording.note(**said)
         recording.take(Chunk.start(system, state), "equilibrium")

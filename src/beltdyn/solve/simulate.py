@@ -10,7 +10,7 @@ from beltdyn.model.toml_writer import has_functions
 from beltdyn.parts.number_range import number_in
 from beltdyn.results import Run, require_room
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
-from beltdyn.solve.beginning import Begin, begin_on, mesh_of
+from beltdyn.solve.beginning import Begin, begin_on, mesh_of, settled
 from beltdyn.solve.checkpoint import Keeper, checkpoint_file, read_checkpoint
 from beltdyn.solve.compilation import compile_kernels
 from beltdyn.solve.earlier_run import with_instant
@@ -130,10 +130,10 @@ def record_run(
     if compare_steady:
         require_steady(drive)
     integrator = integrator or choose_integrator(drive)
-    drive = with_instant(drive)
+    drive, frame = settled(drive, integrator)
     mesh = mesh_of(drive, integrator, progress)
     title = f"{drive.title}, {drive.simulation.duration:g} s"
-    about = {**attributes, **mesh.attributes}
+    about = {**attributes, **mesh.attributes, "mesh_frame_reason": frame.reason}
     with Recording(drive, mesh.system, output, title, progress, overwrite, **about) as recording:
         recording.prepare()
         found = begin_on(mesh, integrator, progress, begin)

@@ -14,8 +14,7 @@ from beltdyn.machines.profiles.functions import go_on, profile_integral, profile
 from beltdyn.model import Drive, Pulley
 from beltdyn.parts.number_range import number_in
 from beltdyn.results.balance import STORED
-from beltdyn.solve.beginning import begin_on, mesh_of
-from beltdyn.solve.earlier_run import with_instant
+from beltdyn.solve.beginning import begin_on, mesh_of, settled
 from beltdyn.solve.integrators.generalized_alpha import GeneralizedAlpha
 from beltdyn.solve.integrators.integrator_state import IntegratorState, grown
 from beltdyn.solve.integrators.trajectory import Statistics, drive_task
@@ -94,7 +93,7 @@ class Simulator:
             raise ModelError(
                 f'a simulator steps by generalized_alpha, not by "{integrator.name}". Leave simulation.integrator out.'
             )
-        begin = begin_on(mesh_of(with_instant(drive), integrator, progress), integrator, progress)
+        begin = begin_on(mesh_of(settled(drive, integrator)[0], integrator, progress), integrator, progress)
         self.drive = begin.drive
         """With the length, or the take-up, that gives the installed tension."""
         self._integration = integrator.begin(drive_task(begin.drive, begin.system, begin.state, Statistics()))

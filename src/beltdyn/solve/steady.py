@@ -10,6 +10,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive
 from beltdyn.results import Run, mesh_error_attribute
+from beltdyn.results.provenance import STAYING, mesh_used
 from beltdyn.solve.instant import instant_given
 from beltdyn.solve.integrators.trajectory import Chunk
 from beltdyn.solve.observation.recording import Recording
@@ -273,7 +274,8 @@ def _as_run(drive: Drive, instant: float, found: _Found) -> Run:
     )
     shown = search.drive.model_copy(update={"simulation": turns})  # nothing else follows from a simulation
     title = f"{drive.title} in steady running, as at {instant:g} s"
-    with Recording(shown, search.constant, None, title, None) as recording:
+    mesh = mesh_used(drive, STAYING, search.constant.nodes)
+    with Recording(shown, search.constant, None, title, None, **mesh) as recording:
         recording.start(search.drive, search.constant, ())
         recording.take(_running(search.constant, search.running(), duration))
         recording.note(

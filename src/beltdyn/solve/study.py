@@ -16,7 +16,7 @@ from beltdyn.model.toml_writer import refuse_functions
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder
-from beltdyn.solve.compilation import compile_kernels
+from beltdyn.solve.beginning import compile_ahead
 from beltdyn.solve.progress import Pace, Phase, Progress, Report
 from beltdyn.solve.studies.dispatch import Dispatch
 from beltdyn.solve.studies.executors import ThisProcess, Workers, workers_of
@@ -24,8 +24,6 @@ from beltdyn.solve.studies.point_work import PointWork
 from beltdyn.solve.studies.result_columns import require_reductions
 from beltdyn.solve.studies.study_plan import plan_of
 from beltdyn.solve.studies.study_table import StudyTable
-from beltdyn.system.build import drive_system
-from beltdyn.system.state import laid
 
 _OWN = ("output", "progress", "overwrite", "start", "integrator", "resume")
 """Parameters of analyses that a study fills in, or leaves alone."""
@@ -111,7 +109,7 @@ def study(
         teller = _Teller(table, progress, workers)
         if waiting and scheduler is None:
             teller.compiling()
-            _compile(drive)
+            compile_ahead(drive)
         Dispatch(workers, work, plan.changes, table.take, teller.tell).run(waiting)
     return table.result()
 
@@ -150,12 +148,6 @@ def _folder(study: ParameterStudy, output: Path | None) -> Path | None:
     if output is None:
         raise ModelError("keep_files = true needs a result file, beside which theirs are kept. Name an output.")
     return make_folder(output.with_name(f"{output.stem}-points")).resolve()
-
-
-def _compile(drive: Drive) -> None:
-    """Compile kernels once, before processes need them."""
-    system = drive_system(drive)
-    compile_kernels(system, laid(system, drive.path))
 
 
 class _Teller:

@@ -214,7 +214,7 @@ def _rims(pulleys: Sequence[Pulley], radii: FloatArray) -> RoundRims | ShapedRim
 
 def _at_ends(drive: Drive) -> dict[str, Any]:
     """Keywords of `belt_system` for the ends of an open belt."""
-    ends, turned = tuple(zip((0, -1), drive.ends, strict=False)), drive.belt.element_kind.turned
+    ends, turned = tuple(zip((0, -1), drive.ends, strict=False)), drive.element_kind.turned
     held = [(node, c) for node, end in ends if end.held for c in (0, 1)]
     clamped = [(node, turned + c) for node, end in ends if end.turning_held for c in (0, 1)]
     return {

@@ -118,7 +118,7 @@ def test_creep_lengths_fill_the_smallest_gripping_arc() -> None:
 
 
 def test_the_mesh_resolves_tension_and_slip() -> None:
-    given = drive()
+    given = drive(simulation=RUN | {"frame": "travelling"})
     errors = mesh_errors(given, Running(400.0), given.elements)
     coarser = mesh_errors(given, Running(400.0), given.elements - 1)
     assert errors["tension"] <= 0.005
@@ -127,14 +127,15 @@ def test_the_mesh_resolves_tension_and_slip() -> None:
 
 
 def test_it_is_told_which_mesh_resolves_pressures() -> None:
-    given = drive()
+    run = RUN | {"frame": "travelling"}
+    given = drive(simulation=run)
     (reason,) = (choice.reason for choice in given.completed.choices if choice.key == "belt.elements")
     finer = int(reason.rpartition("contact pressures need ")[2])
     assert finer > given.elements
     assert advise(given, install(given)) == []
-    (finding,) = advise(drive({"elements": given.elements}), install(given))
+    (finding,) = advise(drive({"elements": given.elements}, simulation=run), install(given))
     assert f"Set belt.elements = {finer} for all of that" in str(finding)
-    assert advise(drive({"elements": finer}), install(given)) == []
+    assert advise(drive({"elements": finer}, simulation=run), install(given)) == []
 
 
 def test_a_settled_drive_keeps_what_was_chosen() -> None:

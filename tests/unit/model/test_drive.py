@@ -17,7 +17,7 @@ def test_constructor_takes_parts_or_mappings(drive: Drive) -> None:
         belt=drive.belt,
         pulley=[drive.pulleys[0], drive.pulleys[1].model_dump()],
         contact=drive.contact,
-        simulation={"duration": 1.0, "output_interval": "1 ms", "start": "laid"},
+        simulation={"duration": 1.0, "output_interval": "1 ms", "frame": "travelling", "start": "laid"},
     )
     assert again == drive
     assert hash(again) == hash(drive)

@@ -48,7 +48,7 @@ def test_a_run_that_begins_later_ends_as_much_later() -> None:
             'start_at = 0.5 s does not fit start = "equilibrium", a belt at rest. Set start = "steady"',
         ),
         ({"start": "steady", "start_at": -0.5}, "must be at least 0"),
-        ({"force_tolerance": 0.01}, 'force_tolerance = 0.01 does not fit frame = "travelling", which is not refined'),
+        ({"frame": "travelling", "force_tolerance": 0.01}, 'does not fit frame = "travelling", which is not refined'),
         (
             {"frame": "staying", "mesh": "uniform", "force_tolerance": 0.01},
             'does not fit mesh = "uniform", which is not',

@@ -34,7 +34,7 @@ def open_account(evidence: Evidence) -> Iterator[Finding]:
 
 def _closing(drive: Drive) -> str:
     """What closes the account: on the mesh that stays finer elements, or shorter steps."""
-    if drive.simulation.frame == "travelling":
+    if not drive.frame.stays:
         return shorter_steps(drive)
     return (
         f"On the mesh that stays the account closes with the mesh: set belt.elements = {2 * drive.elements}, or a "

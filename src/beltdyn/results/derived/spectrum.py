@@ -243,7 +243,7 @@ def element_order(drive: Drive, pulley: int) -> float:
     >>> round(bd.derived.element_order(drive, 0), 2)
     8.0
     """
-    if drive.simulation.frame == "staying":
+    if drive.frame.stays:
         return float("inf")
     turn = 2.0 * np.pi * float(drive.radii[pulley])
     return drive.elements * turn / drive.path.length

@@ -12,6 +12,7 @@ import numpy as np
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.errors import SlipError
 from beltdyn.model import Drive
+from beltdyn.model.frame import Frame, FrameName
 from beltdyn.results import (
     RECORDED,
     FileRecorder,
@@ -21,6 +22,7 @@ from beltdyn.results import (
     Status,
     provenance,
 )
+from beltdyn.results.provenance import mesh_used
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import FILTER_REACH, FILTERED, TIMES
 from beltdyn.signals import uninterrupted
@@ -32,6 +34,7 @@ from beltdyn.solve.observation.outlook import step_bound
 from beltdyn.solve.observation.result_layout import result_layout
 from beltdyn.solve.progress import Pace, Phase, Progress, Report
 from beltdyn.system.arrays import System
+from beltdyn.system.frame import Travelling
 from beltdyn.system.state import laid
 
 _SECONDS_BETWEEN_WRITES = 0.25
@@ -92,7 +95,7 @@ class Recording:
         self._drive, self._system, self._progress = drive, system, progress
         self._path = Path(output) if output is not None else None
         self._title, self._about = title, attributes
-        layout, origin = result_layout(drive, system), provenance(drive.text, title) | attributes
+        layout, origin = result_layout(drive, system), provenance(drive.text, title) | self._mesh() | attributes
         self._recorder: Recorder = (
             FileRecorder(self._path, layout, origin, overwrite) if self._path else MemoryRecorder(layout, origin)
         )
@@ -111,6 +114,12 @@ class Recording:
         self._ended: float | None = None
         self._ending = False
         self._cpu_started, self._cpu_ended = time.process_time(), 0.0
+
+    def _mesh(self) -> dict[str, Any]:
+        """Attributes that tell of the mesh."""
+        name: FrameName = "travelling" if isinstance(self._system.frame, Travelling) else "staying"
+        frame = self._drive.frame if self._drive.frame.name == name else Frame(name, "as the analysis needs it")
+        return mesh_used(self._drive, frame, len(self._system.length))
 
     def keep(self) -> dict[str, Any]:
         """Write what waits, and give all that is needed to go on from there in another process."""
@@ -200,7 +209,8 @@ class Recording:
         """
         layout = result_layout(drive, system)
         if drive is not self._drive:
-            attributes = provenance(drive.text, self._title) | {"drive_as_given": self._drive.text, **self._about}
+            origin = provenance(drive.text, self._title) | self._mesh()
+            attributes = origin | {"drive_as_given": self._drive.text, **self._about}
             self._recorder.revise(layout, attributes)
         if unstable:
             self._findings["unstable_tensioners"] = ", ".join(unstable)

@@ -140,10 +140,9 @@ def on_equal_elements(drive: Drive) -> Drive:
     drive
         The drive; a number of elements that it leaves open is chosen for that mesh.
     """
-    settings = drive.simulation
-    if settings.frame == "travelling":
+    if not drive.frame.stays:
         return drive
-    return drive.replace(simulation=settings.replace(frame="travelling", force_tolerance=None))
+    return drive.replace(simulation=drive.simulation.replace(frame="travelling", force_tolerance=None))
 
 
 def _tell(drive: Drive, progress: Report | None, phase: Phase) -> None:

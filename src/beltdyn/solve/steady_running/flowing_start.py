@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.model.defaults import MOST
 from beltdyn.model.graded_mesh import FINENESS
@@ -50,15 +49,10 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
     Raises
     ------
     ModelError
-        If the belt is open, or the drive cannot run steadily where it is to begin so.
+        If the drive cannot run steadily where it is to begin so.
     ConvergenceError
         If there is no such state.
     """
-    if drive.ends:
-        raise ModelError(
-            'simulation.frame = "staying" does not fit an open belt: no belt flows past its ends. '
-            'Set simulation.frame = "travelling".'
-        )
     if progress is not None:
         progress(Progress(0.0, drive.simulation.duration, 0.0, 0, "equilibrium"))
     meshed = _meshed(drive)

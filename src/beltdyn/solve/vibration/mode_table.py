@@ -168,7 +168,9 @@ def _result(motions: SmallMotions, points: Points, found: list[_Found]) -> Resul
         {name: (one, labels[name]) for name, one in _COORDINATES.items() if name not in absent},
         list(_warnings(numbers, values)),
     )
-    ordered = made.dataset.isel(mode=np.argsort(~light, kind="stable")).assign_attrs(tables_by="damping")
+    ordered = made.dataset.isel(mode=np.argsort(~light, kind="stable")).assign_attrs(
+        tables_by="damping", mesh_elements=motions.system.nodes
+    )
     return Result(ordered, drive)
 
 

@@ -25,7 +25,7 @@ def require_mesh_that_stays(run: Run) -> None:
     ModelError
         If the mesh of the run travels.
     """
-    if run.drive.simulation.frame != "staying":
+    if not run.drive.frame.stays:
         raise ModelError(
             'the mesh of this run travels with the belt, simulation.frame = "travelling", so that nodes come and go at '
             'arcs, and no state of it stays. Run the drive again with frame = "staying", or find its modes about '
