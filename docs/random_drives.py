@@ -152,7 +152,7 @@ def _draw(rng: np.random.Generator) -> bd.Drive | None:
             belt={**belt, **long, "elements": max(12, elements)},
             pulley=pulleys,
             contact=contact,
-            simulation={"duration": _TURNS * turn, "rtol": 3e-4}
+            simulation={"duration": _TURNS * turn, "rtol": 3e-4, "frame": "travelling"}
             | dict.fromkeys(("output_interval", "field_interval"), turn / _OUTPUTS),
         )
 

@@ -200,7 +200,7 @@ def published_drive(creep_rate_factor: float, elements: int) -> Drive:
         creep_rate_factor=creep_rate_factor,
         moment_arm="point",
     )
-    simulation = Simulation(duration=2.45, output_interval=1e-3, field_interval=2e-3, rtol=RTOL)
+    simulation = Simulation(frame="travelling", duration=2.45, output_interval=1e-3, field_interval=2e-3, rtol=RTOL)
     return Drive(belt=belt, pulley=(driver, driven), contact=contact, simulation=simulation, gravity=(0.0, -GRAVITY))
 
 

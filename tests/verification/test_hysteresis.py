@@ -63,6 +63,7 @@ moment_arm = "rim"
 [simulation]
 duration = {1.8 * turn}
 output_interval = {turn / 200.0}
+frame = "travelling"
 rtol = 1e-3
 """)
 

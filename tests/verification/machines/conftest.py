@@ -30,7 +30,7 @@ BELT = {
 """EA = 100 kN, EI = 1.3e-3 N m^2 and 0.1 kg/m."""
 CONTACT: dict[str, Any] = {"stiffness": 3e7, "damping": 100.0, "friction": 0.6, "creep_rate_factor": 1e5}
 CONTACT |= {"friction_law": "force_slope", "moment_arm": "point"}
-SIMULATION = {"duration": 0.05, "output_interval": 1e-3, "rtol": 1e-4}
+SIMULATION = {"duration": 0.05, "output_interval": 1e-3, "rtol": 1e-4, "frame": "travelling"}
 
 
 @pytest.fixture(scope="session")

@@ -123,7 +123,7 @@ def drive(velocity: float) -> Drive:
             creep_velocity=velocity,
             moment_arm="point",
         ),
-        simulation=Simulation(duration=0.6, output_interval=1e-3, field_interval=1e-3),
+        simulation=Simulation(frame="travelling", duration=0.6, output_interval=1e-3, field_interval=1e-3),
     )
 
 
