@@ -14,7 +14,7 @@ def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path)
     assert facts["SHA-256 of the drive"] == hashlib.sha256(run.drive.text.encode()).hexdigest()
     assert facts["versions"].startswith("beltdyn 0.")
     assert facts["integrator"] == "generalized_alpha, rtol 0.0001, start laid"
-    assert facts["belt elements"] == "20, ancf"
+    assert facts["mesh"] == "20 ancf elements, travelling, as given"
 
 
 def test_differences_name_keys_and_values(run: Run) -> None:

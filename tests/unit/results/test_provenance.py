@@ -5,10 +5,16 @@ from datetime import UTC, datetime, timedelta
 from importlib.metadata import version
 
 import numpy as np
+import pytest
 
-from beltdyn.analyses import RUN
-from beltdyn.results import provenance
+from beltdyn.analyses import RUN, STEADY_KINDS
+from beltdyn.elements import ELEMENTS
+from beltdyn.model import Drive
+from beltdyn.results import build_result, provenance
+from beltdyn.results.provenance import STAYING, mesh_facts, mesh_used
 from beltdyn.results.schema import FORMAT
+from beltdyn.results.sheet import sheet
+from beltdyn.results.sheet_parts import Facts
 
 
 def test_a_result_names_its_drive_and_what_computed_it() -> None:
@@ -27,3 +33,22 @@ def test_the_hour_is_that_of_greenwich() -> None:
 
 def test_a_result_of_another_analysis_says_so() -> None:
     assert provenance("", "", "modes")["kind"] == "modes"
+
+
+@pytest.mark.parametrize("kind", STEADY_KINDS)
+@pytest.mark.parametrize("asked", ELEMENTS)
+def test_analyses_on_a_mesh_that_stays_say_which_elements_they_do_not_use(drive: Drive, kind: str, asked: str) -> None:
+    given = drive.replace(belt=drive.belt.replace(discretization=asked))
+    result = build_result(kind, given, {}, {})
+    unused = "" if asked == "quintic" else f'belt.discretization = "{asked}"'
+    said = result.dataset.attrs
+    assert (said["mesh_frame"], said["mesh_element"], said["mesh_unused"]) == ("staying", "quintic", unused)
+    facts = mesh_facts(said)
+    assert [name for name, _ in facts] == (["mesh", "not used"] if unused else ["mesh"])
+    assert sheet(result).parts[0] == Facts(tuple(facts))
+
+
+def test_elements_are_counted_where_there_is_one_mesh(drive: Drive) -> None:
+    assert mesh_facts(mesh_used(drive, drive.frame, 20)) == [("mesh", "20 ancf elements, travelling, as given")]
+    assert "mesh_elements" not in mesh_used(drive, STAYING)
+    assert mesh_facts({}) == []
