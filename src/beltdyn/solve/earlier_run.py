@@ -210,7 +210,7 @@ def _fixed(drive: Drive) -> dict[str, Any]:
         {key: value for key, value in pulley.items() if key not in _FREE_OF_PULLEYS} for pulley in data["pulley"]
     ]
     data["belt"]["discretization"] = drive.element_kind.name
-    return data | {"simulation": {"frame": drive.frame.name, "joint": drive.simulation.joint}}
+    return {"simulation": {"frame": drive.frame.name, "joint": drive.simulation.joint}} | data
 
 
 def _difference(mine: Any, other: Any, path: str = "") -> tuple[str, str, str] | None:

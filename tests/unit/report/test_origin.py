@@ -5,9 +5,11 @@ from pathlib import Path
 
 from beltdyn.report.origin import differing_keys, origin
 from beltdyn.results import Run, open_run
+from beltdyn.results.provenance import mesh_used
 
 
 def test_the_origin_names_versions_hashes_and_settings(run: Run, tmp_path: Path) -> None:
+    run.dataset.attrs |= mesh_used(run.drive, run.drive.frame, 20)
     path = run.save(tmp_path / "run.nc")
     facts = dict(origin(open_run(path)))
     assert facts["SHA-256 of run.nc"] == hashlib.sha256(path.read_bytes()).hexdigest()

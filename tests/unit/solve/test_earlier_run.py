@@ -126,7 +126,7 @@ def test_what_must_agree(whole: Run, given: Drive, changes: dict[str, object]) -
 
 def test_frame_mesh_and_instant_must_fit(whole: Run, given: Drive) -> None:
     start = {"simulation.start": {"file": str(whole.path)}}
-    frame = "travelling" if given.simulation.frame == "staying" else "staying"
+    frame = "travelling" if given.frame.stays else "staying"
     with pytest.raises(ModelError, match=r"simulation\.frame is .* in this drive"):
         simulate(given.with_({**start, "simulation.frame": frame}))
     with pytest.raises(ModelError, match=r"belt\.elements is .* in this drive"):
