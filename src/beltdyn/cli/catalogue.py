@@ -124,6 +124,10 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
         yield "friction", f"{entry.friction:.3g}, before the factor of the groove"
     if entry.contact_stiffness is not None:
         yield "contact_stiffness", f"{entry.contact_stiffness / 1e6:.3g} MN/m²"
+    if entry.measuring_force is not None:
+        yield "measuring_force", f"{entry.measuring_force:.4g} N, half of it in each strand"
+    if entry.largest_tension is not None:
+        yield "largest_tension", f"{entry.largest_tension:.4g} N"
     for name in LOSSES:
         if getattr(entry, name) > 0:
             yield name, f"{getattr(entry, name):.3g}{' s' if name in DAMPING_TIMES else ''}"
@@ -136,6 +140,8 @@ def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
     more = f"{2 * pi * offset:.3g} mm longer (2π × {offset:.3g} mm)" if offset else "as long"
     yield "pulleys", f"diameter = {entry.pulley_diameter} diameter; the tension line runs {line}"
     yield "belts", f"nominal_length = {length}; the tension line is {more}"
+    if entry.measuring_force:
+        yield "measured", f"{entry.measured_stretch - 1.0:.3%} longer than unstretched, under measuring_force"
     if entry.smallest_diameter is not None:
         yield "smallest pulley", f"{1e3 * entry.smallest_diameter:.3g} mm of {entry.pulley_diameter} diameter"
     if entry.friction is not None and entry.wedge_angle is not None:

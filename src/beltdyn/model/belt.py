@@ -4,17 +4,36 @@ from collections.abc import Mapping
 from functools import cached_property
 from math import pi, sin, sqrt
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import ConfigDict, Field, ModelWrapValidatorHandler, PrivateAttr, ValidationInfo, model_validator
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    model_serializer,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 
 from beltdyn.arrays import FloatArray
 from beltdyn.elements import ANCF, ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
 from beltdyn.model.belt_as_sold import as_sold, changes_as_sold, section_with, without_section
-from beltdyn.model.belt_form import DAMPING_TIMES, FORMS, LOSS_FACTORS, OWN, describe_forms, in_new_form, to_material
+from beltdyn.model.belt_form import (
+    DAMPING_TIMES,
+    FORMS,
+    LOSS_FACTORS,
+    OWN,
+    Nominal,
+    describe_forms,
+    in_new_form,
+    to_material,
+)
 from beltdyn.model.stretch_curve import StretchCurve
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, LineStiffness, Ratio, Stress, Time
@@ -30,7 +49,19 @@ else:
     ElementName = Literal[tuple(ELEMENTS)]
     StretchLawName = Literal[tuple(LAWS)]
 
-Side = Literal["inside", "outside"]
+_SIDES = MappingProxyType(dict.fromkeys(("back", "backside", "flat", "smooth"), "outside")) | dict.fromkeys(
+    ("front", "ribs", "ribbed", "grooves", "grooved"), "inside"
+)
+
+
+def read_side(given: Any) -> Any:
+    """The name of a side in a drive file, for another word that is said for it."""
+    return _SIDES.get(given.strip().lower(), given) if isinstance(given, str) else given
+
+
+Side = Annotated[
+    Literal["inside", "outside"], BeforeValidator(read_side, json_schema_input_type=Literal["inside", "outside"])
+]
 """The side of the belt that touches a pulley; the outside is the belt's back."""
 
 
@@ -44,7 +75,8 @@ class Belt(Part):
     In place of `density`, `youngs_modulus` and their factors a belt takes `axial_stiffness` (N),
     `bending_stiffness` (N m^2) and `mass_per_length` (kg/m), or the name of a `profile` of the catalogue and its
     number of `ribs`; they are turned into density, modulus and factors when the belt is made. In place of `length`,
-    that of the line that carries the tension, it takes the `nominal_length` by which it is sold.
+    that of the line that carries the tension, it takes the `nominal_length` by which it is sold, which two pulleys
+    measure that `measuring_force` pulls apart.
 
     `stretch_law` is ``"linear"`` for belts given so, ``"measured"`` for belts with a `stretch_curve`, and ``"green"``,
     as published, for belts given by their material, unless it is given.
@@ -74,6 +106,20 @@ class Belt(Part):
     )
     back_offset: Length = Field(
         0.0, ge=0, description="the distance from the back surface to the line that carries the tension, in m"
+    )
+    measuring_force: Force | None = Field(
+        None,
+        ge=0,
+        description="the force that pulls two equal pulleys apart while nominal_length is measured, two strands of the "
+        "belt together; without it that length is taken as unstretched, in N",
+    )
+    largest_tension: Force | None = Field(
+        None,
+        gt=0,
+        description="the tension below which the belt is used, all ribs together, of which `check` warns, in N",
+    )
+    smallest_diameter: Length | None = Field(
+        None, gt=0, description="the smallest diameter of a pulley for the belt, as pulleys are sold, in m"
     )
     crossed: Flag = Field(False, description="whether spans of the belt cross each other")
     wedge_angle: Angle | None = Field(
@@ -147,6 +193,7 @@ class Belt(Part):
     )
 
     _section: dict[str, Any] | None = PrivateAttr(None)
+    _nominal_length: float | None = PrivateAttr(None)
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
@@ -155,30 +202,48 @@ class Belt(Part):
 
     def value_of(self, key: str) -> Any:
         """As of any part; stiffnesses and mass follow from any form, the profile is known where one was given."""
-        if key in OWN:
+        if key in OWN or key == "length":
             return getattr(self, key)
         if key == "nominal_length":
-            return None if self.length is None else self.length - 2.0 * pi * self.pitch_offset
+            return None if self.length is None else self.nominal_length_of(self.length)
         return (self._section or {}).get(key, super().value_of(key))
+
+    @property
+    def arguments(self) -> dict[str, Any]:
+        """As of any part; a nominal length stands there as it was given."""
+        return self._with_its_length(super().arguments)
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """As of any part; a stiffness takes the place of the material, and a profile that of the section.
 
-        A belt made of a profile stays one, but where its material is changed.
+        A belt made of a profile stays one, but where its material is changed; one of a nominal length keeps that.
         """
-        section = self._section
+        arguments, section = super().merged(changes), self._section
         if section is not None and changes_as_sold(section, changes):
-            return without_section(super().merged(changes)) | section_with(section, changes) | dict(changes)
-        own = {key: getattr(self, key) for key in OWN}
-        return in_new_form(super().merged(changes), changes, own)
+            return without_section(arguments) | section_with(section, changes) | dict(changes)
+        return in_new_form(arguments, changes, {key: getattr(self, key) for key in OWN})
 
     @model_validator(mode="wrap")
     @classmethod
-    def _remember_its_profile(cls, data: Any, make: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
+    def _remember_how_it_is_sold(cls, data: Any, make: ModelWrapValidatorHandler[Self], info: ValidationInfo) -> Self:
         belt = make(data)
-        if belt is not data:
-            belt._section = as_sold(data, belt, (info.context or {}).get("base"))
+        if belt is data:
+            return belt
+        belt._section = as_sold(data, belt, (info.context or {}).get("base"))
+        if belt.length is not None and isinstance(data, Mapping) and data.get("nominal_length") is not None:
+            belt._nominal_length = Nominal.model_validate({"nominal_length": data["nominal_length"]}).nominal_length
+            object.__setattr__(belt, "length", belt.length / belt.measured_stretch)
         return belt
+
+    @model_serializer(mode="wrap")
+    def _as_given(self, dump: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """A nominal length is written as such, so that what it means follows the belt that is read."""
+        return self._with_its_length(dump(self))
+
+    def _with_its_length(self, data: dict[str, Any]) -> dict[str, Any]:
+        if self._nominal_length is None:
+            return data
+        return {key: value for key, value in data.items() if key != "length"} | {"nominal_length": self._nominal_length}
 
     @model_validator(mode="before")
     @classmethod
@@ -274,6 +339,20 @@ class Belt(Part):
         if self.elements is None:
             raise ModelError("belt.elements is open: a drive finds it. Take elements of the drive, or give them.")
         return self.elements
+
+    @property
+    def nominal_length(self) -> float | None:
+        """The length by which it is sold, m, where the belt is given so."""
+        return self._nominal_length
+
+    @property
+    def measured_stretch(self) -> float:
+        """Stretch of the belt under its measuring force, of which each of two strands carries half."""
+        return float(self.stretch_parameters.stretch(0.5 * (self.measuring_force or 0.0)))
+
+    def nominal_length_of(self, length: float) -> float:
+        """Length by which a closed belt of an unstretched length is sold, m."""
+        return length * self.measured_stretch - 2.0 * pi * self.pitch_offset
 
     def offset(self, side: Side) -> float:
         """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""

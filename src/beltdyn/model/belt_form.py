@@ -20,14 +20,16 @@ from beltdyn.parts.quantity import AxialStiffness, BendingStiffness, Count, Leng
 
 _POISSONS_RATIO = 0.3
 MATERIAL = ("density", "youngs_modulus", "axial_factor", "bending_factor")
-_BESIDE = dict.fromkeys(("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness"), 1)
+_FORCES = ("measuring_force", "largest_tension")
+_BESIDE = dict.fromkeys(
+    ("width", "axial_stiffness", "bending_stiffness", "mass_per_length", "contact_stiffness", *_FORCES), 1
+)
 _POWERS: dict[str, dict[str, int]] = {
     "ribs": _BESIDE,
     "width": _BESIDE,
     "diameter": {
-        **dict.fromkeys(("width", "thickness", "pitch_offset", "back_offset"), 1),
-        "axial_stiffness": 2,
-        "mass_per_length": 2,
+        **dict.fromkeys(("width", "thickness", "pitch_offset", "back_offset", "smallest_diameter"), 1),
+        **dict.fromkeys(("axial_stiffness", "mass_per_length", *_FORCES), 2),
         "bending_stiffness": 4,
     },
 }
@@ -39,7 +41,7 @@ LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
 LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
 STRETCH = ("stretch_law", "stretch_curve")
-TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *LOSSES)
+TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES, "smallest_diameter", *LOSSES)
 
 
 class Stiffnesses(Part):
@@ -68,8 +70,8 @@ class Nominal(Part):
 
     nominal_length: Length = Field(
         gt=0,
-        description="the length by which a closed belt is sold, in place of length: datum length of a V-belt, "
-        "effective length of a V-ribbed belt, inside length of another, in m",
+        description="the length by which a closed belt is sold, under measuring_force, in place of length: datum "
+        "length of a V-belt, effective length of a V-ribbed belt, inside length of another, in m",
     )
 
 
@@ -95,7 +97,8 @@ def to_material(data: Any, base: Path | None) -> Any:
     -------
     Any
         Keys that are fields of `Belt`: E = EA / bh, alpha2 = EI / (E b h^3 / 12), rho = m / bh, the law of stretch, and
-        what the catalogue says of the profile and the user does not; the length of the line that carries the tension.
+        what the catalogue says of the profile and the user does not; of a nominal length, that of the line that carries
+        the tension under the measuring force.
 
     Raises
     ------
@@ -108,7 +111,8 @@ def to_material(data: Any, base: Path | None) -> Any:
 def _with_length(data: Mapping[str, Any]) -> Mapping[str, Any]:
     """Turn a nominal length, if there is one, into that of the line that carries the tension.
 
-    That line lies outside the one of the nominal length by the pitch offset, all around.
+    That line lies outside the one of the nominal length by the pitch offset, all around. Both are lengths under the
+    measuring force.
     """
     values = dict(data)
     nominal = values.pop("nominal_length", None)

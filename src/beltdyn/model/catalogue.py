@@ -18,6 +18,7 @@ from beltdyn.parts.quantity import (
     Angle,
     AxialStiffness,
     BendingStiffness,
+    Force,
     Length,
     LineStiffness,
     MassPerLength,
@@ -25,6 +26,7 @@ from beltdyn.parts.quantity import (
     Time,
 )
 from beltdyn.parts.text_file import LONGEST_TOML, parse_toml, read_text
+from beltdyn.stretch import LAWS
 
 
 class Entry(Part):
@@ -73,6 +75,12 @@ class Entry(Part):
     stretch_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of stretch")
     bending_loss_factor: Ratio = Field(0.0, ge=0, le=1, description="the loss factor (tan delta) of bending")
     compression_loss_factor: Ratio = Field(0.0, ge=0, le=2, description="the loss factor of compression in grooves")
+    measuring_force: Force | None = Field(
+        None,
+        ge=0,
+        description="the force that pulls two equal pulleys apart while the nominal length is measured, in N",
+    )
+    largest_tension: Force | None = Field(None, gt=0, description="the tension below which the belt is used, in N")
     pulley_diameter: Literal["datum", "effective", "outside"] = Field(
         "outside", description="which diameter is twice the radius of a pulley: datum, effective or outside"
     )
@@ -81,6 +89,13 @@ class Entry(Part):
     )
     generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
+
+    @property
+    def measured_stretch(self) -> float:
+        """Stretch of the belt while its nominal length is measured, half of the force in each strand."""
+        curve = self.stretch_curve
+        law = LAWS["linear"].make(self.axial_stiffness) if curve is None else curve.parameters
+        return float(law.stretch(0.5 * (self.measuring_force or 0.0)))
 
     @model_validator(mode="before")
     @classmethod

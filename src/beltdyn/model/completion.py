@@ -79,9 +79,9 @@ def complete(layout: Layout) -> Completed:
         return Completed(belt, pulleys, contact, given.tensioners, path)
     estimate = given.estimate(path)
     _check_estimate(given, pulleys, estimate)
-    length = estimate.length if belt.length is None else belt.length
+    found = {"length": estimate.length} if belt.length is None else {}
     given = given._replace(
-        belt=belt.replace(length=length, installed_tension=None), contact=_with_stiffness(contact, estimate.stiffness)
+        belt=belt.replace(**found, installed_tension=None), contact=_with_stiffness(contact, estimate.stiffness)
     )
     choices += _choices(given, estimate)
     return Completed(

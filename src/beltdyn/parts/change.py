@@ -136,7 +136,7 @@ def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:
     """
     inner, steps = _innermost(part, path)
     other = inner.in_place_of.get(steps[0])
-    if other is None:
+    if other is None or steps[0] in inner.arguments:
         return path, size
     value = inner.value_of(steps[0])
     least, largest = (inner.replace(**{steps[0]: value + sense * size}).value_of(other) for sense in (-1.0, 1.0))

@@ -123,11 +123,14 @@ class Part(BaseModel):
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
         """The constructor's arguments with some values changed, as for `replace`."""
-        arguments = self.arguments
-        either = self.either or ()
+        arguments, either = self.arguments, self.either or ()
         for new in (key for key, value in changes.items() if value is not None):
-            stands_for = self.in_place_of.get(new, new)
-            if stands_for not in arguments and stands_for in either:
-                stands_for = next(other for other in either if other != stands_for)
-            arguments.pop(stands_for, None)
+            meant, given = self._meant(new), {self._meant(key) for key in arguments}
+            if meant in either and meant not in given:
+                meant = next(other for other in either if other != meant)
+            arguments = {key: value for key, value in arguments.items() if self._meant(key) != meant}
         return arguments | dict(changes)
+
+    def _meant(self, key: str) -> str:
+        """The argument that another one is turned into."""
+        return self.in_place_of.get(key, key)

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from beltdyn.model import Belt, Drive, json_schema, load, loads, read_catalogue
+from beltdyn.model import Belt, Drive, dumps, install, json_schema, load, loads, read_catalogue
 
 FORM = {"length": 1.0, "width": 0.02, "thickness": "5 mm"}
 STIFF = {"axial_stiffness": "120 kN", "bending_stiffness": 0.05, "mass_per_length": 0.1}
@@ -66,18 +66,63 @@ def test_the_round_belt_is_sold_by_diameter() -> None:
 @pytest.mark.parametrize("size", [{"profile": "PJ", "ribs": 5}, {"profile": "SPB", "ribs": 2}, {**STIFF, **FORM}])
 def test_nominal_length(size: dict[str, Any]) -> None:
     """It is measured around the pulleys' own diameters, and the tension line lies outside by its offset all around."""
-    sizes = {key: value for key, value in size.items() if key != "length"}
+    sizes = {key: value for key, value in size.items() if key != "length"} | {"measuring_force": 0.0}
     belt = make(nominal_length="1194 mm", **sizes)
     assert belt.length == pytest.approx(1.194 + 2 * pi * belt.pitch_offset, rel=1e-14)
     assert belt.replace(nominal_length=1.2).length == pytest.approx(1.2 + 2 * pi * belt.pitch_offset, rel=1e-14)
     assert make(nominal_length=1.0, pitch_offset="2 mm", **sizes).length == pytest.approx(1.0 + 0.004 * pi, rel=1e-14)
 
 
+CURVE = {"strains": [0.01, 0.02, 0.04], "tensions": [900.0, 1500.0, 2400.0]}
+
+
+@pytest.mark.parametrize(
+    ("given", "force"),
+    [
+        ({"profile": "PJ-elastic", "ribs": 5}, 250.0),
+        ({"profile": "PK", "ribs": 6}, 600.0),
+        ({"profile": "PK", "ribs": 6, "measuring_force": "500 N"}, 500.0),
+        ({"profile": "SPB", "ribs": 2}, 1800.0),
+        ({"profile": "PK", "ribs": 6, "stretch_law": "green"}, 600.0),
+        ({"profile": "PK", "ribs": 6, "stretch_curve": CURVE}, 600.0),
+        ({**STIFF, "width": 0.02, "thickness": 0.005, "measuring_force": 400.0}, 400.0),
+    ],
+)
+def test_a_belt_on_two_pulleys_its_nominal_length_around_has_half_its_measuring_force(
+    given: dict[str, Any], force: float
+) -> None:
+    """As it is measured: pulleys of diameter D at the distance C take 2 C + pi D, and each strand carries half."""
+    pulley = {"diameter": "150 mm", "inertia": 1.0}
+    drive = Drive(
+        belt={**given, "nominal_length": 0.8 + 0.15 * pi},
+        pulley=[{"name": "a", "center": (0, 0), **pulley}, {"name": "b", "center": (0.4, 0), **pulley}],
+        contact={"stiffness": 1e9, "friction": 0.3},
+        simulation={"duration": 1.0, "output_interval": 0.01},
+    )
+    assert drive.belt.measuring_force == force
+    assert install(drive).laid_tension == pytest.approx(force / 2, rel=1e-9)
+    assert loads(dumps(drive)) == drive
+    assert drive.belt.value_of("nominal_length") == pytest.approx(0.8 + 0.15 * pi, rel=1e-14)
+
+
+def test_a_nominal_length_stays_what_it_is_where_the_belt_changes() -> None:
+    """L = (Ln + 2 pi offset) / (1 + F / 2 EA): twice as stiff, the belt is longer without force."""
+    belt = make(profile="PK", ribs=6, nominal_length=1.2)
+    around = 1.2 + 2 * pi * belt.pitch_offset
+    assert belt.length == pytest.approx(around / (1 + 300.0 / 120e3), rel=1e-14)
+    assert belt.replace(axial_stiffness="240 kN").length == pytest.approx(around / (1 + 300.0 / 240e3), rel=1e-14)
+    assert belt.replace(measuring_force=0.0).length == pytest.approx(around, rel=1e-14)
+    assert belt.replace(elements=40).length == belt.length
+    assert belt.replace(length=1.1).nominal_length is None
+    assert belt.replace(length=1.1).replace(axial_stiffness="240 kN").length == 1.1
+    assert belt.replace(installed_tension=300.0).length is None
+
+
 def test_a_belt_of_nominal_length_fits_its_pulleys() -> None:
     """Two equal pulleys of effective diameter D at the distance C take the effective length 2 C + pi D."""
     pulley = {"diameter": "60 mm", "inertia": 1.0}
     drive = Drive(
-        belt={"profile": "PJ", "ribs": 4, "nominal_length": 0.6 + 0.06 * pi - 0.0015},
+        belt={"profile": "PJ", "ribs": 4, "measuring_force": 0, "nominal_length": 0.6 + 0.06 * pi - 0.0015},
         pulley=[{"name": "a", "center": (0, 0), **pulley}, {"name": "b", "center": (0.3, 0), **pulley}],
         contact={"stiffness": 1e8},
         simulation={"duration": 1.0, "output_interval": 0.01},
