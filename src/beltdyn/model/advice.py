@@ -9,6 +9,7 @@ from beltdyn.contact.friction import LAWS
 from beltdyn.model.drive import Drive
 from beltdyn.model.hand_set import judge_contact
 from beltdyn.model.installation import Installation, tensioner_balances
+from beltdyn.model.plausibility import judge_plausibility
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.parts.finding import Finding, listing
 
@@ -51,6 +52,7 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
         *_other_balances(drive, installation),
         *sunk,
         *judge_contact(drive, installation, soft=bool(lost or sunk)),
+        *judge_plausibility(drive, installation),
         *_mesh(drive, installation),
     ]
     return [str(finding) for finding in found]

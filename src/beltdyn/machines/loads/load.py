@@ -7,11 +7,12 @@ import numpy as np
 from pydantic import Field
 
 from beltdyn.arrays import FloatArray
-from beltdyn.kernel import kernel
+from beltdyn.kernel import interpreted, kernel
 from beltdyn.machines.profiles.harmonic import Harmonic
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import Schedule
 from beltdyn.parts.part import Part
+from beltdyn.records import blank, fill
 
 
 class ShaftState(NamedTuple):
@@ -149,6 +150,18 @@ class Load(Part):
     def has_mean(self) -> bool:
         """Whether its mean over the angle depends, without factor, on its command and the speed of the shaft alone."""
         return self.state_lag is None
+
+    def torque_over(self, angles: FloatArray, speed: float, time: float = 0.0) -> FloatArray:
+        """Torque without factor and harmonics at angles (rad), a speed (rad/s) and an instant (s), N m.
+
+        A controller counts as settled at its state zero.
+        """
+        constants, numbers = blank(self.constants), np.asarray(self.numbers, dtype=float)
+        fill(constants, self.values())
+        command = 0.0 if self.command is None else float(self.command.at([time])[0])
+        torque = interpreted(type(self).torque_at)
+        shafts = [ShaftState(time, float(one), speed, command, 0.0) for one in angles]
+        return np.array([torque(constants, numbers, shaft).torque for shaft in shafts])
 
     @staticmethod
     def mean_numbers(constants: np.record, numbers: FloatArray) -> FloatArray:

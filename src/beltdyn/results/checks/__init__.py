@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
-from beltdyn.results.checks.contact import deep_penetration, large_strain, leaves_pulley, slack_spans
+from beltdyn.results.checks.contact import deep_penetration, large_strain, large_tension, leaves_pulley, slack_spans
 from beltdyn.results.checks.creep import impossible_slip, regularised_slip
 from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
 from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
@@ -34,6 +34,7 @@ CHECKS: tuple[Check, ...] = (
     leaves_pulley,
     deep_penetration,
     large_strain,
+    large_tension,
     gross_slip,
     near_gross_slip,
     gross_slip_before,

@@ -91,6 +91,19 @@ def _deepest(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
     return depths.max(axis=0), instants[rows][depths.argmax(axis=0)]
 
 
+def large_tension(evidence: Evidence) -> Iterator[Finding]:
+    """Spans under more tension than their belt is used with."""
+    most, tension = evidence.drive.belt.largest_tension, np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
+    if most is not None and tension.max() >= most:
+        row, span = np.unravel_index(int(tension.argmax()), tension.shape)
+        yield Finding(
+            f"the span {names(evidence.recorded, 'span')[span]} carries {tension[row, span]:.4g} N at t = "
+            f"{evidence.time[row]:.4g} s, and the belt is used below {most:.4g} N.",
+            "Cords stretch for good, and belt and bearings live a fraction of their time.",
+            f"Take a belt {tension.max() / most:.2g} times as wide or more, or lower tension or load.",
+        )
+
+
 def large_strain(evidence: Evidence) -> Iterator[Finding]:
     """Spans that stretch more than belts do."""
     tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))

@@ -5,12 +5,10 @@ from math import tau
 
 import numpy as np
 
-from beltdyn.arrays import ComplexArray, FloatArray
-from beltdyn.kernel import interpreted
+from beltdyn.arrays import ComplexArray
 from beltdyn.machines import AngleSpeedTable, AngleTable, LoadTable
-from beltdyn.machines.loads.load import Load, ShaftState
+from beltdyn.machines.loads.load import Load
 from beltdyn.model import Drive
-from beltdyn.records import blank, fill
 
 _SAMPLES = 256
 """Angles of a cycle at which a torque is looked at."""
@@ -90,10 +88,10 @@ def averaged(drive: Drive) -> Drive:
 def _waves_of(load: Load, speed: float) -> dict[float, complex]:
     """Order -> amplitude, N m, of a load without its schedule."""
     if not isinstance(load, AngleTable | AngleSpeedTable):
-        mean = float(_over_angle(load, np.zeros(1), speed)[0]) if load.harmonics else 0.0
+        mean = float(load.torque_over(np.zeros(1), speed)[0]) if load.harmonics else 0.0
         return {wave.order: mean * wave.amplitude * exp(1j * wave.phase) for wave in load.harmonics}
     angles = load.cycle * np.arange(_SAMPLES) / _SAMPLES
-    spectrum: ComplexArray = 2.0 * np.fft.rfft(_over_angle(load, angles, speed))[1 : _SAMPLES // 2] / _SAMPLES
+    spectrum: ComplexArray = 2.0 * np.fft.rfft(load.torque_over(angles, speed))[1 : _SAMPLES // 2] / _SAMPLES
     kept = np.flatnonzero(np.abs(spectrum) > _LEAST * np.abs(spectrum).max(initial=1e-300))
     return {float((number + 1) * tau / load.cycle): complex(spectrum[number]) for number in kept}
 
@@ -104,16 +102,5 @@ def _averaged(load: Load) -> Load:
         return load
     angles = load.cycle * np.arange(_SAMPLES) / _SAMPLES
     speeds = list(load.speeds) if isinstance(load, AngleSpeedTable) else [0.0, 1.0]
-    torques = [float(_over_angle(load, angles, speed).mean()) for speed in speeds]
+    torques = [float(load.torque_over(angles, speed).mean()) for speed in speeds]
     return LoadTable(kind="table", speeds=speeds, torques=torques, schedule=load.schedule)
-
-
-def _over_angle(load: Load, angles: FloatArray, speed: float) -> FloatArray:
-    """Torque of a load without schedule and harmonics, N m, at angles (rad) and a speed (rad/s)."""
-    constants, numbers = blank(load.constants), np.asarray(load.numbers, dtype=float)
-    fill(constants, load.values())
-    command = 0.0 if load.command is None else float(load.command.at([0.0])[0])
-    torque = interpreted(type(load).torque_at)
-    return np.array(
-        [torque(constants, numbers, ShaftState(0.0, float(one), speed, command, 0.0)).torque for one in angles]
-    )

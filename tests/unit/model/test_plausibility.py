@@ -1,0 +1,108 @@
+"""What a supplier would ask back is said with both numbers, and nothing of a drive that is right."""
+
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+import pytest
+
+from beltdyn.model import Drive, advise, install, loads
+from beltdyn.model.plausibility import judge_plausibility
+
+EXAMPLES = {
+    name: loads(files("beltdyn").joinpath("examples", f"{name}.toml").read_text(encoding="utf-8"))
+    for name in ("alternator_drive", "accessory_drive", "washing_machine")
+}
+
+
+LOAD = {"kind": "resistance", "constant": "10 N m"}
+
+
+def told(drive: Drive) -> list[str]:
+    return [str(finding) for finding in judge_plausibility(drive, install(drive))]
+
+
+def two_pulleys(belt: dict[str, Any], diameter: str = "120 mm", **motor: Any) -> Drive:
+    return Drive(
+        belt=belt,
+        pulley=[
+            {"name": "motor", "center": (0, 0), "diameter": diameter, "inertia": 1.0} | motor,
+            {"name": "fan", "center": (0.5, 0), "diameter": "120 mm", "inertia": 1.0},
+        ],
+        simulation={"duration": 1.0, "output_interval": 0.01},
+    )
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples_are_plausible(name: str) -> None:
+    assert told(EXAMPLES[name]) == []
+
+
+def test_a_rib_at_450_newton_and_more() -> None:
+    belt = {"profile": "PK", "ribs": 6}
+    assert told(two_pulleys(belt | {"installed_tension": 2650.0})) == []
+    drive = two_pulleys(belt | {"installed_tension": 2850.0})
+    (text,) = told(drive)
+    assert text.startswith("the tension at rest is 2850 N, 475 N a rib or belt")
+    assert "used below 2700 N, 450 N a rib or belt" in text
+    assert "Take 7 or more of them" in text
+    assert text in advise(drive, install(drive))
+    assert told(two_pulleys(belt | {"installed_tension": 2850.0, "largest_tension": "3 kN"})) == []
+
+
+def test_what_would_set_a_tension_right_is_named_where_a_length_sets_it() -> None:
+    """Diameters of the tension line, given as effective ones, stretch a belt of fixed centres by 2 pi offset."""
+    around = 1.0 + 0.12 * np.pi
+    drive = two_pulleys({"profile": "PK", "ribs": 6, "nominal_length": around - 0.029})
+    (text,) = told(drive)
+    less = drive.replace(pulley=[one.replace(radius=one.radius - 0.0015) for one in drive.pulleys])
+    assert f"{install(drive).tension:.4g} N" in text
+    assert f"{install(less).tension:.4g} N with the diameters as those of the tension line" in text
+
+
+def test_a_pulley_below_the_smallest_of_the_belt() -> None:
+    belt = {"profile": "PJ", "ribs": 5, "installed_tension": 200.0}
+    assert told(two_pulleys(belt, "20 mm")) == []
+    (text,) = told(two_pulleys(belt, "17 mm"))
+    assert "the smallest pulley for this belt has 20 mm, and motor has 17 mm" in text
+    assert f"lives about {(17 / 20) ** 5.6:.0%} as long" in text
+
+
+def test_a_tensioner_on_the_tight_side() -> None:
+    """The same drive turned the other way: its loads lie between crank and tensioner then."""
+    drive = EXAMPLES["alternator_drive"]
+    speed = drive.pulleys[0].speed
+    assert speed is not None
+    backwards = speed.replace(value=-speed.value)  # type: ignore[attr-defined]
+    turned = drive.with_({"pulley[crank].speed": backwards, "pulley[alternator].load": [LOAD]})
+    (text,) = told(turned)
+    assert text.startswith(f"the tensioner of {drive.tensioners[0].pulley} is on the tight side")
+    assert f"the loads take {10.0 / drive.radii[2]:.4g} N" in text
+    assert told(drive.with_({"pulley[alternator].load": [LOAD]})) == []
+
+
+def test_a_contact_side_that_was_forgotten() -> None:
+    """The tensioner of the accessory drive lies outside of its belt: taken as inside, the belt hardly touches it."""
+    drive = EXAMPLES["accessory_drive"]
+    path = drive.path
+    wrong = drive.replace(
+        pulley=[one.replace(side="inside") if one.name == "tensioner" else one for one in drive.pulleys]
+    )
+    (text,) = [one for one in told(wrong) if "touches tensioner" in one]
+    assert f"touches tensioner on {np.degrees(wrong.path.wrap_angles[1]):.3g}°" in text
+    assert f"its outside would on {np.degrees(path.wrap_angles[1]):.3g}°" in text
+    assert f"{1e3 * (path.length - wrong.path.length):.3g} mm longer than {wrong.path.length:.5g} m" in text
+    assert 'set side = "outside" for tensioner' in text
+
+
+def test_a_start_whose_speeds_jump() -> None:
+    belt = {"profile": "PJ-elastic", "ribs": 5, "installed_tension": 160.0}
+    drive = two_pulleys(belt, speed="7640 rpm")
+    (text,) = told(drive)
+    assert "motor at 7640 rpm from the first instant on, and the belt at rest" in text
+    assert 'Set simulation.start = "steady"' in text
+    change = np.sqrt(drive.belt.axial_stiffness * drive.belt.mass_per_length) * drive.radii[0] * 7640 * np.pi / 30
+    assert f"changes by up to {change:.3g} N from 160 N" in text
+    assert told(drive.with_({"simulation.start": "steady"})) == []
+    rising = {"kind": "cosine_ramp", "start": 0.0, "end": 0.1, "value": "7640 rpm"}
+    assert told(two_pulleys(belt, speed=rising)) == []
