@@ -155,6 +155,31 @@ class Drive(Part):
         return names.index(str(pulley))
 
     @property
+    def driver(self) -> int | None:
+        """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor."""
+        for drives in (lambda one: one.prescribed, lambda one: any(load.driven_speed for load in one.load)):
+            found = [number for number, one in enumerate(self.pulleys) if drives(one)]
+            if found:
+                return found[0]
+        return None
+
+    @property
+    def running_sense(self) -> int:
+        """Sense in which the belt runs, 1 from pulley to pulley as they are listed and -1 back, by what drives it."""
+        driver = None if self.driver is None else self.pulleys[self.driver]
+        speed = None if driver is None else driver.speed
+        if driver is None or speed is None:
+            return 1
+        times = np.linspace(self.simulation.begin, self.simulation.end, 1001)
+        values = speed.at(times)
+        return -driver.turning if values[np.argmax(np.abs(values))] < 0.0 else driver.turning
+
+    @property
+    def reference(self) -> int:
+        """Number of the pulley that slip is told against: the driver, or the first pulley where nothing drives."""
+        return self.driver or 0
+
+    @property
     def path_ends(self) -> tuple[PathEnd, ...]:
         """The ends of an open belt as its path needs them."""
         return ends_on_path(self.ends, self.gravity)

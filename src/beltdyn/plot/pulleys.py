@@ -19,13 +19,13 @@ from beltdyn.results.incidents import GROSS_SLIP
 
 _LARGEST_MARGIN = 10.0
 _RUNNING = 0.98
-"""Part of its mean speed at the end from which on the first pulley counts as running."""
+"""Part of its mean speed at the end from which on the driver counts as running."""
 _RINGS = 4
 
 
 @figure(over_time, compares=True)
 def slip(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the slip of the pulleys against the first over time, and dotted the part of it that is elastic creep.
+    """Draw the slip of the pulleys against the driver over time, and dotted the part of it that is elastic creep.
 
     Means over a turn of the belt and a period of what repeats besides; the numbers are those of the summary. Where
     whole arcs slide, all creep is dotted, and the time is shaded. The scale is that of the running drive: at the start
@@ -72,8 +72,8 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
 
 
 def _after_start(run: Run, latest: float) -> float:
-    """When the start is over, s: the first pulley runs, and a tenth of the rest has gone by; before means begin."""
-    time, speed = run.dataset["time"].values, np.abs(run.dataset["pulley_speed"].values[:, 0])
+    """When the start is over, s: the driver runs, and a tenth of the rest has gone by; before means begin."""
+    time, speed = run.dataset["time"].values, np.abs(run.dataset["pulley_speed"].values[:, run.drive.reference])
     reached = time[np.argmax(speed >= _RUNNING * speed[time >= latest].mean())]
     return float(min(reached + 0.1 * (time[-1] - reached), latest))
 

@@ -30,14 +30,14 @@ class PulleySummary:
     power : float
         Power of that torque into the drive, W.
     slip : float
-        Relative speed loss of the rim against the first pulley's,
-        ``1 - v_i / v_0`` of the mean rim speeds along the belt; NaN when the first pulley stands still.
+        Relative speed loss of the rim against the driver's (`Drive.reference`),
+        ``1 - v_i / v_d`` of the mean rim speeds along the belt; NaN when the driver stands still.
     elastic_creep : float
         Part of the slip that the belt's change of stretch makes, as with Coulomb's friction.
     regularisation : float
         Part of the slip that the slope of the friction law adds: what is left of the slip.
     sliding : float
-        Part of the slip that is no creep: the belt slides on the whole arc of this pulley or of the first one.
+        Part of the slip that is no creep: the belt slides on the whole arc of this pulley or of the driver.
     sliding_speed : float
         Velocity at which the belt slides on the whole arc of this pulley, m/s along the belt; zero as long as it creeps
         somewhere.

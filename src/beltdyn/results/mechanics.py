@@ -33,22 +33,20 @@ def rim_speeds(speed: FloatArray, drive: Drive) -> FloatArray:
     return np.asarray(speed * drive.rolling_radii * turning)
 
 
-def relative_loss(lost: FloatArray, rim: FloatArray) -> FloatArray:
-    """Speeds lost, m/s, over the speed of the first rim; NaN where that stands still."""
-    first = rim[..., :1]
-    unknown = np.full(np.broadcast(lost, first).shape, np.nan)
-    return np.asarray(np.divide(lost, first, out=unknown, where=first != 0.0))
-
-
-def slip(rim: FloatArray) -> FloatArray:
-    """Speed loss of every rim against the first, 1 - v_i / v_0.
+def relative_loss(values: FloatArray, rim: FloatArray, reference: int) -> FloatArray:
+    """What values of every pulley exceed that of the reference by, m/s, over its rim's speed.
 
     Parameters
     ----------
-    rim : ndarray, shape (..., pulleys)
-        Speeds of the rims, m/s; see `rim_speeds`.
+    values, rim : ndarray, shape (..., pulleys)
+        Values, and speeds of the rims as from `rim_speeds`, m/s.
+    reference : int
+        Number of a pulley; NaN where it stands still.
     """
-    return relative_loss(rim[..., :1] - rim, rim)
+    against = slice(reference, reference + 1)
+    lost, speed = values - values[..., against], rim[..., against]
+    unknown = np.full(np.broadcast(lost, speed).shape, np.nan)
+    return np.asarray(np.divide(lost, speed, out=unknown, where=speed != 0.0))
 
 
 def across(spans: FloatArray, drive: Drive) -> tuple[FloatArray, FloatArray]:

@@ -67,6 +67,7 @@ def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tu
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:z.3%} longer on its path of {path:.5g} m"),
+        *_as_sold(drive),
         *_taken_up(drive),
         ("mesh", f"{drive.elements} {drive.element_kind.name} elements, {drive.frame.words}"),
         ("length of elements", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
@@ -75,6 +76,19 @@ def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tu
         ("results of a run", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
+
+
+def _as_sold(drive: Drive) -> list[tuple[str, str]]:
+    """The length by which the belt is sold, with the force under which it is measured."""
+    belt, force = drive.belt, drive.belt.measuring_force
+    sold = force is not None or belt.nominal_length is not None
+    if drive.ends or not sold:
+        return []
+    nominal = f"{belt.nominal_length_of(drive.belt_length):.5g} m"
+    if force is None:
+        return [("nominal length", f"{nominal}, taken as unstretched: no measuring force is known")]
+    stretched = f"{belt.measured_stretch - 1.0:.3%} longer than unstretched"
+    return [("nominal length", f"{nominal} under {force:.4g} N between two pulleys, {stretched}")]
 
 
 def _in_the_mean(drive: Drive) -> str:
@@ -119,7 +133,7 @@ def _pulleys(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
         zip(
             (pulley.name for pulley in drive.pulleys),
             ("prescribed" if pulley.prescribed else "free" for pulley in drive.pulleys),
-            ("ccw" if pulley.turning > 0 else "cw" for pulley in drive.pulleys),
+            ("ccw" if drive.running_sense * pulley.turning > 0 else "cw" for pulley in drive.pulleys),
             (f"{math.degrees(wrap):.1f}°" for wrap in path.wrap_angles),
             aligned([1e3 * abs(radius) for radius in path.radii], 5),
             (f"{path.radii[0] / radius:.4f}" for radius in path.radii),

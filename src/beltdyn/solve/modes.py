@@ -139,5 +139,6 @@ def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | str | No
 
 def _running(run: Run) -> str:
     """The state of steady running in words."""
-    name, speed = run.drive.pulleys[0].name, float(run.dataset["pulley_speed"][-1, 0])
+    driver = run.drive.reference
+    name, speed = run.drive.pulleys[driver].name, float(run.dataset["pulley_speed"][-1, driver])
     return f"in steady running with {name} at {RPM * speed:.4g} rpm"

@@ -125,6 +125,26 @@ def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path,
     assert picture.stat().st_size > 5_000
 
 
+def test_check_of_a_belt_as_sold(run_main: RunMain, tmp_path: Path) -> None:
+    """Both lengths, what measures the nominal one, and the sense of a motor at -600 rpm, which is written short."""
+    file = tmp_path / "drive.toml"
+    file.write_text(
+        '[belt]\nprofile = "PJ-elastic"\nribs = 5\nnominal_length = "1194 mm"\n'
+        '[[pulley]]\nname = "motor"\ncenter = [0, 0]\ndiameter = "25 mm"\nspeed = "-600 rpm"\n'
+        '[[pulley]]\nname = "drum"\ncenter = ["0.35 m", 0]\ndiameter = "270 mm"\ninertia = 0.3\n'
+        '[simulation]\nduration = 1.0\noutput_interval = 0.01\nstart = "steady"\n',
+        encoding="utf-8",
+    )
+    code, output, _ = run_main(["check", str(file)])
+    words = " ".join(output.split())
+    assert code == 0
+    unstretched = (1.194 + 2 * np.pi * 0.0012) / (1 + 125.0 / 5000.0)
+    assert f"belt length {unstretched:.5g} m unstretched" in words
+    assert "nominal length 1.194 m under 250 N between two pulleys, 2.500% longer than unstretched" in words
+    assert "motor prescribed cw" in words
+    assert "drum free cw" in words
+
+
 def test_check_tells_where_a_take_up_puts_its_pulley(run_main: RunMain, drive_file: Path, drive_text: str) -> None:
     fixed = '\n[[tensioner]]\nkind = "fixed"\npulley = "driven"\ndirection = [1, 0]\n'
     text = drive_text.replace("length = 1.2727", "length = 1.2727\ninstalled_tension = 50") + fixed

@@ -239,3 +239,22 @@ def test_noise_is_no_slip_and_no_margin(make_run: MakeRun, run: Run) -> None:
     summary = summarize(made)
     assert all(np.isnan([one.slip, one.elastic_creep, one.margin]).all() for one in summary.pulleys)
     assert made.warnings == []
+
+
+def test_losses_of_milliwatts_are_not_told_of(turning: Callable[..., Run], run: Run) -> None:
+    """4.8 mW are much of what an idle drive is given, and nothing beside the 150 W that its belt could carry."""
+    angle, idle = run.dataset["pulley_angle"].values[:, 0], 1e-3
+    torques = {name: idle * run.dataset[name].values for name in ("shaft_torque", "pulley_torque")}
+    assert not said(turning(**torques, damping_loss=0.4e-3 * angle), "the damping between belt and pulleys")
+    assert not said(turning(**torques, friction_loss=-0.05e-3 * angle), "no loss can")
+    assert said(turning(damping_loss=0.4 * angle), "the damping between belt and pulleys takes 4.8 W")
+
+
+def test_a_span_beyond_the_tension_of_its_belt(turning: Callable[..., Run], run: Run) -> None:
+    rated = run.drive.with_({"belt.largest_tension": 100.0})
+    tension = run.dataset["span_tension"].values.copy()
+    assert not said(turning(rated, span_tension=tension), "is used below")
+    tension[40, 0] = 120.0
+    (text,) = said(turning(rated, span_tension=tension), "is used below 100 N")
+    assert text.startswith("the span driver-driven carries 120 N at t = ")
+    assert "1.2 times as wide" in text

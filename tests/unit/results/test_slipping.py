@@ -11,7 +11,7 @@ from beltdyn.stretch import Green
 
 STIFFNESS, LENGTH = 1e4, 2.0
 DRIVE: Any = SimpleNamespace(
-    belt=SimpleNamespace(stretch_parameters=Green(STIFFNESS)), belt_length=LENGTH, pulleys=range(3)
+    belt=SimpleNamespace(stretch_parameters=Green(STIFFNESS)), belt_length=LENGTH, pulleys=range(3), reference=0
 )
 TENSION = np.array([30.0, 50.0, 90.0])
 """Of the spans that leave the pulleys: the tight one reaches the first pulley, which drives."""
@@ -25,6 +25,16 @@ def test_slip_is_what_the_rims_lose_and_its_parts_make_it_up() -> None:
     np.testing.assert_allclose(total, [0.0, 0.01, 0.005], rtol=1e-12)
     np.testing.assert_allclose(sliding, [0.0, 0.003, 0.002], rtol=1e-12)
     np.testing.assert_allclose(elastic + added + sliding, total, rtol=0, atol=1e-15)
+
+
+def test_slip_is_told_against_the_driver_wherever_it_is_listed() -> None:
+    """The same drive from another pulley on: the same slip, creep and sliding of each pulley."""
+    gross = np.array([-0.02, 0.01, 0.0])
+    listed_third: Any = SimpleNamespace(**vars(DRIVE) | {"reference": 2})
+    rim, tension, slid = (np.roll(values, -1) for values in (RIM, TENSION, gross))
+    parts, others = slip_parts(RIM, TENSION, gross, 1.0, DRIVE), slip_parts(rim, tension, slid, 1.0, listed_third)
+    for part, moved in zip(parts, others, strict=True):
+        np.testing.assert_allclose(np.roll(part, -1), moved, atol=1e-15)
 
 
 @pytest.mark.parametrize(("way", "reaching"), [(1.0, [90.0, 30.0, 50.0]), (-1.0, [30.0, 50.0, 90.0])])

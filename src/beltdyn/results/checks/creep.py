@@ -65,7 +65,8 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
     worst = max(led, key=lambda pulley: abs(pulley.regularisation), default=None)
     if worst is not None and (evidence.window.turns or _exceeds_stretch(evidence, worst.regularisation)):
         radii = dict(zip((one.name for one in evidence.pulleys), evidence.drive.radii.tolist(), strict=True))
-        rim = abs(evidence.pulleys[0].speed) * float(evidence.drive.radii[0])
+        driver = evidence.drive.reference
+        rim = abs(evidence.pulleys[driver].speed) * float(evidence.drive.radii[driver])
         parts = [f"{one.regularisation:.2%} of {one.slip:.2%} on {one.name}" for one in led]
         losses = sum(abs(one.regularisation * one.belt_torque) / radii[one.name] for one in led) * rim
         yield Finding(
@@ -79,6 +80,7 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
 def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
     """Whether rims come apart by more, within the window, than the belt's stretch changes with its tension."""
     drive, window = evidence.drive, evidence.window
-    passed = abs(evidence.pulleys[0].speed) * float(drive.rolling_radii[0]) * (window.end - window.start)
+    speed, radius = evidence.pulleys[drive.reference].speed, float(drive.rolling_radii[drive.reference])
+    passed = abs(speed) * radius * (window.end - window.start)
     stretch = drive.belt.stretch_parameters.stretch(evidence.recorded["span_tension"][window.first :])
     return abs(slip) * passed > float(np.ptp(stretch, axis=0).max()) * drive.belt_length

@@ -14,7 +14,7 @@ NUMERICAL_LIMIT = 0.01
 """Largest part of the energy put in, at any time, that time integration may take without a warning."""
 
 POWER_LIMIT = 0.01
-"""Part of the power put in that may be missing in mean powers without a warning; they are means over outputs."""
+"""Part of the power (`Evidence.power`) that may be missing in means over outputs without a warning."""
 
 _OTHER_INTERVAL = 0.7
 """The interval of outputs that the remedy names, over that of the run; elements are met at other places then."""
@@ -63,7 +63,7 @@ def unbalanced_powers(evidence: Evidence) -> Iterator[Finding]:
     balance = evidence.balance
     missing = balance.power_in - balance.power_out - balance.lost - balance.stored
     closes = abs(largest_closure(evidence.recorded)[1]) <= CLOSURE_LIMIT
-    if evidence.window.turns and closes and abs(missing) > POWER_LIMIT * balance.power_in > 0.0:
+    if evidence.window.turns and closes and abs(missing) > POWER_LIMIT * evidence.power and balance.power_in > 0.0:
         interval = evidence.drive.simulation.output_interval
         yield Finding(
             f"of {balance.power_in:.4g} W put in, {missing:.3g} W ({missing / balance.power_in:.1%}) are neither taken "

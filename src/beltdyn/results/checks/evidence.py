@@ -11,10 +11,13 @@ from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
 from beltdyn.results.balance import Balance, power_balance
 from beltdyn.results.cycles import mean_window
-from beltdyn.results.means import PulleySummary, pulley_means
+from beltdyn.results.means import PulleySummary, pulley_means, span_means
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.window import Window
+
+IDLE = 0.01
+"""Power put in over tension times belt speed up to which a drive idles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +57,16 @@ class Evidence:
     def balance(self) -> Balance:
         """Powers over the end of the run."""
         return power_balance(self.recorded, self.window)
+
+    @cached_property
+    def power(self) -> float:
+        """Power that shares are told of, W: that put in, and no less than `IDLE` of tension times belt speed.
+
+        What a drive that idles loses is no part of a power that is transmitted.
+        """
+        spans = span_means(self.recorded, self.drive, self.window)
+        carried = max((one.tension * abs(one.belt_speed) for one in spans), default=0.0)
+        return max(self.balance.power_in, IDLE * carried)
 
 
 Check = Callable[[Evidence], Iterator[Finding]]

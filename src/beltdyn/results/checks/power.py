@@ -10,22 +10,22 @@ from beltdyn.results.checks.evidence import Evidence, shorter_steps
 from beltdyn.results.recorded import attribute
 
 DAMPING_LIMIT = 0.01
-"""Largest part of the power put in that contact damping may take without a warning."""
+"""Largest part of the power (`Evidence.power`) that contact damping may take without a warning."""
 
 _DAMPING_GOAL = 1e-3
 """The same with the damping that the remedy names."""
 
 GAIN_LIMIT = 1e-3
-"""Largest power that a loss may give, over the power put in, without a warning."""
+"""Largest power that a loss may give, over `Evidence.power`, without a warning."""
 
 _GIVES = 0.01
-"""Smallest power that a load gives, over the power put in, that is worth a warning."""
+"""Smallest power that a load gives, over `Evidence.power`, that is worth a warning."""
 
 
 def negative_losses(evidence: Evidence) -> Iterator[Finding]:
     """Losses that give power in the mean, against the second law."""
     balance = evidence.balance
-    giving = {cause: power for cause, power in balance.losses.items() if -power > GAIN_LIMIT * balance.power_in}
+    giving = {cause: power for cause, power in balance.losses.items() if -power > GAIN_LIMIT * evidence.power}
     if giving and balance.power_in > 0.0:
         point = evidence.drive.contact.moment_arm == "point" and "friction" in giving
         gains = listing([f"{-power:.3g} W by {cause}" for cause, power in giving.items()])
@@ -39,10 +39,10 @@ def negative_losses(evidence: Evidence) -> Iterator[Finding]:
 
 
 def damping_share(evidence: Evidence) -> float:
-    """Part of the power put in that contact damping takes; zero of a drive that takes no power out."""
+    """Part of the power (`Evidence.power`) that contact damping takes; zero of a drive that takes no power out."""
     balance = evidence.balance
     loaded = min(balance.power_in, balance.power_out) > 0.0
-    return balance.losses["contact damping"] / balance.power_in if loaded else 0.0
+    return balance.losses["contact damping"] / evidence.power if loaded else 0.0
 
 
 def may_flutter(evidence: Evidence) -> bool:
@@ -86,7 +86,7 @@ def driving_loads(evidence: Evidence) -> Iterator[Finding]:
     """Torques and loads that drive, in a drive with a motor or a prescribed speed."""
     drive = evidence.drive
     motors = [pulley.prescribed or any(one.driven_speed for one in pulley.load) for pulley in drive.pulleys]
-    most = max(abs(one.power) for one in evidence.pulleys)
+    most = max(evidence.power, *(abs(one.power) for one in evidence.pulleys))
     if not any(motors):
         return
     loads = [one for one, motor in zip(evidence.pulleys, motors, strict=True) if not motor]

@@ -47,7 +47,7 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
         for number, pulley in enumerate(evidence.pulleys)
         if number not in sliding and 0.0 < pulley.margin < MARGIN_LIMIT
     ]
-    if evidence.drive.ends or not near or not _first_rim(evidence) > 0.0:
+    if evidence.drive.ends or not near or not _driving_rim(evidence) > 0.0:
         return
     worst, number = min(near, key=lambda one: one[0].margin)
     drive = evidence.drive
@@ -101,15 +101,15 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
 
 def _sliding(evidence: Evidence) -> list[int]:
     """Numbers of the pulleys that slide through at the end of the run."""
-    limit = SLIDING_LIMIT * _first_rim(evidence)
+    limit = SLIDING_LIMIT * _driving_rim(evidence)
     sliding = (abs(pulley.sliding_speed) > limit for pulley in evidence.pulleys)
     return [] if evidence.drive.ends else [number for number, slides in enumerate(sliding) if slides]
 
 
-def _first_rim(evidence: Evidence) -> float:
-    """Mean speed of the first rim, m/s."""
+def _driving_rim(evidence: Evidence) -> float:
+    """Mean speed of the driver's rim, m/s."""
     speeds = np.array([pulley.speed for pulley in evidence.pulleys])
-    return float(abs(rim_speeds(speeds, evidence.drive)[0]))
+    return float(abs(rim_speeds(speeds, evidence.drive)[evidence.drive.reference]))
 
 
 def _frictions(evidence: Evidence, numbers: list[int]) -> str:

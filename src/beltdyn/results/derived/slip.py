@@ -11,24 +11,25 @@ from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
 
 _STANDING = 0.01
-"""Part of its largest speed below which the first pulley counts as standing still."""
+"""Part of its largest speed below which the driver counts as standing still."""
 
 
 def slips(run: Run, start: float | None = None, end: float | None = None, *, turns: bool = True) -> xr.Dataset:
     """Slip over time, and what it is made of.
 
-    The slip of pulley i is its rim's speed loss against the first pulley's, s_i = 1 - v_i / v_0 with v = ``|omega|`` R,
-    positive in the direction in which the belt runs. Speeds are means over a turn of the belt and a period of what
+    The slip of pulley i is its rim's speed loss against that of the driver d, which is the first pulley of prescribed
+    speed, or else the first with a motor: s_i = 1 - v_i / v_d with v = ``|omega|`` R, positive in the direction in
+    which the belt runs. Speeds are means over a turn of the belt and a period of what
     repeats besides, as in the summary, or those of the instant. With the velocity g (belt faster than the rim)
     at which the belt slides on the *whole* arc of a pulley beyond what the friction law calls creep,
 
-        sliding_i = (g_i - g_0) / v_0,    creep_i = s_i - sliding_i.
+        sliding_i = (g_i - g_d) / v_d,    creep_i = s_i - sliding_i.
 
     So creep is what a belt that still sticks or creeps somewhere on both arcs loses. Of it,
 
-        elastic_creep_i = 1 - g(T_i) / g(T_0)
+        elastic_creep_i = 1 - g(T_i) / g(T_d)
 
-    with the stretches g of the spans that reach the two pulleys, (T_0 - T_i) / E A at small strain, is what Coulomb's
+    with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is what Coulomb's
     friction would leave (Reynolds 1874, Grashof 1883); ``regularisation``, the rest, is what the slope of the friction
     law adds. What slides is a loss without bound, as on a pulley that is overloaded.
 
@@ -45,7 +46,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     -------
     xarray.Dataset
         ``slip``, ``creep``, ``elastic_creep``, ``regularisation`` and ``sliding`` in %, with the dimensions time and
-        pulley; NaN while the first pulley stands still.
+        pulley; NaN while the driver stands still.
 
     Examples
     --------
@@ -58,8 +59,8 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     gross = over.running_means(dataset["sliding_speed"].values)
     speed, tension = (over.running_means(dataset[name].values) for name in ("pulley_speed", "span_tension"))
     rim = rim_speeds(speed, run.drive)
-    largest = np.max(np.abs(rim[:, :1]), initial=0.0, where=np.isfinite(rim[:, :1]))
-    rim = np.where(np.abs(rim[:, :1]) > _STANDING * largest, rim, 0.0)
+    driver = np.abs(rim[:, run.drive.reference, None])
+    rim = np.where(driver > _STANDING * np.max(driver, initial=0.0, where=np.isfinite(driver)), rim, 0.0)
     total, elastic, added, slid = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.drive)
     parts = {
         "slip": (total, "Slip"),

@@ -49,13 +49,11 @@ def driver_of(drive: Drive) -> int:
     ModelError
         If nothing drives.
     """
-    for drives in (lambda one: one.prescribed, lambda one: any(map(is_motor, one.load))):
-        found = [number for number, one in enumerate(drive.pulleys) if drives(one)]
-        if found:
-            return found[0]
-    raise ModelError(
-        "nothing drives the belt: no pulley has a speed or a motor. Name the pulley whose speed to prescribe."
-    )
+    if drive.driver is None:
+        raise ModelError(
+            "nothing drives the belt: no pulley has a speed or a motor. Name the pulley whose speed to prescribe."
+        )
+    return drive.driver
 
 
 def is_motor(load: Load) -> bool:
