@@ -201,10 +201,13 @@ class _Teller:
 
     def _remaining(self, progress: Any, part: float, now: float) -> float:
         """Time that is left, s, by the pace that the analysis tells, or else by that of this phase until now."""
+        from beltdyn.solve.progress import FORECAST
+
         begun, first = self._begun.setdefault(progress.phase, (now, part))
         if not math.isnan(progress.remaining):
             return float(progress.remaining)
-        return (1.0 - part) * (now - begun) / (part - first) if part > first else math.nan
+        known = part > first and part >= FORECAST
+        return (1.0 - part) * (now - begun) / (part - first) if known else math.nan
 
     def _look(self) -> None:
         from beltdyn.app.watching import Watcher  # loads the library of figures

@@ -8,6 +8,7 @@ from beltdyn.app.draft import Draft
 from beltdyn.app.scene import Circle, circles, groups, length_in, sketched
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
+from beltdyn.model.belt import read_side
 from beltdyn.parts.quantity import written_like
 from beltdyn.parts.toml_edits import Edit
 
@@ -82,7 +83,7 @@ def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
 
 def flip(data: Mapping[str, Any], number: int) -> list[Edit]:
     """Put a pulley on the other side of the belt."""
-    if groups(data, "pulley")[number].get("side") == "outside":
+    if read_side(groups(data, "pulley")[number].get("side")) == "outside":
         return [Edit("remove", ("pulley", number, "side"))]
     return [Edit("set", ("pulley", number, "side"), "outside")]
 

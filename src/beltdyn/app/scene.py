@@ -8,6 +8,7 @@ import numpy as np
 
 from beltdyn.app.draft import Draft
 from beltdyn.model import Drive, Path
+from beltdyn.model.belt import read_side
 from beltdyn.model.carrier import moved
 from beltdyn.model.picture import outline
 from beltdyn.parts.quantity import to_si
@@ -56,7 +57,7 @@ def circles(data: Mapping[str, Any]) -> list[Circle]:
         if radius is None or radius <= 0 or None in point:
             continue
         x, y = (float(each or 0.0) for each in point)
-        side = "outside" if one.get("side") == "outside" else "inside"
+        side = "outside" if read_side(one.get("side")) == "outside" else "inside"
         found.append(Circle(number, str(one.get("name", f"pulley {number + 1}")), x, y, radius, side))
     return found
 

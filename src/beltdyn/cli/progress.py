@@ -7,7 +7,8 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, Task, TaskID, TextColumn, TimeRemainingColumn
+from rich.text import Text
 
 if TYPE_CHECKING:
     from beltdyn.solve.progress import BatchProgress
@@ -92,6 +93,8 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
     callable
         What is told of the runs.
     """
+    from beltdyn.solve.progress import FORECAST
+
     with _bar() as bar:
         whole = bar.add_task("", total=None, state="", visible=False)
         lines: dict[Path, TaskID] = {}
@@ -104,7 +107,7 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
                 begin = perf_counter()
             part = (progress.done + sum(progress.running.values())) / max(progress.total, 1)
             elapsed = perf_counter() - begin if begin is not None else 0.0
-            remaining = elapsed * (1.0 - part) / part if part > 0.0 else 0.0
+            remaining = elapsed * (1.0 - part) / part if part >= FORECAST else 0.0
             if not told and elapsed > _EARLY and remaining > _LONG:
                 told = True
                 bar.console.print(_long("These runs", remaining, _SLOW_RUNS), highlight=False)
@@ -128,12 +131,23 @@ def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]
         yield report
 
 
+class _Remaining(TimeRemainingColumn):
+    """The remaining time, once it can be forecast."""
+
+    def render(self, task: Task) -> Text:
+        """The time, or dashes."""
+        from beltdyn.solve.progress import FORECAST
+
+        early = not task.finished and task.percentage < 100.0 * FORECAST
+        return Text("-:--:--", style="progress.remaining") if early else super().render(task)
+
+
 def _bar() -> Progress:
     """A bar with a description, a state in words and the remaining time."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         TextColumn("{task.fields[state]}"),
-        TimeRemainingColumn(elapsed_when_finished=True),
+        _Remaining(elapsed_when_finished=True),
     )
     return Progress(*columns, console=Console(stderr=True))

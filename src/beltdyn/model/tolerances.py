@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from beltdyn.errors import ModelError
+from beltdyn.machines.profiles.profile import Profile
 from beltdyn.model.drive import Drive
-from beltdyn.parts.change import as_argument, unit_at
+from beltdyn.parts.change import as_argument, unit_at, value_at
 from beltdyn.parts.error_location import entry_name
 from beltdyn.parts.quantity import tolerance_in
 from beltdyn.parts.text_file import parse_toml
@@ -34,6 +35,8 @@ def tolerances_of(drive: Drive) -> dict[str, float]:
     found = dict[str, float]()
     for path, text in _texts(parse_toml(drive.text), ""):
         try:
+            if isinstance(value_at(drive, path), Profile):
+                path += ".value"
             tolerance = tolerance_in(text, unit_at(drive, path))
         except (ModelError, ValueError):
             continue  # no number: a name

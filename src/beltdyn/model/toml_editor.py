@@ -68,6 +68,8 @@ def _edit(data: dict[str, Any], path: str, value: float, unit: str) -> Edit:
     holder: Any = data
     for key in outer:
         holder = holder[key]
+    if isinstance(holder, str | int | float):  # a number that stands for a constant profile
+        return Edit("set", tuple(outer), written_like(value, holder, unit, _DIGITS))
     given = holder.get(last) if isinstance(holder, dict) else holder[last]
     return Edit("set", location, written_like(value, given, unit, _DIGITS))
 

@@ -159,4 +159,17 @@ def json_schema() -> dict[str, Any]:
     for part in (schema, *schema["$defs"].values()):
         if "description" in part:  # its keys have their own, and sections on them are for those who write Python
             part["description"] = _SECTION.split(part["description"], maxsplit=1)[0]
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_with_constants(schema)}
+
+
+def _with_constants(schema: Any) -> Any:
+    """Let a number, or text with a unit, stand wherever a constant profile may."""
+    if isinstance(schema, list):
+        return [_with_constants(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    inner = {key: _with_constants(value) for key, value in schema.items()}
+    if "constant" not in inner.get("discriminator", {}).get("mapping", {}):
+        return inner
+    told = {key: inner.pop(key) for key in ("description", "default", "title") if key in inner}
+    return {"anyOf": [{"type": "number"}, {"type": "string"}, inner], **told}

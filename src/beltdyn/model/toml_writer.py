@@ -92,7 +92,7 @@ def location_of(data: Mapping[str, Any], path: str) -> Location:
 
 def _key(holder: Any, step: str) -> str | int:
     """A step of a path as a key, or the position in a list."""
-    if isinstance(holder, Mapping):
+    if isinstance(holder, Mapping | str | float | int):  # a number may stand for a constant profile
         return step
     names = [entry_name(one) or str(number) for number, one in enumerate(holder, 1)]
     return names.index(step) if step in names else int(step) - 1

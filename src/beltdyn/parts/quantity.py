@@ -70,10 +70,17 @@ def to_si(text: str, unit: str) -> float:
     number, given = float(match["number"]), match["unit"]
     if unit == "rad/s" and _TURNS.fullmatch(given):
         given = "rpm"
+    if not unit and given == "%":
+        if tolerance is not None and tolerance["percent"]:
+            raise ValueError(
+                f"is ambiguous, as the tolerance could be a part of the number or of one. Write {number / 100.0:g} and "
+                "the tolerance as a plain number"
+            )
+        return number / 100.0
     if not unit and tolerance is not None and not given:
         return number
     if not unit:
-        raise ValueError("is a plain number without a unit: leave the quotation marks away")
+        raise ValueError('is a plain number without a unit: leave the quotation marks away, or write a part as "1 %"')
     if not given:
         raise ValueError(f'has no unit. Write {number:g} (in {unit}), or for example "{number:g} {unit}"')
     if not _UNIT.fullmatch(given):
@@ -118,7 +125,7 @@ def tolerance_in(text: str, unit: str) -> float | None:
         return abs(value) * size / 100.0
     there = _NUMBER.fullmatch(_without_tolerance(text, unit)[0])
     assert there is not None
-    return to_si(f"{size} {there['unit']}", unit) if unit else size
+    return to_si(f"{size} {there['unit']}", unit) if there["unit"] else size
 
 
 def _without_tolerance(text: str, unit: str) -> tuple[str, re.Match[str] | None]:
@@ -237,8 +244,8 @@ def _read_count(value: object) -> object:
     return value
 
 
-_Toleranced = Annotated[str, StringConstraints(pattern=r"±|\+/?-")]
-"""A plain number with a tolerance: ``"0.31 ± 0.02"``."""
+_Toleranced = Annotated[str, StringConstraints(pattern=r"±|\+/?-|%")]
+"""A plain number with a tolerance, ``"0.31 ± 0.02"``, or a part, ``"1 %"``."""
 
 
 def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
@@ -247,7 +254,7 @@ def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
     Parameters
     ----------
     unit : str
-        The SI unit; the empty string for a dimensionless number, which takes text only with a tolerance.
+        The SI unit; the empty string for a dimensionless number, which takes text only in % or with a tolerance.
     smallest : float
         The smallest magnitude beside zero.
 

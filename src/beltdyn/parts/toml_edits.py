@@ -87,6 +87,9 @@ def _apply(container: Any, edit: Edit, plain: bool) -> None:
             inside = isinstance(edit.location[depth + 1], int)
             empty: Any = [] if inside else {}
             container[step] = empty if plain else _written(empty, str(step), isinstance(container, InlineTable))
+        if not isinstance(container[step], dict | list):  # a number that stands for a constant profile
+            constant = {"kind": "constant", "value": container[step]}
+            container[step] = constant if plain else _inline(constant)
         container = container[step]
     value = copy.deepcopy(edit.value)
     if not plain and edit.action != "remove":

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+FORECAST = 0.05
+"""Part of a run that must be done before the rest is forecast: the beginning, where speeds jump, is slow."""
 _LATELY, _OFTEN = 5.0, 0.2
 """Computing time over which the pace is taken, and between the marks that it is taken from, s."""
 
@@ -59,7 +61,9 @@ class Progress:
 
     @property
     def remaining(self) -> float:
-        """Computing time that is left if it goes on as of late, s; NaN before the first step."""
+        """Computing time that is left if it goes on as of late, s; NaN in the first twentieth."""
+        if not self.time >= FORECAST * self.duration:
+            return math.nan
         pace = self.pace
         if math.isnan(pace) and self.time > 0.0 and self.elapsed > 0.0:
             pace = self.time / self.elapsed

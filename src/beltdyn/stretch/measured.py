@@ -13,9 +13,9 @@ from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
 from beltdyn.stretch.law import Stretching, StretchLaw, register
 
-_LEAST_SLOPE = 0.5
-"""Slope at an end of the curve over that of the straight line to the next point, at least: the three-point formula may
-give none, and a belt without stiffness."""
+_LEAST_SLOPE = 0.05
+"""Slope at an end of the curve over that of the straight line to the next point, at least: the three-point formula
+gives none where the next line is three times as steep, and a belt without stiffness."""
 _HALVINGS = 60
 """Steps of bisection by which a stretch is found to rounding."""
 

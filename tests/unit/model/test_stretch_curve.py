@@ -106,3 +106,20 @@ def test_a_new_law_takes_the_place_of_the_old_one(drive: Drive) -> None:
     assert curved.replace(axial_stiffness=5e3).stretch_parameters == Linear(5e3)
     assert drive.belt.replace(profile="PK", ribs=2).stretch_law == "linear"
     assert drive.belt.replace(axial_stiffness=5e3).stretch_law == "green"
+
+
+@pytest.mark.parametrize(("first", "second"), [(0.2e5, 80e5), (5e5, -80e5)])
+def test_a_curve_begins_and_ends_with_its_own_slope(first: float, second: float) -> None:
+    """T = a e + b e^2 has the slopes a and a + 2 b e, of which one is a fifth of the line to the next point."""
+    strain = np.array([0.01, 0.02, 0.03])
+    curve = StretchCurve(strains=tuple(strain), tensions=tuple(first * strain + second * strain**2))
+    assert curve.parameters.stiffness == pytest.approx(first, rel=1e-12)
+    slope = curve.parameters.tangent_stiffness(np.array([1.03]))
+    assert float(slope[0]) == pytest.approx(first + 2.0 * second * 0.03, rel=1e-9)
+
+
+def test_a_curve_that_begins_flat_has_some_stiffness() -> None:
+    """The slope of e^3 at zero is none: a twentieth of the line to the next point is left."""
+    strain = np.array([0.01, 0.02, 0.03])
+    curve = StretchCurve(strains=tuple(strain), tensions=tuple(1e9 * strain**3))
+    assert curve.parameters.stiffness == pytest.approx(0.05 * 1e9 * 1e-4)

@@ -1,5 +1,6 @@
 import contextlib
 import json
+import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from beltdyn.errors import ModelError
-from beltdyn.model import Drive, LoadTable, Table, advise, dumps, install, json_schema, load, loads
+from beltdyn.model import Drive, LoadTable, Pulley, Table, advise, dumps, install, json_schema, load, loads
+from beltdyn.model.tolerances import tolerances_of
+from beltdyn.model.toml_editor import edited
+from beltdyn.parts.quantity import RPM
 
 
 def test_the_papers_drive(drive: Drive) -> None:
@@ -182,3 +186,59 @@ def test_a_written_drive_asks_for_its_tension_again_until_its_length_is_found(dr
     found = asked.tightened(1e-5)
     assert loads(dumps(found)).belt.length == found.belt_length == asked.belt_length - 1e-5
     assert loads(dumps(found)).belt.installed_tension is None
+
+
+@pytest.mark.parametrize(
+    ("given", "spelled_out"),
+    [
+        ('speed = "800 rpm"', 'speed = { kind = "constant", value = "800 rpm" }'),
+        ("speed = -12.5", 'speed = { kind = "constant", value = -12.5 }'),
+        ('side = "back"', 'side = "outside"'),
+        ('side = "Ribs"', 'side = "inside"'),
+        ('friction = "35 %"', "friction = 0.35"),
+        ('torque = "-1.2 N m"', 'torque = { kind = "constant", value = -1.2 }'),
+        (
+            'load = [{ kind = "resistance", constant = 1.0, schedule = "50 %" }]',
+            'load = [{ kind = "resistance", constant = 1.0, schedule = { kind = "constant", value = 0.5 } }]',
+        ),
+    ],
+)
+def test_numbers_and_words_as_an_engineer_writes_them(given: str, spelled_out: str) -> None:
+    def pulley(line: str) -> Any:
+        text = f'name = "fan"\ncenter = [0, 0]\nradius = "0.1 m"\n{line}\n'
+        return Pulley(**tomllib.loads(text if "speed =" in line and "load" not in line else f"{text}inertia = 1.0\n"))
+
+    assert pulley(given) == pulley(spelled_out)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ('speed = "800 foo"', r'speed.value = "800 foo" has an unknown unit "foo"'),
+        ('speed = "800"', 'speed.value = "800" has no unit'),
+        ("speed = true", "speed = true has no kind"),
+        ('side = "left"', 'side = "left" is not a choice here. Known here: inside, outside'),
+        ('friction = "35"', 'friction = "35" is a plain number without a unit: .* or write a part as "1 %"'),
+        (
+            'friction = "35 % ± 2 %"',
+            "friction = .* is ambiguous, as the tolerance could be a part of the number or of one",
+        ),
+    ],
+)
+def test_what_cannot_be_read_is_said(drive_text: str, given: str, told: str) -> None:
+    lines = [line for line in drive_text.splitlines() if not line.startswith(("speed", "side"))]
+    lines.insert(lines.index('name = "driver"') + 1, given)
+    with pytest.raises(ModelError, match=told):
+        loads("\n".join(lines))
+
+
+def test_a_constant_in_short_form_is_a_number_like_any(drive_text: str) -> None:
+    """Its tolerance is known, it is changed where it stands, and the schema of editors allows it."""
+    (line,) = [line for line in drive_text.splitlines() if line.startswith("speed")]
+    drive = loads(drive_text.replace(line, 'speed = "800 ± 5 rpm"'))
+    path = "pulley[driver].speed.value"
+    assert tolerances_of(drive) == {path: pytest.approx(5.0 / RPM)}
+    text = edited(drive, {path: 900.0 / RPM})
+    assert 'speed = "900 ± 5 rpm"' in text
+    assert loads(text) == drive.with_({path: 900.0 / RPM})
+    assert json_schema()["$defs"]["Pulley"]["properties"]["speed"]["anyOf"][0]["anyOf"][0] == {"type": "number"}

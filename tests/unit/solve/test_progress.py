@@ -53,3 +53,10 @@ def test_what_is_left_goes_by_the_pace_of_late() -> None:
     progress = Progress(10.05, 12.0, 1e-6, 3, elapsed=16.0, pace=slow[-1])
     assert progress.remaining == pytest.approx(195.0)
     assert Progress(10.05, 12.0, 1e-6, 3, elapsed=16.0).remaining == pytest.approx(16.0 * 1.95 / 10.05)
+
+
+def test_nothing_is_forecast_of_a_run_that_has_just_begun() -> None:
+    """A start with short steps says nothing of the rest: of 109 s it once promised three hours."""
+    for reached in (0.0, 1e-4, 0.049):
+        assert np.isnan(Progress(reached, 1.0, 1e-6, 1, elapsed=5.1, pace=1e-4).remaining)
+    assert Progress(0.05, 1.0, 1e-6, 1, elapsed=5.1, pace=0.01).remaining == pytest.approx(95.0)

@@ -4,6 +4,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
@@ -13,7 +14,7 @@ from beltdyn.results import Result, summarize
 from beltdyn.solve.rest.staying import bring_to_stand
 from beltdyn.solve.sensitivity import sensitivity
 from beltdyn.solve.steady import steady_state
-from beltdyn.solve.studies.drive_numbers import numbers_of
+from beltdyn.solve.studies.drive_numbers import chosen_numbers, numbers_of
 from beltdyn.solve.studies.found_state import Running
 from beltdyn.solve.studies.small_changes import SmallChanges
 from beltdyn.solve.sweep import without_schedules
@@ -169,3 +170,25 @@ def test_derivatives_do_not_depend_on_the_step() -> None:
 
     effects = [effect(part) for part in (3e-5, 1e-5, 3e-6)]
     assert np.ptp(effects) < 1e-5 * state.value(load)
+
+
+def test_stiffnesses_and_mass_of_a_belt_given_by_its_material(loaded: Drive, found: Result) -> None:
+    """As its modulus is in both stiffnesses, and its density in the mass, so are the effects of one per cent."""
+    names = "belt.axial_stiffness, belt.bending_stiffness, belt.mass_per_length, pulley[driver].diameter"
+    by_stiffness = sensitivity(loaded, of="largest_tension, efficiency", numbers=names).dataset
+
+    def effect(table: xr.Dataset, number: str) -> FloatArray:
+        return np.asarray(table.effect.sel(result=["largest_tension", "efficiency"], number=number))
+
+    stiffness = effect(by_stiffness, "belt.axial_stiffness") + effect(by_stiffness, "belt.bending_stiffness")
+    for number, same in (("youngs_modulus", stiffness), ("density", effect(by_stiffness, "belt.mass_per_length"))):
+        np.testing.assert_allclose(same, effect(found.dataset, f"belt.{number}"), rtol=2e-3, atol=1e-9)
+    diameter = effect(by_stiffness, "pulley[driver].diameter")
+    np.testing.assert_allclose(diameter, effect(found.dataset, "pulley[driver].radius"), rtol=2e-3, atol=1e-9)
+
+
+def test_a_measured_curve_has_no_stiffness_of_its_own(loaded: Drive) -> None:
+    curve = {"strains": [0.01, 0.02], "tensions": [900.0, 1500.0]}
+    curved = loaded.with_({"belt.stretch_curve": curve})
+    with pytest.raises(ModelError, match=r"belt\.axial_stiffness = .* is the slope with which"):
+        chosen_numbers(curved, "belt.axial_stiffness", {})

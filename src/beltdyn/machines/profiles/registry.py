@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from beltdyn.machines.family import any_of, kinds_in
 from beltdyn.machines.profiles import kinds
@@ -10,6 +10,11 @@ from beltdyn.machines.profiles.profile import Profile
 from beltdyn.parts.quantity import AngularSpeed, Force, Frequency, Power, Pressure, Torque, quantity
 
 Factor = Annotated[float, quantity(""), Field(ge=0, le=1)]
+
+
+def _is_value(given: object) -> bool:
+    return isinstance(given, int | float | str) and not isinstance(given, bool)
+
 
 if TYPE_CHECKING:
     Schedule = Profile[float]
@@ -23,11 +28,15 @@ if TYPE_CHECKING:
 else:
     KINDS = kinds_in(kinds)
 
-    def _of(value):
-        """Type of a field that takes a profile of a quantity."""
-        return any_of({name: kind[value] for name, kind in KINDS.items()})
+    def _constant(given):
+        """A number, or text with a unit, stands for a constant."""
+        return {"kind": "constant", "value": given} if _is_value(given) else given
 
-    Schedule = any_of({name: kind[Factor] for name, kind in KINDS.items() if kind.multiplies})
+    def _of(value, kinds=KINDS):
+        """Type of a field that takes a profile of a quantity."""
+        return Annotated[any_of({name: kind[value] for name, kind in kinds.items()}), BeforeValidator(_constant)]
+
+    Schedule = _of(Factor, {name: kind for name, kind in KINDS.items() if kind.multiplies})
     SpeedProfile = _of(AngularSpeed)
     TorqueProfile = _of(Torque)
     FrequencyProfile = _of(Frequency)

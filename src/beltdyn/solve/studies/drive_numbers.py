@@ -67,6 +67,9 @@ def _numbers_in(value: object, path: str) -> Iterator[Number]:
 def chosen_numbers(drive: Drive, numbers: str | None, tolerances: Mapping[str, float]) -> list[Number]:
     """The numbers that are asked for; those with tolerances are numbers of the drive whatever they stand for.
 
+    Beside numbers that are given there are those that follow from them and may be given in their place, such as the
+    axial stiffness of a belt.
+
     Parameters
     ----------
     drive
@@ -87,10 +90,28 @@ def chosen_numbers(drive: Drive, numbers: str | None, tolerances: Mapping[str, f
         known.setdefault(path, Number(path, value, PART * value or size))
     if numbers is None:
         return list(known.values())
-    wanted = listed(numbers)
-    for path in wanted:
-        if path not in known:
-            raise ModelError(
-                f"{path} is no number of this drive that can be changed a little. {suggest(path, list(known))}"
-            )
-    return [known[path] for path in wanted]
+    return [known.get(path) or _number_in_place(drive, path, list(known)) for path in listed(numbers)]
+
+
+def _number_in_place(drive: Drive, path: str, known: Sequence[str]) -> Number:
+    """A number that may be given in place of others.
+
+    Raises
+    ------
+    ModelError
+        If there is none at the path.
+    """
+    try:
+        value = value_at(drive, path)
+    except ModelError:
+        value = None
+    if path == "belt.axial_stiffness" and drive.belt.stretch_curve is not None:
+        raise ModelError(
+            f"{path} = {value:.4g} N is the slope with which belt.stretch_curve begins, and no number of its own. "
+            "Remove the curve, or leave the stiffness out."
+        )
+    if not isinstance(value, float) or value == 0.0 or path.startswith(_KEPT):
+        raise ModelError(
+            f"{path} is no number of this drive that can be changed a little. {suggest(path, list(known))}"
+        )
+    return Number(path, value, PART * value)
