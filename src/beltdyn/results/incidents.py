@@ -80,7 +80,7 @@ def incidents(recorded: Recorded, drive: Drive) -> tuple[Incident, ...]:
 def slides_through(recorded: Recorded, drive: Drive) -> BoolArray:
     """Whether the belt slides on whole arcs, at two outputs or more, shape (outputs, pulleys)."""
     sliding, speed = (np.asarray(recorded[name]) for name in ("sliding_speed", "pulley_speed"))
-    slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, drive)[:, 0]))
+    slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, drive)[:, drive.reference]))
     if drive.ends:
         return np.zeros_like(slid)
     beside = np.pad(slid, ((1, 1), (0, 0)))
