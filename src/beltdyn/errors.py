@@ -70,3 +70,8 @@ class SlipError(SimulationError):
     def __init__(self, fault: str, remedy: str) -> None:
         super().__init__(f"{fault} {remedy}")
         self.fault = fault
+
+
+def cause_of(error: Exception) -> str:
+    """What an error says of its cause; of one that is not raised on purpose its type too."""
+    return str(error) if isinstance(error, BeltdynError) else f"{type(error).__name__}: {error}"

@@ -12,6 +12,7 @@ from beltdyn.model.installation import Installation, tensioner_balances
 from beltdyn.model.plausibility import judge_plausibility
 from beltdyn.model.resolution import Running, elements_needed, mesh_errors, unresolved
 from beltdyn.parts.finding import Finding, listing
+from beltdyn.parts.quantity import RPM
 
 _MOST_TENSION_LOST = 0.02
 _DEEPEST_PENETRATION = 0.1
@@ -47,6 +48,7 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
     lost, sunk = _tension(drive, installation), _penetration(drive, installation)
     found = [
         *_strain(drive, installation),
+        *_lift_off(drive, installation),
         *lost,
         *_stops(drive, installation),
         *_other_balances(drive, installation),
@@ -93,6 +95,32 @@ def _strain(drive: Drive, installation: Installation) -> list[Finding]:
         "belt.stretch_curve.",
     )
     return [finding] if strain > _LARGEST_STRAIN else []
+
+
+def _lift_off(drive: Drive, installation: Installation) -> list[Finding]:
+    """Compare the largest prescribed speed with that from which a belt on fixed centres no longer presses on pulleys.
+
+    Its length between them stays, and so does its tension T, of which m v^2 is taken to bend the moving belt. A spring
+    follows the belt and keeps up its pressure.
+    """
+    if drive.ends or installation.tensioner_positions.size or not installation.laid_tension > 0.0:
+        return []
+    tension, mass = installation.laid_tension, drive.belt.mass_per_length / (1.0 + installation.strain)
+    speeds = drive.radii * np.array([abs(pulley.driven_speed(drive.simulation.end)) for pulley in drive.pulleys])
+    driver, limit = int(np.argmax(speeds)), math.sqrt(tension / mass)
+    fastest, rpm = float(speeds[driver]), RPM * limit / float(drive.radii[driver])
+    if fastest <= limit:
+        return []
+    return [
+        Finding(
+            f"at {fastest:.4g} m/s, the largest speed of {drive.pulleys[driver].name}, the belt lifts off all pulleys: "
+            f"it takes a tension of {mass * fastest**2:.4g} N to bend it around them, and it has {tension:.4g} N.",
+            f"It transmits next to nothing from {limit:.4g} m/s on ({rpm:.4g} rpm of {drive.pulleys[driver].name}), and less "
+            "and less on the way there: 75% of what it does at low speed is left at half of that.",
+            f"Raise the installed tension above {mass * fastest**2:.3g} N and what the load needs, lower the speed, "
+            "take a lighter belt, or a tensioner with a spring, which keeps the belt on.",
+        )
+    ]
 
 
 def _tension(drive: Drive, installation: Installation) -> list[Finding]:

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ModelError
 from beltdyn.model import Drive
 from beltdyn.parts.number_range import numbers_in
-from beltdyn.results import Result, Variable
+from beltdyn.results import Result, Run, Variable
 from beltdyn.solve.progress import Report
 from beltdyn.solve.steady_running.changed_drive import at_instant, at_speed, driver_of, held_at, sense_of
 from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints
@@ -102,8 +102,10 @@ def campbell(
     name, sense = held.pulleys[number].name, sense_of(held, number)
     excitations = own_excitations(at_instant(drive, at)) if orders is None else given_excitations(orders, held, number)
     speeds = numbers_in("speed", speed, "rad/s", points)
-    if speeds[0] <= 0.0:
-        raise ModelError(f"speed = {speed!r} must be above zero. Begin at a higher speed.")
+    if speeds[0] < 0.0:
+        raise ModelError(
+            f"speed = {speed!r} must not be below zero: speeds are positive in the sense in which the pulley turns."
+        )
     axes: Axes = {"speed": (Variable(("speed",), "rad/s", f"Speed of {name}"), speeds)}
     with OperatingPoints("campbell", held, axes, output, progress, overwrite, names=_KEPT) as table:
         title = f"Campbell diagram of {drive.title} over the speed of {name}"
@@ -114,13 +116,14 @@ def campbell(
             "dry_tensioners": dry_tensioners,
         }
         diagram = CampbellDiagram(held, speeds, excitations, count, dry_tensioners == STUCK)
-        for row, value in enumerate(speeds):
-            run = table.find((row,), at_speed(held, number, sense * float(value)), force_tolerance)
-            try:
-                diagram.take(run)
-            except ConvergenceError as error:
-                table.fail((row,), "no modes", str(error))
-                diagram.take(None)
+
+        def take(_: tuple[int, ...], run: Run | None) -> None:
+            diagram.take(run)
             if diagram.found:
                 table.more, table.derive, table.notes = diagram.coordinates, diagram.variables, diagram.warnings
+
+        def drive_at(value: float) -> Drive:
+            return at_speed(held, number, sense * value)
+
+        table.each(drive_at, force_tolerance, then=take, found_then="modes")
     return table.result()

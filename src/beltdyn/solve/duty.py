@@ -94,15 +94,13 @@ def duty(
     """
     columns = read_duty(Path(table))
     held = held_at(drive, at)
-    rows = [at_row(held, columns, number) for number in range(len(columns[0].values))]
     durations = durations_of(columns)
-    axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, len(rows) + 1))}
+    axes = {"row": (Variable(("row",), "1", "Row", "int64"), np.arange(1, durations.size + 1))}
     with OperatingPoints("duty", held, axes, output, progress, overwrite) as points:
         points.more = {"duration": (Variable(("row",), "s", "Duration"), durations)}
         points.derive = partial(_means, durations=durations)
         points.attributes = {"drive_as_given": drive.text}
-        for number, there in enumerate(rows):
-            points.find((number,), there, force_tolerance)
+        points.each(lambda row: at_row(held, columns, row - 1), force_tolerance)
     return points.result()
 
 

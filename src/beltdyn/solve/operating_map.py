@@ -91,9 +91,11 @@ def operating_map(
         axes["load"] = Variable(("load",), "1", "Load"), load_factors(load, load_points)
     with OperatingPoints("map", held, axes, output, progress, overwrite) as table:
         table.attributes = {"drive_as_given": drive.text, "pulley": name}
-        for index in serpentine(table.shape):
-            there = {axis: float(values[k]) for k, (axis, (_, values)) in zip(index, axes.items(), strict=True)}
-            table.find(index, at_point(held, number, there), force_tolerance)
+
+        def drive_at(*values: float) -> Drive:
+            return at_point(held, number, dict(zip(axes, values, strict=True)))
+
+        table.each(drive_at, force_tolerance, order=serpentine(table.shape))
     return table.result()
 
 

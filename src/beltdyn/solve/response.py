@@ -105,8 +105,10 @@ def response(
     number = driver_of(given) if pulley is None else given.number_of(pulley)
     name, sense = given.pulleys[number].name, sense_of(given, number)
     speeds = numbers_in("speed", speed, "rad/s", points)
-    if speeds[0] <= 0.0:
-        raise ModelError(f"speed = {speed!r} must be above zero. Begin at a higher speed.")
+    if speeds[0] < 0.0:
+        raise ModelError(
+            f"speed = {speed!r} must not be below zero: speeds are positive in the sense in which the pulley turns."
+        )
     answers = Answers(exciting, number, speeds)
     place, beside = Place(speeds, number, answers.excitations, labels_of(given)), dict[str, Any]()
     if compare is not None:
@@ -119,9 +121,14 @@ def response(
         table.attributes = {"title": title, "drive_as_given": drive.text, "pulley": name}
         table.attributes["dry_tensioners"] = dry_tensioners
         table.more, table.derive = answers.coordinates, lambda arrays: {**answers.variables(), **beside}
-        for row, value in enumerate(speeds):
-            run = table.find((row,), at_speed(given, number, sense * float(value)), force_tolerance)
+
+        def take(index: tuple[int, ...], run: Run | None) -> None:
             if run is not None:
-                answers.take(row, run, ForcedMotion(run, dry_tensioners == STUCK))
+                answers.take(index[0], run, ForcedMotion(run, dry_tensioners == STUCK))
                 table.notes = answers.warnings(table.arrays)
+
+        def drive_at(value: float) -> Drive:
+            return at_speed(given, number, sense * value)
+
+        table.each(drive_at, force_tolerance, then=take, found_then="response")
     return table.result()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from beltdyn.arrays import FloatArray
-from beltdyn.errors import ConvergenceError, ModelError
+from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive
 from beltdyn.model.pulley import flat_friction_on
 from beltdyn.parts.number_range import numbers_in
@@ -22,6 +22,8 @@ from beltdyn.solve.steady_running.operating_points import Axes, OperatingPoints
 
 _FIRST, _LAST = 5e-4, 0.6
 """Slips between which gross slip is looked for."""
+_LEAST = 1e-5
+"""Slip below which a drive that has no steady running with slip has none at all."""
 _FURTHER = 2.0
 _NEAR = 0.02
 """Part of the slip up to which gross slip is found."""
@@ -145,13 +147,7 @@ def traction(
         def from_near(part: float) -> Drive:
             return slipping(part, _firmness(table.near, number))
 
-        before = 0.0
-        for index, part in enumerate(slips.tolist()):
-            for on_the_way in np.arange(before + _STRIDE, part, _STRIDE).tolist():
-                if table.pass_by(from_near(on_the_way), force_tolerance):
-                    before = on_the_way
-            if table.find((index,), from_near(part), force_tolerance, partial(_between, from_near, before, part)):
-                before = part
+        table.each(from_near, force_tolerance, stride=_STRIDE)
     return table.result()
 
 
@@ -193,13 +189,14 @@ def _firmness(near: Run | None, number: int) -> float:
     return _FIRMER if near is not None and min(_sliding(near, number)) > _ABOUT else 1.0
 
 
-def _between(slipping: Callable[[float], Drive], before: float, after: float, part: float) -> Drive:
-    """The drive at a part of the way between two slips."""
-    return slipping(before + part * (after - before))
-
-
 def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, points: int) -> FloatArray:
-    """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver."""
+    """Slips from zero to some way beyond where the whole arc of the pulley slides, or that of the driver.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no steady running with any slip.
+    """
     if points < _FEWEST:
         raise ModelError(f"points = {points} must be {_FEWEST} or more: give more, or slips of your own.")
     creeping, sliding, run = 0.0, _LAST, None
@@ -207,7 +204,9 @@ def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, poi
         part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
         try:
             found = steady_state(slipping(part, _FIRMER), force_tolerance=_ROUGHLY, start=run)
-        except ConvergenceError:
+        except Exception as error:
+            if part < _LEAST:
+                raise ConvergenceError(f"no steady running with any slip: {cause_of(error)}") from error
             sliding = part
             continue
         if max(_sliding(found, number)) > _ALL:

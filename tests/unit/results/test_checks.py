@@ -68,6 +68,15 @@ def test_siblings_are_one_finding(turning: Callable[..., Run], run: Run) -> None
     assert [text.split(":")[0] for text in sliding] == ["driver and driven slide through"]
 
 
+def test_a_belt_that_its_speed_lifts_off(turning: Callable[..., Run], run: Run) -> None:
+    """m v^2 of 94 % of the tension leaves something to press with, and of 96 % next to nothing."""
+    belt, tension = run.drive.belt, run.dataset["span_tension"].values
+    limit = np.sqrt(tension.mean(axis=1, keepdims=True) / belt.mass_per_length) * np.ones(2)
+    assert not said(turning(belt_speed=np.sqrt(0.94) * limit), "lifts it off")
+    (warning,) = said(turning(belt_speed=np.sqrt(0.97) * limit), "lifts it off")
+    assert warning.startswith("the speed of the belt lifts it off driver at t = 0 s and driven at t = 0 s: at ")
+
+
 def test_driven_pulley_faster_than_its_driver(turning: Callable[..., Run], run: Run) -> None:
     """The slip of -0.185 % falls short of the elastic creep of 0.294 % by 0.48 % of the speed."""
     (finding,) = turning(**with_slip(run, -0.00185)).findings

@@ -1,5 +1,6 @@
 """Operating points over speed and load: as `steady_state` finds them, those that fail marked, and what is kept."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +9,12 @@ import pytest
 import beltdyn as bd
 from beltdyn.cli import main
 from beltdyn.errors import ConvergenceError, ModelError
-from beltdyn.model import Drive
+from beltdyn.model import Drive, advise, install
 from beltdyn.results import Result, open_result, summarize, write_csv
 from beltdyn.solve.operating_map import operating_map
 from beltdyn.solve.progress import Progress
 from beltdyn.solve.steady import steady_state
+from validation.published import two_pulley
 from validation.published.cases import better, loaded_two_pulley
 
 LIMIT = 3.0
@@ -92,6 +94,24 @@ def test_no_point_at_all_is_an_error(loaded: Drive, tmp_path: Path) -> None:
     with pytest.raises(ConvergenceError, match="slips through on driven"):
         operating_map(loaded, load=f"{LIMIT}, 4", output=tmp_path / "map.nc")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_belt_lifts_off_at_the_speed_that_check_names() -> None:
+    """Pulleys are pressed by T - m v^2: three quarters at half of that speed, next to nothing at that speed."""
+    drive = better(two_pulley())
+    fast = drive.with_({"pulley[driver].speed.value": 4000.0})
+    (warning,) = (text for text in advise(fast, install(fast)) if "lifts off" in text)
+    limit = re.search(r"next to nothing from .* m/s on \((\S+) rpm of driver\)", warning)
+    assert limit is not None
+    rpm = float(limit[1])
+    assert not any("lifts off" in text for text in advise(drive, install(drive)))
+    found = operating_map(
+        drive, speed=f"{0.01 * rpm}, {0.5 * rpm}, {1.05 * rpm}, {1.5 * rpm} rpm", force_tolerance=0.05
+    )
+    loads = found.dataset.hub_load.sel(pulley="driven").values
+    assert loads[1] / loads[0] == pytest.approx(0.75, abs=0.01)
+    assert loads[2] / loads[0] < 0.1  # what bends the belt around a pulley presses on its middle
+    assert any("lifts it off" in text for text in found.warnings)
 
 
 def test_bad_input(loaded: Drive) -> None:

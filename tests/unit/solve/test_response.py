@@ -91,7 +91,7 @@ def test_file_and_tables(found: bd.Result, tmp_path: Path) -> None:
     ("options", "said"),
     [
         ({"dry_tensioners": "dry"}, "dry_tensioners = 'dry' is neither"),
-        ({"speed": "0, 100 rpm"}, "must be above zero"),
+        ({"speed": "-1, 100 rpm"}, "must not be below zero"),
         ({"pulley": "dirver"}, "driver"),
         ({"measured": "nowhere.csv"}, "nowhere.csv"),
         ({"compare": "nowhere.nc"}, "nowhere.nc"),

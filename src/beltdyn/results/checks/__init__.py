@@ -8,7 +8,14 @@ from dataclasses import replace
 
 from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding
-from beltdyn.results.checks.contact import deep_penetration, large_strain, large_tension, leaves_pulley, slack_spans
+from beltdyn.results.checks.contact import (
+    deep_penetration,
+    large_strain,
+    large_tension,
+    leaves_pulley,
+    lifted_by_speed,
+    slack_spans,
+)
 from beltdyn.results.checks.creep import impossible_slip, regularised_slip
 from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
 from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
@@ -32,6 +39,7 @@ CHECKS: tuple[Check, ...] = (
     unbalanced_powers,
     slack_spans,
     leaves_pulley,
+    lifted_by_speed,
     deep_penetration,
     large_strain,
     large_tension,

@@ -15,6 +15,9 @@ STRAIN_LIMIT = 0.05
 DEEPEST_OF_RADIUS, DEEPEST_OF_THICKNESS = 0.1, 0.5
 """Largest penetrations over the radius and over the belt's thickness that pass without a warning."""
 
+LIFTED = 0.95
+"""Part of the tension that m v^2 may take before the belt counts as lifted off."""
+
 _INSTANTS = 40
 """Outputs of fields at which places of contact are looked at, at most."""
 
@@ -54,6 +57,34 @@ def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
             f"Spans beside a pulley without belt have no tension and no speed: in {left.any(axis=1).mean():.0%} of the "
             "run numbers are missing.",
             "Raise the installed tension, or lower the speed.",
+        )
+
+
+def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
+    """Pulleys on which the moving belt hardly presses, since m v^2 takes the tension of both spans beside."""
+    drive = evidence.drive
+    if drive.ends:
+        return
+    tension, speed = (np.asarray(evidence.recorded[name]) for name in ("span_tension", "belt_speed"))
+    with np.errstate(invalid="ignore"):
+        bending = drive.belt.mass_per_length * speed**2 / np.asarray(drive.belt.stretch_parameters.stretch(tension))
+        mean, taken = (0.5 * (np.roll(one, 1, axis=1) + one) for one in (tension, bending))
+        lifted = (mean > 0.0) & (taken > LIFTED * mean)
+    times = [
+        f"{pulley.name} at t = {evidence.time[int(when.argmax())]:.4g} s"
+        for pulley, when in zip(drive.pulleys, lifted.T, strict=True)
+        if when.any()
+    ]
+    if times:
+        row, number = np.argwhere(lifted)[0]
+        fastest, held = float(np.nanmax(np.abs(speed[row]))), float(mean[row, number])
+        yield Finding(
+            f"the speed of the belt lifts it off {listing(times)}: at {fastest:.4g} m/s it takes "
+            f"{taken[row, number]:.4g} N to bend it around {drive.pulleys[number].name}, of a tension of {held:.4g} N.",
+            f"It presses there with less than {1.0 - LIFTED:.0%} of its tension, and transmits as little: torques and "
+            f"slip in {lifted.any(axis=1).mean():.0%} of the results are those of a belt that hardly touches.",
+            "Raise the installed tension, lower the speed, take a lighter belt, or a tensioner with a spring, which "
+            "keeps the belt on.",
         )
 
 

@@ -2,9 +2,10 @@
 
 import re
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
+from math import ceil
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -12,7 +13,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from beltdyn.errors import ConvergenceError
+from beltdyn.arrays import FloatArray
+from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, Variable, build_result
@@ -23,7 +25,7 @@ from beltdyn.results.schema import COORDINATES
 from beltdyn.results.summary import Means, means_of
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.progress import Progress, Report
-from beltdyn.solve.steady import steady_state
+from beltdyn.solve.steady import require_steady, steady_state
 from beltdyn.solve.steady_running.point_values import PULLEY, VARIABLES, labels_of, values_by_name
 
 Axes = Mapping[str, tuple[Variable, ArrayLike]]
@@ -38,7 +40,8 @@ _SHORTEST_PART = 1.0 / 16.0
 class OperatingPoints:
     """Operating points in a table, in a file if one is named; an interruption keeps what was found.
 
-    A point that has no steady running is marked by its reason, and the others go on.
+    A point that has no steady running is marked by its reason, and so is one at which anything else goes wrong; the
+    others go on.
 
     Parameters
     ----------
@@ -60,7 +63,7 @@ class OperatingPoints:
     Raises
     ------
     ModelError
-        If the file would replace one that is no result.
+        If the drive cannot run steadily, or the file would replace one that is no result.
     """
 
     def __init__(
@@ -75,6 +78,7 @@ class OperatingPoints:
         names: Collection[str] = VARIABLES.keys(),
     ) -> None:
         self._kind, self._drive, self._axes = kind, drive, axes
+        require_steady(drive)
         self._path, self._overwrite = Path(output) if output is not None else None, overwrite
         if self._path is not None:
             require_replaceable(self._path, is_result, overwrite)
@@ -86,6 +90,10 @@ class OperatingPoints:
         self._warned: dict[str, list[tuple[float, str, str]]] = {}
         self._done, self._written, self._status = 0, time.perf_counter(), "running"
         self._near: Run | None = None
+        self._near_at: Sequence[float] = ()
+        self._run: Run | None = None
+        self._error: Exception | None = None
+        """What went wrong first."""
         self.more: Axes = {}
         """Further coordinates."""
         self.derive: Callable[[Mapping[str, NDArray[Any]]], Axes] = lambda arrays: {}
@@ -120,80 +128,114 @@ class OperatingPoints:
         """The operating point that was found last."""
         return self._near
 
-    def pass_by(self, drive: Drive, force_tolerance: float | None) -> bool:
-        """Look for an operating point on the way to another one, without noting it; parameters as for `find`."""
-        with suppress(ConvergenceError):
-            self._near = steady_state(drive, force_tolerance=force_tolerance, start=self._near)
-            return True
-        return False
-
-    def find(
+    def each(
         self,
-        index: tuple[int, ...],
-        drive: Drive,
+        at: Callable[..., Drive],
         force_tolerance: float | None,
-        between: Callable[[float], Drive] | None = None,
-    ) -> Run | None:
-        """Find an operating point, from the one that was found before.
+        *,
+        order: Iterable[tuple[int, ...]] | None = None,
+        then: Callable[[tuple[int, ...], Run | None], None] | None = None,
+        found_then: str = "further results",
+        stride: float | None = None,
+    ) -> None:
+        """Find the operating points one after the other, each from the one before.
+
+        Whatever goes wrong at a point is noted there, and the others are found all the same.
 
         Parameters
         ----------
-        index
-            Place in the table.
-        drive
-            The drive there, with constant speeds, torques and schedules.
+        at
+            The drive at an operating point, with constant speeds, torques and schedules: a function of its labels along
+            the axes.
         force_tolerance
             As for `steady_state`.
-        between
-            The drive at a part of the way from the point that was found before, by which it is looked for if it is not
-            found at once.
-
-        Returns
-        -------
-        Run or None
-            Steady running there; None where there is none.
+        order
+            Places in the table, in the order in which they are found; by default one after the other.
+        then
+            Called with the place of each point and its steady running, None where there is none.
+        found_then
+            What that finds, in words.
+        stride
+            Longest way along the axis from one search to the next; with it, a point that is not found from the one
+            before is looked for by parts of the way, too.
         """
-        run = None
-        try:
-            run = self._reach(drive, force_tolerance, between if self.found else None)
-        except ConvergenceError as error:
-            self.fail(index, "no operating point", str(error))
-        else:
-            self._take(index, run, means_of(run))
-            self._near = run
-        self._done += 1
-        self._tell()
-        if time.perf_counter() - self._written > _OFTEN:
-            self._save()
-        return run
+        for index in np.ndindex(self.shape) if order is None else order:
+            self._find(index, at, force_tolerance, stride)
+            if then is not None:
+                self._take_more(index, then, found_then)
+            self._done += 1
+            self._tell()
+            if time.perf_counter() - self._written > _OFTEN:
+                self._save()
 
-    def _reach(self, drive: Drive, force_tolerance: float | None, between: Callable[[float], Drive] | None) -> Run:
-        """Steady running, at once or by parts of the way.
+    def _find(
+        self, index: tuple[int, ...], at: Callable[..., Drive], force_tolerance: float | None, stride: float | None
+    ) -> None:
+        """Find an operating point, or note why there is none."""
+        self._run = None
+        there = [np.atleast_1d(labels)[k].item() for k, (_, labels) in zip(index, self._axes.values(), strict=True)]
+        try:
+            found = partial(self._search, at, force_tolerance)
+            run = found(there) if stride is None else self._reach(found, np.array(there), stride)
+            self._take(index, run, means_of(run))
+        except Exception as error:
+            self._error = self._error or error
+            self._fail(index, "no operating point", cause_of(error))
+        else:
+            self._run = self._near = run
+            self._near_at = there
+
+    def _search(self, at: Callable[..., Drive], force_tolerance: float | None, there: Sequence[float]) -> Run:
+        """Steady running from the point that was found last."""
+        return steady_state(at(*there), force_tolerance=force_tolerance, start=self._near)
+
+    def _reach(self, found: Callable[[Sequence[float]], Run], there: FloatArray, stride: float) -> Run:
+        """Steady running, by strides, and by parts of the last one where it is not found at once.
 
         Raises
         ------
         ConvergenceError
-            That of the drive itself, if it is not found.
+            That of the point itself, if it is not found.
         """
-        found = partial(steady_state, force_tolerance=force_tolerance)
+        if self._near is None:
+            return found(there.tolist())
+        begin = np.array(self._near_at)
+        way = float(np.max(np.abs(there - begin)))
+        for number in range(1, ceil(way / stride)):
+            self._pass_by(found, begin + number * stride / way * (there - begin))
         try:
-            return found(drive, start=self._near)
+            return found(there.tolist())
         except ConvergenceError:
-            if between is None:
-                raise
-            near, done, part = self._near, 0.0, 0.5
+            begin, done, part = np.array(self._near_at), 0.0, 0.5
             while part >= _SHORTEST_PART:
                 ahead = min(done + part, 1.0)
-                try:
-                    near, done = found(drive if ahead == 1.0 else between(ahead), start=near), ahead
-                except ConvergenceError:
+                if ahead == 1.0:
+                    with suppress(ConvergenceError):
+                        return found(there.tolist())
                     part *= 0.5
+                elif self._pass_by(found, begin + ahead * (there - begin)):
+                    done = ahead
                 else:
-                    if done == 1.0:
-                        return near
+                    part *= 0.5
             raise
 
-    def fail(self, index: tuple[int, ...], what: str, reason: str) -> None:
+    def _pass_by(self, found: Callable[[Sequence[float]], Run], there: FloatArray) -> bool:
+        """Look for an operating point on the way to another one, without noting it."""
+        with suppress(ConvergenceError):
+            self._near, self._near_at = found(there.tolist()), there.tolist()
+            return True
+        return False
+
+    def _take_more(
+        self, index: tuple[int, ...], then: Callable[[tuple[int, ...], Run | None], None], found_then: str
+    ) -> None:
+        """Have more found about a point, or note why it is not."""
+        try:
+            then(index, self._run)
+        except Exception as error:
+            self._fail(index, f"no {found_then}", cause_of(error))
+
+    def _fail(self, index: tuple[int, ...], what: str, reason: str) -> None:
         """Mark a point by the reason why something is not found there, and warn of it."""
         self.arrays["failure"][index] = reason
         text = f"{what}: {reason}"
@@ -205,10 +247,14 @@ class OperatingPoints:
         Raises
         ------
         ConvergenceError
-            If no point was found, but some were looked for.
+            If points were looked for, and none was found.
+        ModelError
+            If that is for an error of the drive or the options.
         """
-        if self._done and not self.found:
-            raise ConvergenceError(next(filter(None, self.arrays["failure"].ravel().tolist())))
+        if self._error and not self.found and self._status != "interrupted":
+            kind = ModelError if isinstance(self._error, ModelError) else ConvergenceError
+            points = f"none of {self._done} points has steady running. The first one: " if self._done > 1 else ""
+            raise kind(points + cause_of(self._error)) from self._error
         kept = {name: (self._labelled(VARIABLES[name]), values) for name, values in self.arrays.items()}
         coordinates = {**self._axes, **self.more, **self._named()}
         variables = {**kept, **self._extremes(), **self.derive(self.arrays)}
@@ -256,12 +302,11 @@ class OperatingPoints:
 
     def _take(self, index: tuple[int, ...], run: Run, means: Means) -> None:
         """Note an operating point."""
-        for name, values in values_by_name(run, means).items():
-            if name in self.arrays:
-                self.arrays[name][index] = values
-        if "mesh_error" in self.arrays:
-            self.arrays["mesh_error"][index] = run.resolution.errors["peak pressure"]
-        for finding in run.findings:
+        values, findings = values_by_name(run, means), run.findings
+        values["mesh_error"] = run.resolution.errors["peak pressure"]
+        for name in self.arrays.keys() & values.keys():
+            self.arrays[name][index] = values[name]
+        for finding in findings:
             if finding.kind not in self.expected:
                 self._warn(index, finding.kind, str(finding), finding.weight)
 

@@ -94,19 +94,20 @@ class CampbellDiagram:
         Raises
         ------
         ConvergenceError
-            If it has no modes; nothing is taken then.
+            If it has no modes; the speed counts as one without any then.
         """
-        if run is None:
-            self._tracks.take(None)
-            self._lines.append([np.nan] * len(self._excitations))
-            self._flutter.append(complex(np.nan, np.nan))
-            return
-        motions = about_steady(run)
-        seen = seen_modes(motions if self._stuck is None else motions.with_stuck(self._stuck), self._count + _SPARE)
-        self._tracks.take(seen)
-        self._flutter.append(_flutter(motions))
-        self._lines.append([one.frequency(run) for one in self._excitations])
-        self._bounds = self._bounds or _flutter_bounds(motions)
+        seen, flutter, lines = None, complex(np.nan, np.nan), [np.nan] * len(self._excitations)
+        try:
+            if run is not None:
+                motions = about_steady(run)
+                vibrating = motions if self._stuck is None else motions.with_stuck(self._stuck)
+                own, around = [one.frequency(run) for one in self._excitations], _flutter(motions)
+                self._bounds = self._bounds or _flutter_bounds(motions)
+                seen, flutter, lines = seen_modes(vibrating, self._count + _SPARE), around, own
+        finally:
+            self._tracks.take(seen)
+            self._flutter.append(flutter)
+            self._lines.append(lines)
 
     @property
     def found(self) -> bool:
