@@ -1,0 +1,58 @@
+"""Runs that are killed at any time go on to the same results, to the last bit."""
+
+import os
+import signal
+import time
+from pathlib import Path
+from random import Random
+
+import numpy as np
+from tools.campaign.damage import two_pulley
+
+from beltdyn.errors import ModelError
+from beltdyn.results import Run
+from beltdyn.solve import simulate
+from beltdyn.solve.checkpoint import checkpoint_file
+
+_OFTEN = 1e-9
+"""Computing time between two checkpoints, s: one after each chunk of steps."""
+
+
+def killed_and_resumed(seed: int, whole: Run, seconds: float, folder: Path) -> str:
+    """Kill a run once or more, and let it go on: the fault, if it ends otherwise than one that nobody disturbs.
+
+    Parameters
+    ----------
+    seed
+        The same instants for the same number, but for the haste of the machine.
+    whole
+        The undisturbed run.
+    seconds
+        How long it takes, s.
+    folder
+        Where files are written.
+    """
+    random, path, drive = Random(seed), folder / f"killed{seed}.nc", two_pulley()
+    for _ in range(random.choice((1, 1, 2))):
+        process = os.fork()
+        if process == 0:
+            try:
+                simulate(drive, path, checkpoint=_OFTEN, resume=checkpoint_file(path).exists())
+            finally:
+                os._exit(0)
+        time.sleep(seconds * random.random())
+        os.kill(process, signal.SIGKILL)
+        os.waitpid(process, 0)
+    if checkpoint_file(path).exists():
+        found = simulate(drive, path, resume=True)
+    else:
+        try:
+            simulate(drive, path, resume=True)
+        except ModelError:
+            found = simulate(drive, path)
+        else:
+            return "a run without a checkpoint went on"
+    for name, variable in whole.dataset.variables.items():
+        if not np.array_equal(found.dataset[name].values, variable.values, equal_nan=variable.dtype.kind == "f"):
+            return f"{name} differs after a kill"
+    return ""
