@@ -19,15 +19,14 @@ from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+from beltdyn.errors import BeltdynError
+from beltdyn.solve import simulate
 from tools.campaign import damage, hostile, kills
 from tools.campaign.analyses import WORKS
 from tools.campaign.drive_mutations import bases
 from tools.campaign.mutants import try_mutant
 from tools.campaign.odd_drives import odd_drive
 from tools.campaign.trial import Outcome, attempt
-
-from beltdyn.errors import BeltdynError
-from beltdyn.solve import simulate
 
 FAULTS = ("traceback", "died", "fault")
 _LONGEST = 10.0

@@ -7,12 +7,12 @@ from pathlib import Path
 from random import Random
 
 import numpy as np
-from tools.campaign.damage import two_pulley
 
 from beltdyn.errors import ModelError
 from beltdyn.results import Run
 from beltdyn.solve import simulate
 from beltdyn.solve.checkpoint import checkpoint_file
+from tools.campaign.damage import two_pulley
 
 _OFTEN = 1e-9
 """Computing time between two checkpoints, s: one after each chunk of steps."""

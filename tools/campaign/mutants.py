@@ -6,11 +6,10 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from tools.campaign.drive_mutations import mutated
-from tools.campaign.trial import Outcome, outcome
-
 from beltdyn.model import Drive, advise, install, load
 from beltdyn.solve import equilibrium
+from tools.campaign.drive_mutations import mutated
+from tools.campaign.trial import Outcome, outcome
 
 LONGEST = 10.0
 """Processor time that a file may take, s."""

@@ -108,15 +108,15 @@ def _lift_off(drive: Drive, installation: Installation) -> list[Finding]:
     tension, mass = installation.laid_tension, drive.belt.mass_per_length / (1.0 + installation.strain)
     speeds = drive.radii * np.array([abs(pulley.driven_speed(drive.simulation.end)) for pulley in drive.pulleys])
     driver, limit = int(np.argmax(speeds)), math.sqrt(tension / mass)
-    fastest, rpm = float(speeds[driver]), RPM * limit / float(drive.radii[driver])
+    fastest, rpm, name = float(speeds[driver]), RPM * limit / drive.radii[driver], drive.pulleys[driver].name
     if fastest <= limit:
         return []
     return [
         Finding(
-            f"at {fastest:.4g} m/s, the largest speed of {drive.pulleys[driver].name}, the belt lifts off all pulleys: "
+            f"at {fastest:.4g} m/s, the largest speed of {name}, the belt lifts off all pulleys: "
             f"it takes a tension of {mass * fastest**2:.4g} N to bend it around them, and it has {tension:.4g} N.",
-            f"It transmits next to nothing from {limit:.4g} m/s on ({rpm:.4g} rpm of {drive.pulleys[driver].name}), and less "
-            "and less on the way there: 75% of what it does at low speed is left at half of that.",
+            f"It transmits next to nothing from {limit:.4g} m/s on ({rpm:.4g} rpm of {name}), and "
+            "less and less on the way there: at half of that speed 75% of what it does at low speed.",
             f"Raise the installed tension above {mass * fastest**2:.3g} N and what the load needs, lower the speed, "
             "take a lighter belt, or a tensioner with a spring, which keeps the belt on.",
         )

@@ -1,0 +1,101 @@
+"""A small part of the campaign of wrong, odd, damaged and hostile input; `python -m tools.campaign` has it whole.
+
+BELTDYN_MUTATIONS says how many wrong drive files are checked in the slow part (a fifth of them is brought to rest,
+too), and BELTDYN_FIRST_MUTATION the first seed.
+"""
+
+import contextlib
+import os
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from beltdyn.errors import BeltdynError, ModelError
+from beltdyn.model import Drive, loads
+from tools.campaign import damage, hostile
+from tools.campaign.__main__ import odd, report
+from tools.campaign.drive_mutations import bases
+from tools.campaign.mutants import balance, look, try_mutant
+from tools.campaign.trial import attempt, outcome
+
+FIRST = int(os.environ.get("BELTDYN_FIRST_MUTATION", "0"))
+COUNT = int(os.environ.get("BELTDYN_MUTATIONS", "1000"))
+LARGEST = 1_000_000
+"""Growth of the memory of the process over all files, kB."""
+
+pytestmark = [
+    pytest.mark.filterwarnings("default"),
+    pytest.mark.skipif(not hasattr(os, "fork"), reason="a trial is a copy of the process"),
+]
+
+
+def peak_memory() -> int:
+    """Largest memory of this process so far, kB; 0 where that is not known."""
+    if sys.platform != "linux":
+        return 0
+    import resource
+
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def test_what_comes_of_trials() -> None:
+    def refuse() -> str:
+        raise ModelError("no")
+
+    def fail() -> str:
+        raise KeyError("x")
+
+    kinds = [attempt(work, 5.0).kind for work in (str, refuse, fail, lambda: "changed", partial(os._exit, 3))]
+    assert kinds == ["fine", "refused", "traceback", "fault", "died"]
+    assert attempt(lambda: "x" * sum(iter(int, 1)), 1.0).kind == "too long"
+    assert outcome(partial(sys.exit, 1)) == ("fault", "exit code 1")
+
+
+def test_some_wrong_drive_files(tmp_path: Path) -> None:
+    originals = bases()
+    found = {seed: try_mutant(seed, originals, tmp_path) for seed in range(100)}
+    assert {seed: one for seed, one in found.items() if one.kind not in ("fine", "refused")} == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("use", "count"), [(look, COUNT), (balance, COUNT // 5)], ids=["check", "static"])
+def test_many_wrong_drive_files(tmp_path: Path, use: Callable[[Drive], None], count: int) -> None:
+    originals = bases()
+    for original in originals:  # kernels are compiled before the clock of a file starts
+        with contextlib.suppress(BeltdynError):  # the coarse mesh is too coarse for some
+            balance(loads(original))
+    memory = peak_memory()
+    found = {seed: try_mutant(seed, originals, tmp_path, use) for seed in range(FIRST, FIRST + count)}
+    assert {seed: one for seed, one in found.items() if one.kind not in ("fine", "refused")} == {}
+    assert peak_memory() - memory < LARGEST
+
+
+@pytest.mark.slow
+def test_odd_drives(tmp_path: Path) -> None:
+    assert report("odd drives", odd(3, 34, tmp_path)) == 0
+
+
+def test_code_in_files_is_not_run(tmp_path: Path) -> None:
+    """And the trial notices code that is."""
+    cases = [case for case in hostile.cases(b"beltdyn checkpoint\n") if "pickle" in case[0] or "dotted" in case[0]]
+    for number, case in enumerate(cases):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        assert attempt(partial(hostile.give, case, folder), 10.0).kind == "refused"
+        case[1](folder)
+    assert len(cases) == 3
+    (tmp_path / hostile.MARKER).touch()
+    assert attempt(partial(hostile.give, ("none", lambda _: ["schema"]), tmp_path), 10.0).kind == "traceback"
+
+
+def test_damage_is_noticed_by_the_trial(tmp_path: Path) -> None:
+    """A file whose bytes are what is read has no damage that changes nothing."""
+    kind = damage.Kind("plain", tmp_path / "plain", lambda path: path.read_bytes().hex())
+    for seed in range(20):
+        kind.path.write_bytes(bytes(range(256)) * 8)
+        intact = kind.read(kind.path)
+        fault = damage.silent(kind, seed, intact, tmp_path)
+        assert (fault == "") == (kind.read(kind.path) == intact)
