@@ -1,6 +1,7 @@
 """What mutations and trials have found: each input once ended in a traceback, took long, or was echoed whole."""
 
 import os
+import re
 import time
 from collections.abc import Callable
 from importlib.resources import files
@@ -19,6 +20,14 @@ LONGEST_MESSAGE = 5000
 LONGEST_TIME = 20.0
 """Processor time that a refusal may take beside other work, s: what grows with the square of a file takes minutes."""
 LONG = 100_000
+FAR = "center = [0.191441, 0.0]"
+PULLEY = """
+[[pulley]]
+name = "p{0}"
+center = [{0}, 0]
+radius = 0.1
+inertia = 1
+"""
 
 Change = Callable[[str], str]
 
@@ -56,6 +65,9 @@ def replace(old: str, new: str) -> Change:
             "more errors, which are not shown",
         ),
         (replace(LENGTH, "installed_tension = 1e-12"), "lost in rounding. Give at least"),
+        (replace(FAR, "center = [8e12, 0]"), "the drive extends over 8e+12 m, and 1e+07 radii"),
+        (lambda text: text + "".join(PULLEY.format(number) for number in range(20_000)), "more than 1000 entries"),
+        (lambda text: re.sub(r"(?m)^elements = \d+", "elements = 100000", text), "must be at most 10000"),
     ],
 )
 def test_drive_files(change: Change, part: str) -> None:
@@ -112,6 +124,7 @@ def test_dots_in_texts_and_comments_are_no_keys() -> None:
         ("secret\nsecret\n" * LONG, "has no numbers"),
         ("0,1\n1,two\n", 'line 2, column 2: "two" is not a number'),
         ("0,1\n" + "x" * LONG, "is not two numbers"),
+        ("\n".join(f"{number},1" for number in range(1_000_000)), "has 1,000,000 lines, and 250,000 are the limit"),
     ],
 )
 def test_tables_are_quoted_only_where_they_are_tables(tmp_path: Path, content: str, told: str) -> None:

@@ -6,6 +6,7 @@ from importlib.resources import files
 from random import Random
 
 NUMBER = re.compile(r"(?<![\w.\"])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.\"])")
+QUANTITY = re.compile(r'"-?\d[^"\n]*"')
 TEXT = re.compile(r'"[^"\n]*"')
 KEY = re.compile(r"^(\w+) *=", re.MULTILINE)
 LONG = 20_000
@@ -43,7 +44,7 @@ LINES = (
     *("belt.length = 1", 'catalogue = "table.csv"', 'profile = "PK"', "ribs = 6", "pitch_offset = 1", "friction = 1e9"),
     *("diameter = 0.1", "diameter = -1", "nominal_length = 1.3", 'nominal_length = "1 m^2"', 'profile = "round-85A"'),
     *('allowed_penetration = "1 um"', "allowed_penetration = 1", 'discretization = "truss"', "elements = 3"),
-    *("elements = 99999", "inertia = 0", "inertia = 1e-15", "max_step = 1e-15", "rtol = 1e-15", "spectral_radius = 0"),
+    *("elements = 9999", "inertia = 0", "inertia = 1e-15", "max_step = 1e-15", "rtol = 1e-15", "spectral_radius = 0"),
     '[[tensioner]]\npulley = "driven"\nkind = "fixed"\ndirection = [1, 0]\ntake_up = 0.01',
     '[[tensioner]]\npulley = "driven"\nkind = "sliding"\ndirection = [0, 0]\npreload = 1\nrate = 1\nmass = 1',
     '[[tensioner]]\npulley = "driven"\nkind = "sliding"\ndirection = [1, 0]\npreload = 1e9\nrate = 1e-9\nmass = 1',
@@ -101,6 +102,12 @@ def nudge(text: str, random: Random) -> str:
 
 def replace_number(text: str, random: Random) -> str:
     return _replaced(NUMBER, text, random, lambda _: random.choice(VALUES))
+
+
+def extreme(text: str, random: Random) -> str:
+    """Any magnitude that a computer has, in place of a number with or without a unit."""
+    number = f"{random.choice(('', '-'))}1e{random.randint(-323, 308)}"
+    return _replaced(random.choice((NUMBER, QUANTITY)), text, random, lambda _: number)
 
 
 def replace_text(text: str, random: Random) -> str:
@@ -165,7 +172,7 @@ def change_letters(text: str, random: Random) -> str:
 
 
 CHANGES: tuple[Callable[[str, Random], str], ...] = (
-    *(scale, nudge, replace_number, replace_text, replace_value, exchange_texts, exchange_numbers, rename_key),
+    *(scale, nudge, extreme, replace_number, replace_text, replace_value, exchange_texts, exchange_numbers, rename_key),
     *(exchange_keys, insert_line, delete_line, repeat_line, exchange_groups, cut, change_letters),
 )
 

@@ -177,7 +177,7 @@ class Belt(Part):
         gt=0,
         description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
     )
-    elements: Count | None = Field(None, ge=3, le=100_000, description="the number of belt elements")
+    elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
     discretization: ElementName | None = Field(
         None,
         description=f"the kind of elements: {_MEANINGS}; by default quintic on a mesh that stays, and ancf on one that "

@@ -25,6 +25,7 @@ from beltdyn.model.layout import (
     check_length,
     fixed_tensioner,
     leverage,
+    with_chosen,
     with_chosen_stiffness,
     with_take_up,
 )
@@ -87,7 +88,7 @@ def complete(layout: Layout) -> Completed:
     return Completed(
         belt=given.belt.replace(**_chosen(choices, "belt.")),
         pulleys=pulleys,
-        contact=given.contact.replace(**_chosen(choices, "contact.")),
+        contact=with_chosen(given.contact, given.belt, _chosen(choices, "contact.")),
         tensioners=given.tensioners,
         path=path,
         choices=choices,

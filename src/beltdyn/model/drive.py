@@ -63,7 +63,9 @@ class Drive(Part):
     )
     description: Words | None = Field(None, description="what the drive is, for who reads the file or looks at it")
     belt: Belt = Field(description="the group [belt]")
-    pulleys: tuple[Pulley, ...] = Field(alias="pulley", description="the groups [[pulley]], counter-clockwise")
+    pulleys: tuple[Pulley, ...] = Field(
+        alias="pulley", max_length=1000, description="the groups [[pulley]], counter-clockwise"
+    )
     contact: Contact = Field(default_factory=Contact, description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
     ends: tuple[AnyEnd, ...] = Field(

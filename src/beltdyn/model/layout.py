@@ -1,10 +1,11 @@
 """Where the pulleys of a drive stand and how its belt runs around them: path, and take-up of fixed tensioners."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from beltdyn.errors import ModelError
 from beltdyn.machines import FixedTensioner, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.tensioner import LEAST_LEVERAGE
 from beltdyn.model.belt import Belt
@@ -17,6 +18,7 @@ from beltdyn.model.pulley import Pulley
 from beltdyn.model.routing import lay_path
 from beltdyn.model.static_estimate import StaticEstimate
 from beltdyn.model.tensioner_balance import balance_tensioners
+from beltdyn.parts.messages import apart
 
 LARGEST_STRAIN = 0.5
 """Of a belt that is laid on its path."""
@@ -128,10 +130,23 @@ def with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice
         return given, ()
     tension = belt.installed_tension
     if tension is None:
-        first = given._replace(contact=contact.replace(stiffness=stiffness_for_tension(path, belt)))
-        tension = first.estimate(path).tension
+        first = with_chosen(contact, belt, {"stiffness": stiffness_for_tension(path, belt)})
+        tension = given._replace(contact=first).estimate(path).tension
     choice = choose_stiffness(path, belt, tension)
-    return given._replace(contact=contact.replace(stiffness=choice.value)), (choice,)
+    return given._replace(contact=with_chosen(contact, belt, {"stiffness": choice.value})), (choice,)
+
+
+def with_chosen(contact: Contact, belt: Belt, chosen: Mapping[str, Any]) -> Contact:
+    """Contact with numbers that are left open, as they follow from the belt and its path."""
+    try:
+        return contact.replace(**chosen)
+    except ModelError as error:
+        numbers = ", ".join(f"contact.{key} = {value:.4g}" for key, value in chosen.items())
+        raise ValueError(
+            f"{numbers} would follow from the belt and the pulleys, since the file leaves it open, and cannot be "
+            f"computed with. Correct belt.axial_stiffness = {belt.axial_stiffness:.4g} N, belt.mass_per_length = "
+            f"{belt.mass_per_length:.4g} kg/m or the radii, or give these numbers"
+        ) from error
 
 
 def fixed_tensioner(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
@@ -215,8 +230,10 @@ def check_length(length: float, path: float, tensioned: bool = False) -> None:
     """Refuse a belt that is too long or too short for its path, with moving tensioners where they stand."""
     where = "the path around the pulleys" + ", where its tensioners put them" * tensioned
     if length >= path:
+        given, room = apart(length, path)
         raise ValueError(
-            f"belt.length = {length:.5g} m is longer than {where} ({path:.5g} m): the belt would hang slack. "
+            f"belt.length = {given} m is {'as long as' if length == path else 'longer than'} {where} ({room} m): "
+            "the belt would hang slack. "
             f"Shorten it, or {'raise the preload' if tensioned else 'move the pulleys apart'}."
         )
     if path / length - 1 > LARGEST_STRAIN:

@@ -17,6 +17,8 @@ from beltdyn.model.pulley import Pulley
 _LEAST_WRAP = 1e-6  # rad
 _ROUNDING = 1e-6  # rad
 _MOST_TO_TRY = 16
+_WIDEST, _FARTHEST = 1e7, 1e9
+"""Largest extent of a drive and largest coordinate, over the smallest radius: a belt conveyor of 20 km has 2e5."""
 
 
 class _Fault(NamedTuple):
@@ -53,6 +55,7 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()
     if not pulleys:
         raise ValueError("the drive has no pulley: a belt with ends needs one or more. Add a [[pulley]]")
     _check_names([*pulleys, *ends])
+    _check_sizes(pulleys, ends)
     _check_distances(pulleys)
     _check_tangents(pulleys, belt, ends)
     path = trace(pulleys, belt, ends)
@@ -98,6 +101,23 @@ def _check_distances(pulleys: Sequence[Pulley]) -> None:
             raise ValueError(
                 f'pulleys "{one.name}" and "{other.name}" overlap: their centers are {distance:.5g} m apart, '
                 f"and their radii add up to {radii:.5g} m. Move them apart, or make one smaller"
+            )
+
+
+def _check_sizes(pulleys: Sequence[Pulley], ends: Sequence[PathEnd]) -> None:
+    """Refuse pulleys so far apart that positions lose their digits, and that a mesh of the belt has no end."""
+    places = np.array([*(one.center for one in pulleys), *(end.point for end in ends if end.point is not None)])
+    smallest = min(pulleys, key=lambda one: one.radius)
+    extent, largest = float(np.ptp(places, axis=0).max()), float(np.abs(places).max())
+    for size, limit, what in (
+        (extent, _WIDEST, "the drive extends over"),
+        (largest, _FARTHEST, "a coordinate is"),
+    ):
+        if size > limit * smallest.radius:
+            raise ValueError(
+                f"{what} {size:.4g} m, and {limit:.0e} radii of the smallest pulley are the limit: "
+                f'"{smallest.name}" has a radius of {smallest.radius:.4g} m. '
+                "Correct the places of pulleys and ends, or their units"
             )
 
 

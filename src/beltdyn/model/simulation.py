@@ -7,10 +7,14 @@ from pydantic import Field, model_validator
 
 from beltdyn.model.earlier_run import EarlierRun, Start
 from beltdyn.model.instants import Instants
+from beltdyn.parts.messages import apart
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Ratio, Time
 
 _MOST_OUTPUTS = 1_000_000
+_MOST_STEPS = 1_000_000_000
+"""Days of computing time."""
+
 _FIELDS = 100
 """Number of instants at which fields along the belt are recorded unless an interval is given, about."""
 
@@ -139,18 +143,25 @@ class Simulation(Part):
     @model_validator(mode="after")
     def _outputs_fit_the_duration(self) -> Self:
         if self.output_interval > self.duration:
+            interval, duration = apart(self.output_interval, self.duration)
             raise ValueError(
-                f"output_interval = {self.output_interval:g} s is longer than duration = {self.duration:g} s. "
+                f"output_interval = {interval} s is longer than duration = {duration} s. "
                 "Shorten the interval, or simulate longer"
             )
         if self.field_interval is not None and self.field_interval < self.output_interval * (1.0 - 1e-9):
+            fields, outputs = apart(self.field_interval, self.output_interval)
             raise ValueError(
-                f"field_interval = {self.field_interval:g} s is shorter than output_interval = "
-                f"{self.output_interval:g} s. Lengthen it, or shorten output_interval"
+                f"field_interval = {fields} s is shorter than output_interval = {outputs} s. Lengthen it, or shorten "
+                "output_interval"
             )
         if self.duration / self.output_interval > _MOST_OUTPUTS:
             raise ValueError(
                 f"output_interval = {self.output_interval:g} s asks for {self.duration / self.output_interval:.3g} "
                 f"outputs, and {_MOST_OUTPUTS:,} is the limit. Lengthen the interval"
+            )
+        if self.max_step is not None and self.duration / self.max_step > _MOST_STEPS:
+            raise ValueError(
+                f"max_step = {self.max_step:g} s asks for {self.duration / self.max_step:.3g} time steps at least, and "
+                f"{_MOST_STEPS:,} is the limit. Lengthen it, or omit it: rtol controls the length of steps"
             )
         return self

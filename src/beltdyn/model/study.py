@@ -4,6 +4,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
+from beltdyn.parts.messages import apart
 from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import AngularSpeed, Coordinate, Count, Length, Name, Ratio, Time, Words
 
@@ -86,7 +87,8 @@ class Order(Part):
     def _rises(self) -> Self:
         least, largest = self.least_speed, self.largest_speed
         if not least <= largest:
-            raise ValueError(f"least_speed = {least:g} rad/s is above largest_speed = {largest:g} rad/s. Exchange them")
+            low, high = apart(least, largest)
+            raise ValueError(f"least_speed = {low} rad/s is above largest_speed = {high} rad/s. Exchange them")
         return self
 
 

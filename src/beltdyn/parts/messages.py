@@ -149,6 +149,15 @@ def _choice_sentence(path: str, detail: ErrorDetails) -> str:
     return f"{path} = {show(given)} is not a choice here. {suggest(str(given), choices)}"
 
 
+def apart(first: float, second: float, digits: int = 5) -> tuple[str, str]:
+    """Two numbers, with more digits than these where it takes more to tell them apart."""
+    for count in range(digits, 17):
+        texts = f"{first:.{count}g}", f"{second:.{count}g}"
+        if texts[0] != texts[1]:
+            return texts
+    return repr(first), repr(second)
+
+
 def suggest(given: str, known: list[str]) -> str:
     """Name what was probably meant, or all that is known."""
     near = _nearest(given, known)

@@ -23,6 +23,8 @@ _TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
 """Other ways to write rpm, of angular speeds."""
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
+_DUST = 1e-30
+"""Magnitudes below it are zero, as rounding leaves them in coordinates and tables: their powers would underflow."""
 _REMEMBERED = 4096
 """Numbers with units whose value is remembered: the page reads a file anew with each step of a drag."""
 
@@ -213,6 +215,8 @@ class _Reader:
         number = to_si(value, self.unit) if isinstance(value, str) else value
         if isinstance(number, int | float):
             _check_size(number, self.smallest)
+            if abs(number) < _DUST:
+                return 0.0
         return number
 
 

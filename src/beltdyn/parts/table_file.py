@@ -10,6 +10,9 @@ from pydantic import ValidationInfo
 from beltdyn.parts.csv_rows import NUMERIC, SEPARATORS, CsvRow, read_rows, row_of_units, unit_in_brackets
 from beltdyn.parts.error_location import shorten
 
+_MOST_ROWS = 250_000
+"""Lines of the longest table of a drive: they take some seconds."""
+
 
 def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
     """Replace the key ``file`` of a table by the two columns of that CSV file.
@@ -196,6 +199,11 @@ def read_table(name: object, base: Path | None, width: int | None) -> NumberTabl
         )
     except ValueError as error:
         raise ValueError(f'file = "{shorten(name)}" {error}') from error
+    if len(lines) > _MOST_ROWS:
+        raise ValueError(
+            f'file = "{shorten(name)}" has {len(lines):,} lines, and {_MOST_ROWS:,} are the limit. Leave points out: '
+            "between them a table is linear"
+        )
     head: list[CsvRow] = []
     if width is None and lines:
         lines[0].cells[0] = "0"

@@ -7,6 +7,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, advise, describe_time, dumps, install, loads
+from beltdyn.model.layout import with_chosen
 from validation.published import loaded_two_pulley
 
 MakeDrive = Callable[..., Drive]
@@ -37,6 +38,21 @@ def test_slack_belt(drive: Drive) -> None:
         "belt.length = 1.4 m is longer than the path around the pulleys (1.2763 m): the belt would hang slack. "
         "Shorten it, or move the pulleys apart."
     )
+
+
+def test_a_belt_that_is_hardly_too_long_is_told_with_enough_digits(drive: Drive) -> None:
+    length = drive.path.length
+    with pytest.raises(ModelError, match=rf"belt.length = {length!r} m is as long as the path .* \({length!r} m\)"):
+        drive.replace(belt=drive.belt.replace(length=length))
+    longer = length + 2e-9
+    with pytest.raises(ModelError, match=rf"belt.length = {longer:.10g} m is longer than .* \({length:.10g} m\)"):
+        drive.replace(belt=drive.belt.replace(length=longer))
+
+
+def test_numbers_that_follow_and_cannot_be_used_are_told_as_such(drive: Drive) -> None:
+    """And not as if the file had given them."""
+    with pytest.raises(ValueError, match=r"contact.stiffness = 1e\+16 would follow .* since the file leaves it open"):
+        with_chosen(drive.contact, drive.belt, {"stiffness": 1e16})
 
 
 def test_pulleys_know_their_motion(drive: Drive) -> None:

@@ -40,6 +40,8 @@ def test_a_run_that_begins_later_ends_as_much_later() -> None:
         ({"output_interval": 1.5}, "output_interval = 1.5 s is longer than duration = 1 s. Shorten the interval"),
         ({"field_interval": 9e-4}, "field_interval = 0.0009 s is shorter than output_interval = 0.001 s. Lengthen it"),
         ({"output_interval": 9e-7}, "asks for 1.11e+06 outputs, and 1,000,000 is the limit. Lengthen the interval"),
+        ({"output_interval": 1.0 + 1e-9}, "output_interval = 1.000000001 s is longer than duration = 1 s"),
+        ({"max_step": 1e-15}, "max_step = 1e-15 s asks for 1e+15 time steps at least, and 1,000,000,000 is the limit"),
         ({"rtol": 1.0}, "must be less than 1"),
         ({"spectral_radius": -0.1}, "must be at least 0"),
         ({"integrator": "euler"}, "is not a choice here"),

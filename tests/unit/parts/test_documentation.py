@@ -36,7 +36,7 @@ def test_what_has_a_dimension_names_its_unit(part: type[Part]) -> None:
 def test_defaults_and_limits_are_those_of_the_fields() -> None:
     assert entries(Belt)["elements"] == (
         "int, optional",
-        "The number of belt elements. At least 3 and at most 100000.",
+        "The number of belt elements. At least 3 and at most 10000.",
     )
     assert entries(Belt)["youngs_modulus"] == (
         "float or text with a unit",

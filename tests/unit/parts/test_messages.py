@@ -7,7 +7,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
-from beltdyn.parts.messages import reason, show, told_apart
+from beltdyn.parts.messages import apart, reason, show, told_apart
 from beltdyn.parts.part import Part
 
 
@@ -85,6 +85,13 @@ def test_twenty_errors_are_enough() -> None:
 )
 def test_values_are_written_as_in_a_drive_file(value: object, text: str) -> None:
     assert show(value) == text
+
+
+def test_numbers_are_told_apart() -> None:
+    assert apart(1.4, 1.2763) == ("1.4", "1.2763")
+    assert apart(1.38720004, 1.3872) == ("1.38720004", "1.3872")
+    assert apart(0.1, 0.1) == ("0.1", "0.1")
+    assert len(set(apart(1.0, 1.0 + 2.0**-52))) == 2
 
 
 def test_long_values_are_cut() -> None:

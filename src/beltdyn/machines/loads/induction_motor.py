@@ -24,6 +24,7 @@ from beltdyn.machines.profiles.constant import Constant
 from beltdyn.machines.profiles.profile import Profile
 from beltdyn.machines.profiles.registry import FrequencyProfile
 from beltdyn.machines.profiles.step import Step
+from beltdyn.parts.messages import apart
 from beltdyn.parts.quantity import AngularSpeed, Frequency, Power, Ratio, Time
 from beltdyn.records import record
 
@@ -40,6 +41,9 @@ INDUCTION_MOTOR = record(
 
 _STAR = 1.0 / 3.0
 """Torque in star over that in delta."""
+_MOST_PAIRS = 1000
+"""Pairs of poles, far above those of any motor: without a bound the slip is lost in rounding."""
+
 _PULL_UP_SLIP = 6.0 / 7.0
 """The seventh harmonic of the field runs at a seventh of the synchronous speed, and brakes above it."""
 
@@ -147,10 +151,12 @@ class InductionMotor(Load):
     @model_validator(mode="after")
     def _is_a_motor(self) -> Self:
         field_speed = tau * self.frequency
-        if not 0 < abs(self.rated_speed) < field_speed:
+        if not field_speed / _MOST_PAIRS < abs(self.rated_speed) < field_speed:
+            rated, fastest = apart(self.rated_speed, field_speed)
             raise ValueError(
-                f"rated_speed = {self.rated_speed:g} rad/s must be below {field_speed:g} rad/s, that of two poles at "
-                f"{self.frequency:g} Hz, and not zero. Give the speed at the rated power"
+                f"rated_speed = {rated} rad/s must be below {fastest} rad/s, that of two poles at "
+                f"{self.frequency:g} Hz, and above {field_speed / _MOST_PAIRS:.5g} rad/s, that of {2 * _MOST_PAIRS}. "
+                "Give the speed at the rated power"
             )
         if not self._breakdown_slip < _PULL_UP_SLIP:
             raise ValueError(

@@ -50,7 +50,7 @@ _WORST: Final = 3.0
 pulleys, and would vanish in the mean of a fine mesh."""
 _TIGHTEST: Final = 27.0
 """Steps may be three times shorter for the sake of the losses than the local error asks for."""
-_SMALLEST_STEP: Final = 1e-11
+SMALLEST_STEP: Final = 1e-11
 
 
 @kernel
@@ -115,7 +115,7 @@ def advance(
                 filled = _keep(state, step, equations.forces, steps, filled)
             following = min(settings.max_step, factor * length)
         clock.next_step = following
-        if following < _SMALLEST_STEP:
+        if following < SMALLEST_STEP:
             return STEP_TOO_SMALL, filled
     return REACHED, filled
 

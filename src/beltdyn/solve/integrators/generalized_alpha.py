@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beltdyn.errors import ConvergenceError
-from beltdyn.solve.integrators.alpha_advance import REACHED
+from beltdyn.solve.integrators.alpha_advance import REACHED, SMALLEST_STEP
 from beltdyn.solve.integrators.engine import advance, restart
 from beltdyn.solve.integrators.integrator_state import (
     IntegratorState,
@@ -183,7 +183,8 @@ def _message(task: Task, state: IntegratorState, method: GeneralizedAlpha) -> st
     x, y = places[worst]
     undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
     return (
-        f"the simulation cannot go on at t = {state.clock.time:.6g} s: a time step of 1e-11 s is still too long. "
+        f"the simulation cannot go on at t = {state.clock.time:.6g} s: a time step of "
+        f"{min(SMALLEST_STEP, method.max_step or SMALLEST_STEP):g} s is still too long. "
         f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
         f"another simulation.rtol than {method.rtol:g}, or a gentler start; leave out what [contact] gives beside "
         "friction, so that it is chosen."

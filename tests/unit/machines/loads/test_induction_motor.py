@@ -128,7 +128,9 @@ def test_it_drives_up_to_the_highest_frequency_of_its_supply() -> None:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"rated_speed": 0.0}, "rated_speed = 0 rad/s must be below 314.159 rad/s, that of two poles at 50 Hz"),
+        ({"rated_speed": 0.0}, "rated_speed = 0 rad/s must be below 314.16 rad/s, that of two poles at 50 Hz"),
+        ({"rated_speed": 2.2e-308}, "rated_speed = 0 rad/s must be below"),
+        ({"rated_speed": 1e-9}, "and above 0.31416 rad/s, that of 2000"),
         ({"rated_speed": "3100 rpm"}, "Give the speed at the rated power"),
         ({"rated_speed": "1500 rpm"}, "breakdown would come at a slip of 2.91. Correct rated_speed or frequency"),
         ({"breakdown_ratio": 1.0}, "must be greater than 1"),
