@@ -9,6 +9,8 @@ from beltdyn.cosimulation.interface import TOLERANCE, Interface
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, load
 from beltdyn.solve import Simulator
+from beltdyn.solve.checkpoint import STATE
+from beltdyn.solve.packing import Packing
 from beltdyn.solve.progress import Report
 from beltdyn.solve.simulator import SimulatorState
 
@@ -22,7 +24,7 @@ _INSTANT = 1e-9
 
 
 class ComponentState(NamedTuple):
-    """Where a component is, from `Component.state`; it can be pickled.
+    """Where a component is, from `Component.state`.
 
     Attributes
     ----------
@@ -41,6 +43,37 @@ class ComponentState(NamedTuple):
     applied: dict[str, float]
     offset: float | None
     simulator: SimulatorState | None
+
+    def to_bytes(self) -> bytes:
+        """All of it, with a checksum."""
+        return _PACKING.pack(self)
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> "ComponentState":
+        """The state of some bytes.
+
+        Parameters
+        ----------
+        data : bytes
+            From `to_bytes`.
+
+        Raises
+        ------
+        ModelError
+            If they are damaged, or no state.
+        """
+        try:
+            found = _PACKING.unpack(data)
+        except ModelError as error:
+            raise ModelError(
+                f"the state is damaged ({error}). Give the bytes of a state as they were written."
+            ) from error
+        if not isinstance(found, cls):
+            raise ModelError("the bytes hold no state of a drive. Give those of a state as they were written.")
+        return found
+
+
+_PACKING = Packing((ComponentState, SimulatorState, *STATE))
 
 
 @dataclass

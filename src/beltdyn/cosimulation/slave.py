@@ -1,6 +1,5 @@
 """What units of both standards have in common: variables, their description, states, steps and messages."""
 
-import pickle
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_uint64
 from functools import partialmethod
@@ -13,7 +12,7 @@ from beltdyn import __version__
 from beltdyn.cosimulation.component import Component, ComponentState
 from beltdyn.cosimulation.description import complete_description
 from beltdyn.cosimulation.interface import TOLERANCE
-from beltdyn.errors import BeltdynError
+from beltdyn.errors import BeltdynError, ModelError
 
 _WARNING, _ERROR = 1, 3
 """Status of a message, the same numbers in both standards."""
@@ -197,17 +196,27 @@ class DriveSlave:
     def _get_fmu_state(self) -> ComponentState:
         return self.component.state()
 
-    def _set_fmu_state(self, state: ComponentState) -> None:
-        self._attempt(self.component.restore, state)
+    def _set_fmu_state(self, state: ComponentState | ModelError) -> None:
+        """Go to a state; where that fails, the next step does."""
+        if not self._attempt(self._restore, state):
+            self.component.restore(ComponentState(self.component.tolerance, {}, {}, None, None))
+
+    def _restore(self, state: ComponentState | ModelError) -> None:
+        if isinstance(state, ModelError):
+            raise state
+        self.component.restore(state)
 
     @staticmethod
     def _fmu_state_to_bytes(state: ComponentState) -> bytes:
-        return pickle.dumps(state)
+        return state.to_bytes()
 
     @staticmethod
-    def _fmu_state_from_bytes(state: bytes) -> ComponentState:
-        found: ComponentState = pickle.loads(state)
-        return found
+    def _fmu_state_from_bytes(state: bytes) -> ComponentState | ModelError:
+        """The state of some bytes; what is wrong with them is told where it is set."""
+        try:
+            return ComponentState.from_bytes(state)
+        except ModelError as error:
+            return error
 
 
 def _access(component: Component, name: str) -> tuple[Callable[[], float], Callable[[float], None]]:

@@ -86,7 +86,7 @@ class Drive(Part):
         from beltdyn.model.toml_writer import refuse_functions
 
         refuse_functions(self, "a drive goes to other processes as a text, without functions", "run it in this process")
-        return _from_text, (self.text,)
+        return drive_of_text, (self.text,)
 
     @model_validator(mode="after")
     def _has_friction(self) -> Self:
@@ -383,7 +383,7 @@ class Drive(Part):
         return {key: value for key, value in data.items() if value != {}}
 
 
-def _from_text(text: str) -> Drive:
+def drive_of_text(text: str) -> Drive:
     """The drive of a text that `Drive.text` gave."""
     drive = Drive.model_validate(parse_toml(text))
     drive._source = text

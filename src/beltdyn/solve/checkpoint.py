@@ -1,11 +1,9 @@
 """Checkpoints of a run: all that its next step depends on, in a file beside the results, for going on after a kill.
 
-A checkpoint is read by the version that wrote it, on the same kernels.  It is a pickle of records, arrays and parts of
-a drive; nothing else is taken out of it, so that a file of others runs no code.
+A checkpoint is read by the version that wrote it, on the same kernels: a line that tells of that, and behind it what
+`packing` makes of records, arrays and the text of the drive, with a checksum.
 """
 
-import io
-import pickle
 import time
 import warnings
 from contextlib import suppress
@@ -14,32 +12,55 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from beltdyn.contact.friction import LAWS as FRICTION_LAWS
+from beltdyn.contact.law import ContactLaw
+from beltdyn.contact.normal import LAWS as NORMAL_LAWS
+from beltdyn.contact.surface import RoundRims, ShapedRims
+from beltdyn.elements import ELEMENTS, Section
 from beltdyn.errors import ModelError
 from beltdyn.kernel.cache import PACKAGE, source_hash
+from beltdyn.machines.loads.shaft import ShaftLoads
+from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Drive
-from beltdyn.results.atomic import atomic_path
+from beltdyn.model.instants import Instants
+from beltdyn.quadrature import Quadrature
+from beltdyn.results.atomic import atomic_path, remove_leftovers, target_of
+from beltdyn.results.friction_work import FrictionWork, WorkSoFar
+from beltdyn.results.material_work import MaterialWork
 from beltdyn.signals import uninterrupted
-from beltdyn.solve.integrators.generalized_alpha import AlphaIntegration
+from beltdyn.solve.integrators.generalized_alpha import AlphaIntegration, GeneralizedAlpha
+from beltdyn.solve.integrators.integrator_state import IntegratorState, Settings, Trial
+from beltdyn.solve.integrators.trajectory import Chunk, Statistics, Task
+from beltdyn.solve.observation.band_limit import BandLimit
+from beltdyn.solve.observation.energy import EnergyAccount
+from beltdyn.solve.observation.observer import Observer
 from beltdyn.solve.observation.recording import Recording
+from beltdyn.solve.observation.slip_through import SlipThrough
+from beltdyn.solve.packing import Packing
+from beltdyn.solve.vibration.flutter import FlutterWatch
+from beltdyn.stretch import LAWS as STRETCH_LAWS
+from beltdyn.system.arrays import BodyForces, Supports, System
+from beltdyn.system.frame import Flowing, Staying, Travelling
+from beltdyn.system.state import State
 
 _HEAD = "beltdyn checkpoint"
 _LONGEST_HEAD = 200
-_LIBRARY = frozenset(
-    {
-        *(("builtins", name) for name in ("set", "frozenset", "slice", "range", "complex", "bytearray", "object")),
-        *(("collections", name) for name in ("deque", "OrderedDict")),
-        *(("pathlib", name) for name in ("Path", "PosixPath", "WindowsPath")),
-        *(("numpy", name) for name in ("ndarray", "dtype", "record", "void", "recarray")),
-        *(("numpy.rec", name) for name in ("record", "recarray")),
-        *(("numpy._core.multiarray", name) for name in ("_reconstruct", "scalar")),
-        *(("numpy.core.multiarray", name) for name in ("_reconstruct", "scalar")),
-        ("numpy._core.numeric", "_frombuffer"),
-        ("numpy.core.numeric", "_frombuffer"),
-        ("types", "MappingProxyType"),
-        ("beltdyn.model.drive", "_from_text"),
-    }
+
+LAWS: tuple[type, ...] = (
+    *(law.record for laws in (FRICTION_LAWS, NORMAL_LAWS, STRETCH_LAWS) for law in laws.values()),
+    *(kind.element for kind in ELEMENTS.values()),
 )
-"""What a checkpoint may hold beside classes of beltdyn: the last makes a drive of its text."""
+"""Parameters of laws and elements."""
+
+STATE = (IntegratorState, Trial, Profiles)
+"""What an integration changes as it goes."""
+
+_SYSTEM = (
+    *(System, Supports, Section, Quadrature, ContactLaw, RoundRims, ShapedRims, ShaftLoads),
+    *(Travelling, Staying, Flowing, State),
+)
+_INTEGRATION = (AlphaIntegration, GeneralizedAlpha, Settings, Task, Statistics, Instants, Chunk, BodyForces)
+_RECORDING = (*(Observer, FrictionWork, WorkSoFar, MaterialWork, EnergyAccount, FlutterWatch, BandLimit, SlipThrough),)
 
 
 class CheckpointWarning(UserWarning):
@@ -123,9 +144,11 @@ class Keeper:
     def remove(self) -> None:
         """Remove the checkpoint, of a run that is complete or of an earlier one."""
         path = None if self._path is None else checkpoint_file(self._path)
-        if path is not None and is_checkpoint(path):
-            with suppress(OSError):
-                path.unlink(missing_ok=True)
+        if path is not None:
+            remove_leftovers(target_of(path))
+            if is_checkpoint(path):
+                with suppress(OSError):
+                    path.unlink(missing_ok=True)
 
 
 def checkpoint_file(path: Path) -> Path:
@@ -148,9 +171,8 @@ def write_checkpoint(path: Path, point: Checkpoint) -> None:
     ModelError
         If it cannot be written, or would replace a file that is no checkpoint.
     """
-    with atomic_path(path, is_checkpoint) as temporary, temporary.open("wb") as file:
-        file.write(f"{_HEAD} {_made_by()}\n".encode())
-        pickle.dump(point, file, protocol=5)
+    with atomic_path(path, is_checkpoint) as temporary:
+        temporary.write_bytes(f"{_HEAD} {_made_by()}\n".encode() + _PACKING.pack(point))
 
 
 def read_checkpoint(path: Path) -> Checkpoint:
@@ -182,9 +204,9 @@ def read_checkpoint(path: Path) -> Checkpoint:
             "runs alone. Install the version that began the run, or run the drive again."
         )
     try:
-        point = _Reader(io.BytesIO(content)).load()
-    except Exception as error:  # a damaged pickle raises many unrelated types
-        raise ModelError(f"{path} is damaged ({type(error).__name__}: {error}). Run the drive again.") from error
+        point = _PACKING.unpack(content)
+    except ModelError as error:
+        raise ModelError(f"{path} is damaged ({error}). Run the drive again.") from error
     if not isinstance(point, Checkpoint):
         raise ModelError(f"{path} is no checkpoint of a run. Run the drive again.")
     return point
@@ -202,14 +224,4 @@ def _made_by() -> str:
     return f"{version('beltdyn')} {source_hash(PACKAGE)}"
 
 
-class _Reader(pickle.Unpickler):
-    """Takes classes of beltdyn, and arrays."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        """A class by its name."""
-        found = super().find_class(module, name) if module.startswith("beltdyn.") else None
-        if isinstance(found, type):
-            return found
-        if (module, name) in _LIBRARY:
-            return super().find_class(module, name)
-        raise pickle.UnpicklingError(f"{module}.{name} has no place in a checkpoint")
+_PACKING = Packing((Checkpoint, *LAWS, *STATE, *_SYSTEM, *_INTEGRATION, *_RECORDING))

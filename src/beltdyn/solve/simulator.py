@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.kernel import interpreted
 from beltdyn.machines.profiles.functions import go_on, profile_integral, profile_value
@@ -302,13 +303,38 @@ class Simulator:
         Parameters
         ----------
         saved : SimulatorState
-            From `save` of this simulator.
+            From `save` of this simulator, or of another one of the same drive.
+
+        Raises
+        ------
+        ModelError
+            If it is of another drive.
         """
-        system = self._integration.system._replace(**deepcopy(saved.changed))
+        now = self._integration
+        system = now.system._replace(**deepcopy(saved.changed))
+        size = system.first_body + system.bodies.size
+        fits = _kinds(saved.integrator) == _kinds(now.state) and _kinds(saved.changed) == _kinds(
+            {name: getattr(now.system, name) for name in _CHANGED}
+        )
+        if not fits or any(vector.shape[-1] != size for vector in _vectors(saved.integrator)):
+            raise ModelError("the state is of another drive. Give one of this drive.")
         self._integration.exchange(system, deepcopy(saved.integrator))
         self._pulleys, self._anew, self._moves = saved.pulleys, saved.anew, saved.moves
         self._wanted.clear()
         self._centers.clear()
+
+
+def _kinds(value: Any) -> Any:
+    """What an array, or all arrays of a record, are made of."""
+    if isinstance(value, dict):
+        return {name: _kinds(one) for name, one in value.items()}
+    return tuple(map(_kinds, value)) if isinstance(value, tuple) else (getattr(value, "dtype", None), np.ndim(value))
+
+
+def _vectors(state: IntegratorState) -> list[FloatArray]:
+    """What has an entry for each coordinate."""
+    parts = (state.position, state.velocity, state.acceleration, state.auxiliary, state.trend, state.impulse)
+    return [*parts, *state.trial]
 
 
 def output_names(drive: Drive) -> list[str]:
