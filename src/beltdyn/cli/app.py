@@ -13,7 +13,7 @@ from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.cli.analysis import analysis_command
 from beltdyn.cli.catalogue import catalogue
 from beltdyn.cli.check import check
-from beltdyn.cli.console import show_error
+from beltdyn.cli.console import show_error, take_any_terminal
 from beltdyn.cli.demo import demo
 from beltdyn.cli.export import export
 from beltdyn.cli.fmu import fmu
@@ -68,6 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     warnings.formatwarning = _warning_line
+    take_any_terminal()
     with ending_in_order():
         code = _exit_code(arguments)
     sys.exit(code)

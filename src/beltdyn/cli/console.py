@@ -1,7 +1,10 @@
 """Where the command line writes, and in which style."""
 
+import codecs
+import sys
 from collections.abc import Iterable
 from pathlib import Path
+from unicodedata import normalize
 
 from rich.console import Console
 from rich.measure import Measurement
@@ -11,6 +14,54 @@ from rich.text import Text
 
 _WIDEST = 200
 """Columns of the widest table that is not broken."""
+
+
+_SPELLED = {
+    "°": " deg",
+    "–": "-",
+    "—": "-",
+    "−": "-",
+    "…": "...",
+    "·": "*",
+    "×": "x",
+    "µ": "u",
+    "μ": "u",
+    "→": "->",
+    "≤": "<=",
+    "≥": ">=",
+    "≈": "~",
+    "±": "+-",
+    "‘": "'",
+    "’": "'",
+    "“": '"',
+    "”": '"',
+    "•": "*",
+    "√": "sqrt",
+}
+"""Signs that have no place on some terminals, as these spell them."""
+_SPELLING, _BYTES = "beltdyn.spelling", range(0xDC80, 0xDD00)
+
+
+def take_any_terminal() -> None:
+    """Let standard output and standard error spell what their encoding does not know, in place of an error.
+
+    Bytes of file names that are no text go out as they are.
+    """
+    codecs.register_error(_SPELLING, _spell)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors=_SPELLING)
+
+
+def _spell(error: UnicodeError) -> tuple[str | bytes, int]:
+    """The next sign in other signs; see `codecs.register_error`."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    sign = error.object[error.start]
+    if ord(sign) in _BYTES:
+        return bytes([ord(sign) - 0xDC00]), error.start + 1
+    plain = normalize("NFKD", sign).encode("ascii", errors="ignore").decode()
+    return _SPELLED.get(sign) or plain or "?", error.start + 1
 
 
 def show(text: str = "") -> None:

@@ -20,6 +20,11 @@ _DOTTED = re.compile(r"[\w\-]+(?:[ \t]*\.[ \t]*[\w\-]+)*")
 _BRACKET = re.compile(r"[\[\]{}]")
 
 
+def as_text(name: str) -> str:
+    """The name of a file as text: bytes of it that are none are shown by a sign of their own."""
+    return name.encode(errors="surrogateescape").decode(errors="replace")
+
+
 def read_text(path: Path, longest: int) -> str:
     """Read a text in UTF-8.
 

@@ -6,6 +6,7 @@ from textwrap import fill
 from matplotlib.figure import Figure
 
 from beltdyn.parts.quantity import RPM
+from beltdyn.parts.text_file import as_text
 from beltdyn.results import Result, Run, StaticResult, power_balance
 from beltdyn.results.cycles import mean_window
 from beltdyn.results.recorded import runs_steadily
@@ -63,7 +64,7 @@ def name_of(result: Result) -> str:
 
 def file_name(result: Result) -> str:
     """Name of a result's file without suffix; empty in memory."""
-    return result.path.stem if result.path is not None else ""
+    return as_text(result.path.stem) if result.path is not None else ""
 
 
 def _range(run: Run) -> str:

@@ -4,6 +4,7 @@ import hashlib
 from collections.abc import Sequence
 
 from beltdyn.parts.messages import show
+from beltdyn.parts.text_file import as_text
 from beltdyn.plot.several import given_keys
 from beltdyn.results import Result, Run
 from beltdyn.results.provenance import mesh_facts
@@ -36,7 +37,7 @@ def origin(result: Result) -> list[tuple[str, str]]:
         ("SHA-256 of the drive", _hash(result.drive.text.encode())),
     ]
     if result.path is not None and result.path.is_file():
-        facts += [(f"SHA-256 of {result.path.name}", _hash(result.path.read_bytes()))]
+        facts += [(f"SHA-256 of {as_text(result.path.name)}", _hash(result.path.read_bytes()))]
     settings = result.drive.simulation
     if isinstance(result, Run):
         integrator = said.get("integrator", settings.integrator)
