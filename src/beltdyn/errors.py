@@ -56,6 +56,10 @@ class OutputError(SimulationError):
     """Results can no longer be written, as on a full disk; what was written before stays readable."""
 
 
+class LostOutputError(OutputError):
+    """The result file was removed or replaced while it was written; nothing is kept."""
+
+
 class SlipError(SimulationError):
     """A pulley slips through where that ends the analysis.
 

@@ -14,6 +14,7 @@ from beltdyn.analyses import Analysis
 from beltdyn.cli.batch import analyse_several
 from beltdyn.cli.given import read_given, takes_runs
 from beltdyn.cli.output import Extras, analyse_to, doubt, ended, require_output
+from beltdyn.errors import ModelError
 
 if TYPE_CHECKING:
     from beltdyn.model import Drive
@@ -75,10 +76,13 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         if more:
             return analyse_several(analysis, files, output, jobs, extras, strict=strict, force=force, **options)
         from beltdyn.results import open_result
+        from beltdyn.results.atomic import target_of
         from beltdyn.results.dataset import is_result
 
         drive: Drive | Run
-        if options.get("resume") and output is None and is_result(file):
+        if options.get("resume") and is_result(file):
+            if output is not None and target_of(output) != target_of(file):
+                raise ModelError(f"{file} goes on in its own file, and not in {output}. Leave --output out.")
             drive, path, files = open_result(file).drive, file, ()
         else:
             drive, path = read_given(analysis, file), output or analysis.result_file(file)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from beltdyn.analyses import Analysis
 from beltdyn.cli.console import lines_of_file, show, show_error, show_table, show_warnings
 from beltdyn.cli.given import read_given
-from beltdyn.cli.output import Extras, doubt, require_output, show_leftovers, write_extras
+from beltdyn.cli.output import Extras, doubt, require_output, write_extras
 from beltdyn.cli.progress import runs_bar
 from beltdyn.errors import ModelError, SimulationError
 from beltdyn.signals import exit_code
@@ -77,8 +77,6 @@ def analyse_several(
         endings = analyse_all(analysis, wanted, report, jobs, force, **options)
     ends = {file: endings[results[file]] for file in files}
     _show_endings(ends, results)
-    for path in results.values():
-        show_leftovers(path)
     if any(extras):
         _write_all_extras(ends, results, extras, force)
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
@@ -106,9 +104,11 @@ def _read_all(analysis: Analysis, files: Sequence[Path]) -> "dict[Path, Drive | 
 def _result_files(analysis: Analysis, files: Sequence[Path], folder: Path | None) -> dict[Path, Path]:
     """The result file of every drive file."""
     results = [(folder or file.parent) / analysis.result_file(file).name for file in files]
-    for path, count in Counter(path.resolve() for path in results).items():
+    from beltdyn.results.atomic import target_of
+
+    for path, count in Counter(map(target_of, results)).items():
         if count > 1:
-            sharing = [str(file) for file, result in zip(files, results, strict=True) if result.resolve() == path]
+            sharing = [str(file) for file, result in zip(files, results, strict=True) if target_of(result) == path]
             raise ModelError(
                 f"{' and '.join(sharing)} would share the result file {path}. Rename one, or run them one by one."
             )

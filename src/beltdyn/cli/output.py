@@ -8,7 +8,7 @@ from beltdyn.analyses import Analysis
 from beltdyn.cli.console import show, show_error
 from beltdyn.cli.progress import progress_bar
 from beltdyn.cli.result import show_result
-from beltdyn.errors import ModelError, SimulationError
+from beltdyn.errors import LostOutputError, ModelError, SimulationError
 from beltdyn.signals import exit_code
 
 if TYPE_CHECKING:
@@ -44,11 +44,11 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
     ModelError
         If they would.
     """
-    from beltdyn.results.atomic import require_replaceable
+    from beltdyn.results.atomic import require_replaceable, target_of
     from beltdyn.results.dataset import is_result
     from beltdyn.results.tables import require_tables, tables_folder
 
-    if path.resolve() in {file.resolve() for file in files}:
+    if target_of(path) in {target_of(file) for file in files}:
         raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
     require_replaceable(path, is_result, force)
     if extras.csv:
@@ -87,12 +87,15 @@ def analyse_to(
     SimulationError
         If the analysis cannot go on.
     """
-    from beltdyn.results.atomic import stamp
+    from beltdyn.results.atomic import locked_output, stamp
 
     before = stamp(path)
     try:
-        with progress_bar() as report:
+        with progress_bar() as report, locked_output(path):
             result: Result = analysis.write(drive, path, report, force, **options)
+    except LostOutputError:
+        show("No results are kept.")
+        raise
     except SimulationError:
         show(nothing_kept(path) if stamp(path) in (before, None) else f"What was computed is in {path}")
         raise
@@ -106,17 +109,8 @@ def analyse_to(
         goes_on = f" Go on with it: beltdyn {analysis.name} --resume {path}" if checkpoint_file(path).exists() else ""
         show(f"\nInterrupted: what was computed is kept.{goes_on}")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
-    show_leftovers(path)
     write_extras(result, path, extras, force)
     return result
-
-
-def show_leftovers(path: Path) -> None:
-    """Name the files that killed runs have left beside a result file."""
-    from beltdyn.results.atomic import leftovers
-
-    for file in leftovers(path):
-        show(f"A killed run has left {file}, which is of no use: remove it.")
 
 
 def nothing_kept(path: Path) -> str:

@@ -49,11 +49,11 @@ def study(
         Compute all points anew, and replace other files too.
     """
     from beltdyn.cli.output import Extras, nothing_kept, write_extras
-    from beltdyn.results.atomic import stamp
+    from beltdyn.results.atomic import stamp, target_of
     from beltdyn.solve.study import study as compute
 
     path = output or file.with_suffix(".nc")
-    if file.resolve() in (path.resolve(), path.with_suffix(".csv").resolve()):
+    if target_of(file) in (target_of(path), target_of(path.with_suffix(".csv"))):
         raise ModelError(f"{file} is the study file: the results would overwrite it. Choose another --output.")
     before = stamp(path)
     with progress_bar() as tell:

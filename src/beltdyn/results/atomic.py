@@ -5,12 +5,12 @@ import os
 import re
 import secrets
 import stat
-import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from beltdyn.errors import ModelError
+from beltdyn.results.lock import locked
 
 MARK = "beltdyn"
 """What pictures and pages say of who made them."""
@@ -18,8 +18,8 @@ MARK = "beltdyn"
 _MARKED = 4096
 """Bytes at the start and at the end of a file among which the mark is sought."""
 
-_LEFT = 60.0
-"""Seconds after which nobody is still writing a temporary file."""
+_PATIENCE = 1.0
+"""How long to wait for others who write the same file, s."""
 
 _FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 
@@ -45,19 +45,61 @@ def atomic_path(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = F
     Raises
     ------
     ModelError
-        If the file cannot be written, or would replace one that is not ours.
+        If the file cannot be written, is being written by another one, or would replace one that is not ours.
     """
     require_replaceable(path, is_ours, overwrite)
-    target = path.resolve()
+    target = target_of(path)
     temporary = target.with_name(f".{target.stem}.{secrets.token_hex(4)}{target.suffix}")
     try:
-        yield temporary
-        temporary.replace(target)
+        with locked(target, _PATIENCE):
+            remove_leftovers(target)
+            try:
+                yield temporary
+                temporary.replace(target)
+            finally:
+                with suppress(OSError):
+                    temporary.unlink(missing_ok=True)
     except OSError as error:
         raise ModelError(unwritable(path, error)) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def locked_output(path: Path) -> Iterator[None]:
+    """Let nobody else write to a file meanwhile.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Raises
+    ------
+    ModelError
+        If another one writes to it, or nobody can.
+    """
+    with ExitStack() as held:
+        try:
+            held.enter_context(locked(target_of(path)))
+        except OSError as error:
+            raise ModelError(unwritable(path, error)) from error
+        yield
+
+
+def target_of(path: Path) -> Path:
+    """The file that a path leads to, whether or not it is there.
+
+    Raises
+    ------
+    ModelError
+        If links lead in a circle.
+    """
+    try:
+        target = path.resolve()
+        target.is_symlink()  # from Python 3.13 on a circle is told here at the earliest
+        return target
+    except (OSError, RuntimeError) as error:
+        loop = OSError(errno.ELOOP, os.strerror(errno.ELOOP))
+        raise ModelError(unwritable(path, loop if isinstance(error, RuntimeError) else error)) from error
 
 
 def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> None:
@@ -113,23 +155,19 @@ def stamp(path: Path) -> tuple[int, int] | None:
     return status.st_ino, status.st_mtime_ns
 
 
-def leftovers(path: Path) -> list[Path]:
-    """Temporary files of `atomic_path` that a killed process left beside a file, at least a minute ago.
+def remove_leftovers(path: Path) -> None:
+    """Remove temporary files of `atomic_path` that a killed process has left beside a file.
 
     Parameters
     ----------
     path : Path
-        The file that was to be written.
-
-    Returns
-    -------
-    list of Path
-        In order of their names.
+        The file that was to be written, which the caller has locked.
     """
-    target = path.resolve()
-    pattern = re.compile(rf"\.{re.escape(target.stem)}\.[0-9a-f]{{8}}{re.escape(target.suffix)}")
-    found = [file for file in target.parent.iterdir() if pattern.fullmatch(file.name)]
-    return sorted(file for file in found if file.is_file() and time.time() - file.stat().st_mtime > _LEFT)
+    pattern = re.compile(rf"\.{re.escape(path.stem)}\.[0-9a-f]{{8}}{re.escape(path.suffix)}")
+    with suppress(OSError):
+        for file in path.parent.iterdir():
+            if pattern.fullmatch(file.name) and file.is_file():
+                file.unlink(missing_ok=True)
 
 
 def is_marked(path: Path, mark: str = MARK) -> bool:

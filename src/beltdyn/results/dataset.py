@@ -11,9 +11,12 @@ from numpy.typing import NDArray
 
 from beltdyn.analyses import RUN
 from beltdyn.errors import ModelError
+from beltdyn.results.atomic import target_of
+from beltdyn.results.checksums import DamageError, verify
 from beltdyn.results.layout import Layout
 from beltdyn.results.lock import lock_file
 from beltdyn.results.schema import AXIS_NAMES, COORDINATES, DERIVED, FORMAT, OPTIONAL, TIMES, VARIABLES, Variable
+from beltdyn.results.staged_file import is_marked
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -131,8 +134,7 @@ def read_dataset(path: Path) -> "xr.Dataset":
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise ValueError("it is not a file")
-        with h5py.File(path, "r"):
-            pass  # h5netcdf complains on standard error where HDF5 cannot open a file
+        require_intact(path)
         dataset = open_values(path)
     except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong
         raise ModelError(unreadable(path, error)) from error
@@ -145,6 +147,25 @@ def read_dataset(path: Path) -> "xr.Dataset":
     except Exception as error:
         dataset.close()
         raise ModelError(unreadable(path, error)) from error
+
+
+def require_intact(path: Path) -> None:
+    """Make sure that the bytes of a result file are those that were written.
+
+    Raises
+    ------
+    DamageError
+        If they are not, or their checksums are lost.
+    OSError
+        If it cannot be read.
+    """
+    verified = verify(path)
+    with h5py.File(path, "r") as file:  # h5netcdf complains on standard error where HDF5 cannot open a file
+        if not verified and is_marked(file):
+            raise DamageError(
+                "its checksums are lost: it is damaged at its end, or another program has changed it (a copy that "
+                "xarray writes can be read)"
+            )
 
 
 def kind_of(dataset: "xr.Dataset") -> str:
@@ -169,7 +190,7 @@ def unreadable(path: Path, error: Exception) -> str:
     """
     reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
     said = f"{path} cannot be read as a result file: {reason or type(error).__name__}."
-    if lock_file(path.resolve()).exists():
+    if lock_file(target_of(path)).exists():
         return f"{said} A run is writing it, or was killed meanwhile: try again in a moment."
     return f"{said} Give a file written by `beltdyn run`; if this is one, it is damaged: run the drive again."
 

@@ -16,10 +16,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.results.checksums import Checksums
 from beltdyn.results.layout import Layout
 from beltdyn.results.schema import AUXILIARY_COORDINATES, COORDINATES, RECORDED, TIMES, Variable
 from beltdyn.results.size import chunk_rows
-from beltdyn.results.staged_file import RESERVE, StagedFile, identity
+from beltdyn.results.staged_file import RESERVE, StagedFile, identity, mark
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,6 +28,10 @@ if TYPE_CHECKING:
 _FORMAT = "earliest"
 _COPIED = 512
 """Outputs that are copied at a time."""
+
+
+class ReplacedError(OSError):
+    """The file is not the one any more that was created."""
 
 
 class GrowingFile:
@@ -40,6 +45,8 @@ class GrowingFile:
         Names and reference coordinates.
     attributes : mapping
         Global attributes.
+    owner : str
+        The file that whoever writes has locked.
 
     Raises
     ------
@@ -47,10 +54,14 @@ class GrowingFile:
         If it cannot be written.
     """
 
-    def __init__(self, path: Path, layout: Layout, attributes: Mapping[str, Any]) -> None:
-        path.write_bytes(_contents(layout, attributes) + bytes(RESERVE))
-        self._identity = identity(path.stat())
+    def __init__(self, path: Path, layout: Layout, attributes: Mapping[str, Any], owner: str = "") -> None:
+        path.touch()
+        self._identity, self._owner = identity(path.stat()), owner
         self._outputs = dict.fromkeys(TIMES, 0)
+        self._checksums: Checksums | None = None
+        with self._open(path) as staged:
+            staged.write(memoryview(_contents(layout, attributes)))
+            self._commit(staged)
 
     def append(self, path: Path, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write outputs.
@@ -73,7 +84,7 @@ class GrowingFile:
                 with h5py.File(staged, "r+", libver=_FORMAT) as file:
                     for name, values in some:
                         _extend(file, name, self._outputs[RECORDED[name].dims[0]], values)
-                staged.commit()
+                self._commit(staged)
         for name in TIMES:
             self._outputs[name] += len(arrays[name])
 
@@ -101,18 +112,22 @@ class GrowingFile:
                     _fix_dimension(file, name)
             with h5netcdf.File(staged, "r+", libver=_FORMAT) as file:
                 file.attrs.update(attributes)
-            staged.commit(reserve=0)
+            self._commit(staged, ends=True)
+
+    def _commit(self, staged: StagedFile, *, ends: bool = False) -> None:
+        staged.commit(*((0, "") if ends else (RESERVE, self._owner)))
+        self._checksums = staged.checksums
 
     def _open(self, path: Path) -> StagedFile:
         """Open the file, if it is still the one that was created."""
-        file = StagedFile(path)
+        file = StagedFile(path, self._checksums)
         if file.identity() != self._identity:
             file.close()
-            raise OSError("another file has taken its place")
+            raise ReplacedError("another file has taken its place")
         return file
 
 
-def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int]) -> GrowingFile:
+def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int], owner: str) -> GrowingFile:
     """Copy the first outputs of a file into one that grows.
 
     Parameters
@@ -125,6 +140,8 @@ def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int]) 
         Names and reference coordinates of both.
     counts : mapping
         Number of instants to copy of each of `schema.TIMES`.
+    owner : str
+        As for `GrowingFile`.
 
     Returns
     -------
@@ -140,7 +157,7 @@ def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int]) 
     """
     with h5netcdf.File(source, "r") as attributed:
         attributes = {**attributed.attrs, "status": "running"}
-    copy = GrowingFile(path, layout, attributes)
+    copy = GrowingFile(path, layout, attributes, owner)
     with h5py.File(source, "r") as file:
         for name, count in counts.items():
             if len(file[name]) < count:
@@ -176,6 +193,8 @@ def write_dataset(
     with StagedFile(path) as staged:
         with h5netcdf.File(staged, "w") as file:
             dataset.load().dump_to_store(H5NetCDFStore(file), encoding=encoding)
+        with h5py.File(staged, "r+") as marked:
+            mark(marked)
         staged.commit(reserve=0)
 
 
@@ -194,6 +213,7 @@ def _contents(layout: Layout, attributes: Mapping[str, Any]) -> bytes:
             created.attrs.update(time.attributes)
         file.attrs.update(attributes)
     with h5py.File(memory, "r+", libver=_FORMAT) as file:
+        mark(file)
         for name, variable in layout.recorded.items():
             if name not in TIMES:
                 _create_variable(file, name, variable, layout.shape(variable, 1)[1:])

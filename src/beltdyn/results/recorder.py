@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from beltdyn.errors import ModelError, OutputError
+from beltdyn.errors import LostOutputError, ModelError, OutputError
 from beltdyn.results import netcdf
-from beltdyn.results.atomic import atomic_path, require_replaceable, unwritable
-from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset, unreadable
+from beltdyn.results.atomic import atomic_path, require_replaceable, target_of, unwritable
+from beltdyn.results.dataset import build_dataset, checked_outputs, is_result, open_dataset, require_intact, unreadable
 from beltdyn.results.layout import Layout
 from beltdyn.results.lock import OutputLock
 from beltdyn.results.schema import TIMES
@@ -145,7 +145,7 @@ class FileRecorder:
         self, path: Path | str, layout: Layout, attributes: Mapping[str, Any], overwrite: bool = False
     ) -> None:
         self.path, self._overwrite = Path(path), overwrite
-        self._target = self.path.resolve()
+        self._target = target_of(self.path)
         self._file: netcdf.GrowingFile | None = None
         self.revise(layout, attributes)
         require_replaceable(self.path, is_result, overwrite)
@@ -173,14 +173,15 @@ class FileRecorder:
             If the file cannot be read or written, is being written by another run, or holds fewer outputs.
         """
         made = cls.__new__(cls)
-        made.path, made._target, made._layout, made._attributes = path, path.resolve(), layout, {}
+        made.path, made._target, made._layout, made._attributes = path, target_of(path), layout, {}
         try:
             made._lock = OutputLock(made._target)
         except OSError as error:
             raise ModelError(unwritable(path, error)) from error
         try:
-            with atomic_path(path, is_result) as temporary:
-                made._file = netcdf.copied(made._target, temporary, layout, counts)
+            with made._lock.used(), atomic_path(path, is_result) as temporary:
+                require_intact(made._target)
+                made._file = netcdf.copied(made._target, temporary, layout, counts, str(made._lock.file))
         except (OSError, KeyError, ValueError) as error:
             made._lock.release()
             raise ModelError(unreadable(path, error)) from error
@@ -211,13 +212,13 @@ class FileRecorder:
         try:
             self._file.append(self._target, arrays)
         except OSError as error:
-            raise OutputError(unwritable(self.path, error)) from error
+            raise self._error(error) from error
 
     def _begin(self, arrays: Mapping[str, NDArray[Any]]) -> netcdf.GrowingFile:
         """Make the file with its first outputs, and let it take the place of an earlier one."""
         try:
-            with atomic_path(self.path, is_result, self._overwrite) as temporary:
-                file = netcdf.GrowingFile(temporary, self._layout, self._attributes)
+            with self._lock.used(), atomic_path(self.path, is_result, self._overwrite) as temporary:
+                file = netcdf.GrowingFile(temporary, self._layout, self._attributes, str(self._lock.file))
                 file.append(temporary, arrays)
         except ModelError as error:
             raise OutputError(str(error)) from error
@@ -236,9 +237,18 @@ class FileRecorder:
             if self._file is not None:
                 self._file.finish(self._target, {**attributes, "status": status})
         except OSError as error:
-            raise OutputError(unwritable(self.path, error)) from error
+            raise self._error(error) from error
         finally:
             self._lock.release()
+
+    def _error(self, error: OSError) -> OutputError:
+        """Why the file can no longer be written."""
+        if isinstance(error, FileNotFoundError | netcdf.ReplacedError):
+            return LostOutputError(
+                f"{self.path} was removed, or another file has taken its place, while it was written: what was "
+                "computed is lost. Run the drive again, and leave the file alone until the run has ended."
+            )
+        return OutputError(unwritable(self.path, error))
 
     def dataset(self) -> "xr.Dataset":
         """Give what has been recorded so far, read when it is used; see `Recorder.dataset`."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from types import MappingProxyType
 
-FORMAT = (1, 2)
+FORMAT = (1, 3)
 """Version of the result file. The first number grows when earlier readers would misread a file, the second when a file
 holds more than before."""
 

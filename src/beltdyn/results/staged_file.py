@@ -1,12 +1,16 @@
 """A file that is changed as a whole or not at all, whatever the disk says.
 
 HDF5 writes through this object into memory.  `StagedFile.commit` then writes what is new behind the old end of the
-file, which may fail without harm, and last the few bytes that change before it, which need no more space.  HDF5 itself
-never meets a full disk: it would leave a file that cannot be read, and crash.
+file, which may fail without harm, checksums behind it, and last the few bytes that change before it, which need no more
+space.  HDF5 itself never meets a full disk: it would leave a file that cannot be read, and crash.
+
+    contents | reserve | checksums        while it grows
+    contents | checksums                  at the end
 """
 
 import io
 import os
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,6 +18,9 @@ from types import TracebackType
 from typing import Literal, Self
 
 import h5py
+import numpy as np
+
+from beltdyn.results.checksums import MARK, PAGE, Checksums, find_checksums, page_count
 
 RESERVE = 1 << 16
 """Bytes that a growing file holds behind its contents, so that its end can be recorded on a full disk."""
@@ -28,6 +35,8 @@ class StagedFile:
     ----------
     path : Path
         A file that exists.
+    checksums : Checksums, optional
+        Those of its contents, where they are known.
 
     Raises
     ------
@@ -35,12 +44,13 @@ class StagedFile:
         If it cannot be opened for reading and writing.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, checksums: Checksums | None = None) -> None:
         self._file = path.open("r+b", buffering=0)
         self._length = os.fstat(self._file.fileno()).st_size
+        self.checksums = checksums or find_checksums(self._file)
         self._blocks: dict[int, bytearray] = {}
         self._changed: set[int] = set()
-        self._end = self._length
+        self._end = self.checksums.end if self.checksums else self._length
         self._place = 0
 
     def __enter__(self) -> Self:
@@ -106,27 +116,28 @@ class StagedFile:
     def flush(self) -> None:
         """Keep waiting: `commit` writes."""
 
-    def commit(self, reserve: int = RESERVE) -> None:
-        """Write what was staged.
+    def commit(self, reserve: int = RESERVE, owner: str = "") -> None:
+        """Write what was staged, and checksums.
 
         Parameters
         ----------
         reserve : int
-            Bytes to hold behind the new contents.
+            Bytes to hold behind the new contents, beside room for checksums; 0 if the file grows no longer.
+        owner : str
+            See `Checksums`.
 
         Raises
         ------
         OSError
             If the disk does not take it; the contents are the old ones then.
         """
-        old, new = self._length, max(self._length, self._end + reserve)
-        runs = self._changed_runs(new)
-        before = [(place, data[: old - place]) for place, data in runs if place < old]
+        old, sums = self._length, self._checksums(reserve, owner)
+        runs = [*self._changed_runs(sums.end), (sums.place, sums.to_bytes())]
+        before = [(place, data[: old - place]) for place, data in reversed(runs) if place < old]
         behind = [(max(place, old), data[max(old - place, 0) :]) for place, data in runs if place + len(data) > old]
-        last = max((place + len(data) for place, data in behind), default=old)
         as_it_was = [(place, self._stored(place, len(data))) for place, data in before]
         try:
-            _write_all(self._file, [*behind, (last, bytes(new - last))])
+            _write_all(self._file, _without_gaps(behind, old))
             _write_all(self._file, before)
         except OSError:
             with suppress(OSError):
@@ -134,8 +145,36 @@ class StagedFile:
             with suppress(OSError):
                 self._file.truncate(old)
             raise
-        if not reserve:
-            self._file.truncate(self._end)
+        self._file.truncate(sums.place + sums.size)
+        self.checksums = sums._replace(earlier={})
+
+    def _checksums(self, reserve: int, owner: str) -> Checksums:
+        """Checksums of what was staged, in a place where they do not overwrite those before."""
+        known, old = self.checksums, self._length
+        end = max(self._end, known.end) if known else self._end
+        pages = np.zeros(page_count(end), dtype=np.uint32)
+        kept = known.end // PAGE if known else 0
+        if known:
+            pages[:kept] = known.pages[:kept]
+        changed = {page for place in self._changed for page in range(place // PAGE, (place + _BLOCK) // PAGE)}
+        earlier = {}
+        for page in sorted({*changed, *range(kept, len(pages))}):
+            place, size = page * PAGE, min(PAGE, end - page * PAGE)
+            if size > 0:
+                block = place - place % _BLOCK
+                data = memoryview(self._block(block))[place - block : place - block + size]
+                pages[page] = zlib.crc32(data)
+                if known and not known.earlier and page < kept:
+                    earlier[page] = int(known.pages[page])
+                elif place < old:
+                    was = self._stored(place, min(size, old - place))
+                    earlier[page] = zlib.crc32(data[len(was) :], zlib.crc32(was))
+        earlier = {page: one for page, one in earlier.items() if one != pages[page]}
+        sums = Checksums(known.number + 1 if known else 0, 0, end, pages, earlier, owner)
+        place = end + (reserve + sums.size if reserve else 0)
+        if known and place + sums.size > known.place:
+            place = max(place, old)
+        return sums._replace(place=place)
 
     def _changed_runs(self, end: int) -> list[tuple[int, bytes]]:
         """What was written, in runs without a gap, up to an end."""
@@ -148,9 +187,18 @@ class StagedFile:
         return [(place, bytes(data[: end - place])) for place, data in runs if place < end]
 
     def _block(self, place: int) -> bytearray:
-        """A block as it is now."""
+        """A block as it is now.
+
+        Raises
+        ------
+        OSError
+            If the disk gives other bytes than were written.
+        """
         if place not in self._blocks:
-            self._blocks[place] = bytearray(self._stored(place, _BLOCK).ljust(_BLOCK, b"\0"))
+            data = self._stored(place, _BLOCK)
+            if self.checksums:
+                _require_same(self.checksums, place, data)
+            self._blocks[place] = bytearray(data.ljust(_BLOCK, b"\0"))
         return self._blocks[place]
 
     def _stored(self, place: int, size: int) -> bytes:
@@ -162,6 +210,13 @@ class StagedFile:
         while len(data) < size and (more := self._file.read(size - len(data))):
             data += more
         return data
+
+
+def _require_same(checksums: Checksums, place: int, data: bytes) -> None:
+    for first in range(place, min(place + len(data), checksums.end), PAGE):
+        last = min(first + PAGE, checksums.end)
+        if not checksums.match(first // PAGE, data[first - place : last - place]):
+            raise OSError(f"its bytes {first:,} to {last:,} are not as they were written")
 
 
 @contextmanager
@@ -188,7 +243,18 @@ def staged_hdf5(path: Path, mode: Literal["w", "r+"]) -> Iterator[h5py.File]:
     with StagedFile(path) as staged:
         with h5py.File(staged, mode) as file:
             yield file
+            mark(file)
         staged.commit(reserve=0)
+
+
+def mark(file: h5py.File) -> None:
+    """Note in a file that it has checksums."""
+    file["/"].id.set_comment(b".", MARK.encode())
+
+
+def is_marked(file: h5py.File) -> bool:
+    """Whether a file says that it has checksums."""
+    return bool(file["/"].id.get_comment(b".") == MARK.encode())
 
 
 def identity(status: os.stat_result) -> tuple[int, int]:
@@ -210,6 +276,15 @@ def _pieces(place: int, count: int) -> Iterator[tuple[int, int, int]]:
     """Blocks that a stretch of bytes lies in: the place of each, and where in it the stretch begins and ends."""
     for block in range(place - place % _BLOCK, place + count, _BLOCK):
         yield block, max(place - block, 0), min(place + count - block, _BLOCK)
+
+
+def _without_gaps(pieces: list[tuple[int, bytes]], start: int) -> list[tuple[int, bytes]]:
+    """Pieces in their order with zeros between them, from a place on: a disk that is full says so at once."""
+    filled = []
+    for place, data in pieces:
+        filled += [(start, bytes(place - start))] * (place > start) + [(place, data)]
+        start = max(start, place + len(data))
+    return filled
 
 
 def _write_all(file: io.FileIO, pieces: list[tuple[int, bytes]]) -> None:

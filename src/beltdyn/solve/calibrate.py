@@ -1,6 +1,7 @@
 """An analysis: numbers of a drive with which its results are nearest to measured ones, and how well these tell them."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from beltdyn.model.study import CalibrationStudy
 from beltdyn.model.toml_editor import edited
 from beltdyn.model.toml_reader import loads, read_study
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.atomic import locked_output
 from beltdyn.results.shown import VARIOUS
 from beltdyn.signals import uninterrupted
 from beltdyn.solve.progress import Report
@@ -114,6 +116,18 @@ def calibrate(
     path = None if output is None else Path(output)
     if path is not None:
         require_free(path, overwrite, study)
+    with locked_output(path) if path is not None else nullcontext():
+        return _calibrate(drive, study, force_tolerance, path, progress, overwrite)
+
+
+def _calibrate(
+    drive: Drive,
+    study: Path | str | CalibrationStudy,
+    force_tolerance: float | None,
+    path: Path | None,
+    progress: Report | None,
+    overwrite: bool,
+) -> Result:
     given = study if isinstance(study, CalibrationStudy) else read_study(study, CalibrationStudy)
     base = Path() if isinstance(study, CalibrationStudy) else Path(study).parent
     numbers = tuple(free_number(drive, one) for one in given.numbers)

@@ -110,7 +110,7 @@ class _Writer:
             raise ModelError(f"{type(value).__module__}.{name} is not among the classes that are kept.")
         if isinstance(value, tuple):
             return {"is": name, "of": [self.node(one) for one in value]}
-        state: dict[str, Any] = value.__getstate__()
+        state: Any = value.__getstate__()
         return {"is": name, "of": {key: self.node(one) for key, one in state.items()}}
 
     def _array(self, array: np.ndarray[Any, Any]) -> dict[str, Any]:

@@ -15,10 +15,10 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from beltdyn.analyses import Analysis
-from beltdyn.errors import BeltdynError, SimulationError
+from beltdyn.errors import BeltdynError, LostOutputError, SimulationError
 from beltdyn.model import Drive
 from beltdyn.results import Result, Run, Summary, open_result, summarize
-from beltdyn.results.atomic import stamp
+from beltdyn.results.atomic import locked_output, stamp
 from beltdyn.signals import ENDING
 from beltdyn.solve.progress import Progress
 
@@ -182,12 +182,14 @@ def analyse(place: int, file: Path, drive: Drive | Run, work: Work) -> Ending:
 
     before = stamp(file)
     try:
-        with working():
+        with working(), locked_output(file):
             result = work.analysis.write(drive, file, heeding(note), work.overwrite, **work.options)
             ending = _ended(result) if stamp(file) != before else Ending(result.status)
             if work.finish is not None and result.status == "completed":
                 work.finish(result)
             return ending
+    except LostOutputError as error:
+        return Ending("failed", str(error))
     except SimulationError as error:
         left = stamp(file) not in (before, None)
         return _kept(file, str(error)) if left else Ending("failed", str(error))

@@ -12,7 +12,7 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.results import FileRecorder, Layout, open_run
-from beltdyn.results.atomic import MARK, is_marked, leftovers
+from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable, target_of
 
 
 def make_text(path: Path) -> None:
@@ -89,10 +89,20 @@ def test_marks_are_found_at_both_ends(tmp_path: Path) -> None:
     assert not is_marked(tmp_path)
 
 
-def test_leftovers_of_killed_processes_are_found(tmp_path: Path) -> None:
-    """By their name and age: a young one may still be written."""
-    for name in (".d.0123abcd.nc", ".d.fedc9876.nc", ".d.0123abcd.csv", ".e.0123abcd.nc", ".d.nc.lock", "d.nc"):
+def test_what_killed_processes_left_is_removed(tmp_path: Path) -> None:
+    """By its name, where the file is written again; whoever writes it has locked it."""
+    for name in (".d.0123abcd.nc", ".d.fedc9876.nc", ".d.0123abcd.csv", ".e.0123abcd.nc", "d.nc"):
         (tmp_path / name).touch()
-        if "fedc" not in name:
-            os.utime(tmp_path / name, (1e9, 1e9))
-    assert leftovers(tmp_path / "d.nc") == [tmp_path / ".d.0123abcd.nc"]
+    with atomic_path(tmp_path / "d.nc", lambda _: True) as temporary:
+        temporary.write_text("new")
+    assert sorted(file.name for file in tmp_path.iterdir()) == [".d.0123abcd.csv", ".e.0123abcd.nc", "d.nc"]
+    assert (tmp_path / "d.nc").read_text() == "new"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need a right there")
+def test_links_in_a_circle_are_told(tmp_path: Path) -> None:
+    (tmp_path / "a.nc").symlink_to(tmp_path / "b.nc")
+    (tmp_path / "b.nc").symlink_to(tmp_path / "a.nc")
+    for action in (target_of, lambda path: require_replaceable(path, is_marked)):
+        with pytest.raises(ModelError, match=r"a\.nc cannot be written \(Too many levels of symbolic links\)"):
+            action(tmp_path / "a.nc")

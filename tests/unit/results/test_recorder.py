@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beltdyn.errors import BeltdynError, ModelError, OutputError
+from beltdyn.errors import LostOutputError, ModelError, OutputError
 from beltdyn.results import COORDINATES, VARIABLES, FileRecorder, Layout, MemoryRecorder, Status, open_run, staged_file
 from beltdyn.results.recorder import _no_outputs
 
@@ -158,8 +158,12 @@ def test_interrupted_append_is_cut_off(
 ) -> None:
     result = FileRecorder(tmp_path / "result.nc", layout, attributes)
     result.append(make_chunk(TIME))
-    with h5py.File(result.path, "r+") as file:
-        file["kinetic_energy"].resize(len(TIME) + 7, axis=0)
+    growing = result._file
+    assert growing is not None
+    with growing._open(result.path) as staged:
+        with h5py.File(staged, "r+") as file:
+            file["kinetic_energy"].resize(len(TIME) + 7, axis=0)
+        growing._commit(staged)
     with result.dataset() as dataset:
         assert dataset.sizes["time"] == len(TIME)
         assert bool(dataset["kinetic_energy"].notnull().all())
@@ -196,9 +200,9 @@ def test_unwritable_path_is_a_model_error(tmp_path: Path, layout: Layout, attrib
 
 def test_vanished_file_is_an_error(result: FileRecorder, make_chunk: Callable[..., Any]) -> None:
     result.path.unlink()
-    with pytest.raises(BeltdynError, match="cannot be written"):
+    with pytest.raises(LostOutputError, match="was removed"):
         result.append(make_chunk(TIME))
-    with pytest.raises(BeltdynError, match="cannot be written"):
+    with pytest.raises(LostOutputError, match="was removed"):
         result.close("completed", {})
 
 

@@ -2,7 +2,9 @@
 
 import io
 import os
+from contextlib import suppress
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
@@ -10,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from beltdyn.results import staged_file
+from beltdyn.results.checksums import PAGE, DamageError, find_checksums, verify
 from beltdyn.results.staged_file import RESERVE, StagedFile, identity
 
 BLOCK = 16384
@@ -30,6 +33,16 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("staged") / "file"
 
 
+def contents(path: Path) -> bytes:
+    """What a file holds before its checksums, which must be right."""
+    assert verify(path)
+    with path.open("rb") as file:
+        found = find_checksums(file)
+    assert found is not None
+    assert path.stat().st_size == found.place + found.size
+    return path.read_bytes()[: found.end]
+
+
 @given(actions=ACTIONS)
 def test_it_behaves_as_a_file_in_memory(path: Path, actions: list[tuple[str, int, Any]]) -> None:
     path.write_bytes(CONTENTS)
@@ -46,7 +59,7 @@ def test_it_behaves_as_a_file_in_memory(path: Path, actions: list[tuple[str, int
         assert staged.seek(0, io.SEEK_END) == memory.seek(0, io.SEEK_END)
         assert path.read_bytes() == CONTENTS
         staged.commit(reserve=0)
-    assert path.read_bytes() == memory.getvalue()
+    assert contents(path) == memory.getvalue()
 
 
 def test_what_was_not_committed_is_dropped(path: Path) -> None:
@@ -56,13 +69,82 @@ def test_what_was_not_committed_is_dropped(path: Path) -> None:
     assert path.read_bytes() == CONTENTS
 
 
+def test_a_file_grows_by_many_commits(tmp_path: Path) -> None:
+    """Whatever changes, checksums are right, and take little space: those of earlier commits are overwritten."""
+    path, random = tmp_path / "file", Random(7)
+    path.touch()
+    held = bytearray()
+    for _ in range(60):
+        with StagedFile(path) as staged:
+            for _ in range(random.randrange(6)):
+                place, data = random.randrange(len(held) + 1), random.randbytes(random.choice((10, 5000, 30000)))
+                staged.seek(place)
+                staged.write(memoryview(data))
+                held[place : place + len(data)] = data
+            staged.commit()
+        assert contents(path) == held
+        assert path.stat().st_size < len(held) + 3 * RESERVE
+    with StagedFile(path) as staged:
+        staged.commit(reserve=0)
+    assert contents(path) == held
+    assert path.stat().st_size < len(held) * 1.003 + 100
+
+
+def test_a_writer_that_is_killed_leaves_old_or_new_pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After any of its writes, and of the last one any number of pages."""
+    path, writing, left = tmp_path / "file", staged_file._write_all, 0
+
+    def killed(file: io.FileIO, pieces: list[tuple[int, bytes]]) -> None:
+        nonlocal left
+        for place, data in pieces:
+            for first in range(0, len(data), PAGE - place % PAGE):
+                if not left:
+                    raise SystemExit
+                left -= 1
+                writing(file, [(place + first, data[first : first + PAGE - place % PAGE])])
+
+    before, after = bytes(CONTENTS), bytes(reversed(CONTENTS))
+    for reserve in (RESERVE, 0):
+        for count in range(100):
+            path.write_bytes(before)
+            with StagedFile(path) as staged:
+                staged.commit()
+            monkeypatch.setattr(staged_file, "_write_all", killed)
+            left = count
+            with StagedFile(path) as staged, suppress(SystemExit):
+                staged.write(memoryview(after))
+                staged.commit(reserve)
+            monkeypatch.setattr(staged_file, "_write_all", writing)
+            assert verify(path)
+            if left:
+                break
+        assert 3 < count < 99
+        assert path.read_bytes()[: len(after)] == after
+
+
+def test_damage_below_a_change_is_not_sealed(tmp_path: Path) -> None:
+    """What is added to a page that the disk gives otherwise than it was written is refused."""
+    path = tmp_path / "file"
+    path.write_bytes(CONTENTS)
+    with StagedFile(path) as staged:
+        staged.commit()
+    data = bytearray(path.read_bytes())
+    data[100] ^= 1
+    path.write_bytes(data)
+    with StagedFile(path) as staged, pytest.raises(OSError, match=r"bytes 0 to 4,096 are not as they were written"):
+        staged.write(memoryview(b"new"))
+    with pytest.raises(DamageError, match=r"the page of its bytes 0 and 4,096"):
+        verify(path)
+
+
 def test_a_growing_file_holds_a_reserve_behind_its_contents(path: Path) -> None:
     path.write_bytes(CONTENTS)
     with StagedFile(path) as staged:
         staged.seek(0, io.SEEK_END)
         staged.write(memoryview(b"more"))
         staged.commit()
-    assert path.read_bytes() == CONTENTS + b"more" + bytes(RESERVE)
+    assert contents(path) == CONTENTS + b"more"
+    assert path.stat().st_size > len(CONTENTS) + RESERVE
 
 
 def test_an_end_that_is_nearer_cuts_the_file(path: Path) -> None:
@@ -70,7 +152,7 @@ def test_an_end_that_is_nearer_cuts_the_file(path: Path) -> None:
     with StagedFile(path) as staged:
         staged.truncate(1000)
         staged.commit(reserve=0)
-    assert path.read_bytes() == CONTENTS[:1000]
+    assert contents(path) == CONTENTS[:1000]
 
 
 @pytest.mark.parametrize("refused", [0, 1])

@@ -3,7 +3,7 @@
 import re
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import partial
 from math import ceil
 from pathlib import Path
@@ -18,7 +18,7 @@ from beltdyn.errors import ConvergenceError, ModelError, cause_of
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
 from beltdyn.results import Result, Run, Variable, build_result
-from beltdyn.results.atomic import require_replaceable
+from beltdyn.results.atomic import locked_output, require_replaceable
 from beltdyn.results.dataset import is_result
 from beltdyn.results.recorder import status_after
 from beltdyn.results.schema import COORDINATES
@@ -87,6 +87,7 @@ class OperatingPoints:
         self.shape = tuple(len(np.atleast_1d(labels)) for _, labels in axes.values())
         kept = {name: one for name, one in VARIABLES.items() if name in names and self._holds(one)}
         self.arrays = {name: self._blank(variable) for name, variable in kept.items()}
+        self._held = ExitStack()
         self._warned: dict[str, list[tuple[float, str, str]]] = {}
         self._done, self._written, self._status = 0, time.perf_counter(), "running"
         self._near: Run | None = None
@@ -107,6 +108,8 @@ class OperatingPoints:
 
     def __enter__(self) -> Self:
         """Begin."""
+        if self._path is not None:
+            self._held.enter_context(locked_output(self._path))
         self._tell()
         return self
 
@@ -115,7 +118,8 @@ class OperatingPoints:
     ) -> bool:
         """Close the table with its status."""
         self._status = status_after(kind)
-        self._save()
+        with self._held:
+            self._save()
         return self._status == "interrupted"
 
     @property

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from beltdyn.errors import ModelError
-from beltdyn.results.atomic import atomic_path, require_replaceable
+from beltdyn.results.atomic import atomic_path, require_replaceable, target_of
 from beltdyn.results.dataset import is_result
 
 _MARK = "# Found by `beltdyn "
@@ -44,7 +44,7 @@ def require_free(output: Path, overwrite: bool, study: object) -> None:
     ModelError
         If they would.
     """
-    if isinstance(study, Path | str) and found_file(output).resolve() == Path(study).resolve():
+    if isinstance(study, Path | str) and target_of(found_file(output)) == target_of(Path(study)):
         raise ModelError(
             f"the drive that is found would be written to {found_file(output)}, which is the study. Choose another "
             "result file."

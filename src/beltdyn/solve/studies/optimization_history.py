@@ -1,6 +1,7 @@
 """Designs that an optimisation has tried, as a result and as the best drive file, in files if one is named."""
 
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -13,6 +14,7 @@ from beltdyn.model import Drive
 from beltdyn.model.toml_editor import edited
 from beltdyn.model.toml_reader import loads
 from beltdyn.results import Result, Variable, build_result
+from beltdyn.results.atomic import locked_output
 from beltdyn.results.recorder import status_after
 from beltdyn.results.shown import VARIOUS
 from beltdyn.signals import uninterrupted
@@ -101,12 +103,15 @@ class History:
         self._path, self._overwrite = None if output is None else Path(output), overwrite
         if self._path is not None:
             require_free(self._path, overwrite, study)
+        self._held = ExitStack()
         self.tried: list[Design] = []
         self._final: Design | None = None
         self._status, self._ended, self._warned = "running", "interrupted", list[str]()
 
     def __enter__(self) -> Self:
         """Begin."""
+        if self._path is not None:
+            self._held.enter_context(locked_output(self._path))
         return self
 
     def __exit__(
@@ -114,7 +119,8 @@ class History:
     ) -> bool:
         """End with a status, and write what there is."""
         self._status = status_after(kind)
-        self._save()
+        with self._held:
+            self._save()
         return self._status == "interrupted"
 
     def note(self, design: Design) -> None:

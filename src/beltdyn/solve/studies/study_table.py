@@ -17,7 +17,7 @@ from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy, dumps
 from beltdyn.results import Result, Variable, build_result
-from beltdyn.results.atomic import require_replaceable, unwritable
+from beltdyn.results.atomic import require_replaceable, target_of, unwritable
 from beltdyn.results.dataset import is_result, read_dataset
 from beltdyn.results.lock import OutputLock
 from beltdyn.results.recorder import status_after
@@ -85,7 +85,7 @@ class StudyTable:
         require_replaceable(output, is_result, overwrite)
         require_replaceable(self._rows.path, is_study_table, overwrite)
         try:
-            self._lock = OutputLock(output.resolve())
+            self._lock = OutputLock(target_of(output))
         except OSError as error:
             raise ModelError(unwritable(output, error)) from error
         try:
@@ -251,8 +251,8 @@ class StudyTable:
     def _save(self) -> None:
         """Write the result file, if one is named."""
         begun = time.perf_counter()
-        if self._path is not None:
-            with uninterrupted():
+        if self._path is not None and self._lock is not None:
+            with uninterrupted(), self._lock.used():
                 self.result().save(self._path, overwrite=True)
         self._written = time.perf_counter()
         self._pause = max(_OFTEN, _SHARE * (self._written - begun))
