@@ -82,6 +82,7 @@ def make_cantilever() -> Callable[..., tuple[Belt, System]]:
             density=1000.0,
             youngs_modulus=1e8,
             poissons_ratio=0.3,
+            shear_correction=13 / 15.3,
             elements=elements,
         )
         stiffness = belt.bending_stiffness

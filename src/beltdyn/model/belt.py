@@ -40,6 +40,8 @@ from beltdyn.parts.quantity import Angle, Count, Density, Flag, Force, Length, L
 from beltdyn.stretch import LAWS, StretchParameters
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
+_NORMAL_SECTIONS = 20.0
+"""Shear stiffness S over EA that holds sections normal: slip on small pulleys errs by about (T / S) EI / EA R^2."""
 _LAWS = ", ".join(f'"{law.name}" ({law.meaning})' for law in LAWS.values())
 
 if TYPE_CHECKING:
@@ -175,7 +177,8 @@ class Belt(Part):
     shear_correction: Ratio | None = Field(
         None,
         gt=0,
-        description="the shear correction factor; by default that of a rectangle, from Poisson's ratio",
+        description="the shear correction factor, on the mesh that travels; by default sections stay normal to the "
+        "centreline, as on the mesh that stays",
     )
     elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
     discretization: ElementName | None = Field(
@@ -400,11 +403,11 @@ class Belt(Part):
         return self.youngs_modulus / (2 * (1 + self.poissons_ratio))
 
     @property
-    def shear_coefficient(self) -> float:
-        """Shear correction factor as given, or 10(1 + ν) / (12 + 11ν) for a rectangle."""
-        if self.shear_correction is not None:
-            return self.shear_correction
-        return 10 * (1 + self.poissons_ratio) / (12 + 11 * self.poissons_ratio)
+    def shear_stiffness(self) -> float:
+        """Shear stiffness k_s G A α₂, N; without a correction factor so large that sections stay normal."""
+        if self.shear_correction is None:
+            return _NORMAL_SECTIONS * self.axial_stiffness
+        return self.shear_correction * self.shear_modulus * self.area * self.bending_factor
 
     @property
     def axial_stiffness(self) -> float:

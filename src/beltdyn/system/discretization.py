@@ -87,13 +87,12 @@ def belt_section(belt: Belt) -> Section:
     Section
         Factors of Eqs. 14 and 15, integrated over the section.
     """
-    shear = belt.shear_coefficient * belt.shear_modulus * belt.bending_factor
     return Section(
         stretch=belt.stretch_parameters,
         bending=belt.bending_stiffness,
         quartic=belt.youngs_modulus * belt.fourth_moment * belt.bending_factor,
-        shear=shear * belt.area,
-        shear_gradient=shear * belt.second_moment,
+        shear=belt.shear_stiffness,
+        shear_gradient=belt.shear_stiffness * belt.second_moment / belt.area,
         thickness=belt.youngs_modulus * belt.area,
         mass=belt.mass_per_length,
         rotary_inertia=belt.rotary_inertia,

@@ -10,7 +10,7 @@ def test_section_of_the_papers_belt(drive: Drive) -> None:
     assert belt.second_moment == pytest.approx(1e-8 / 12)
     assert belt.fourth_moment == pytest.approx(1e-12 / 80)
     assert belt.shear_modulus == pytest.approx(1e8 / 2.6)
-    assert belt.shear_coefficient == pytest.approx(13 / 15.3)
+    assert belt.shear_stiffness == pytest.approx(13 / 15.3 * 1e8 / 2.6 * 1e-4 * 0.01)
     assert belt.axial_stiffness == pytest.approx(1e4)
     assert belt.bending_stiffness == pytest.approx(1e8 * 1e-8 / 12 * 0.01)
     assert belt.mass_per_length == pytest.approx(0.1036)
@@ -23,8 +23,12 @@ def test_the_thickness_lies_in_the_plane_of_bending(drive: Drive) -> None:
     assert flat.second_moment == pytest.approx(drive.belt.second_moment / 4)
 
 
-def test_given_shear_correction_is_used(drive: Drive) -> None:
-    assert drive.belt.replace(shear_correction=0.85).shear_coefficient == 0.85
+def test_sections_stay_normal_without_a_shear_correction(drive: Drive) -> None:
+    """Then shear does not follow the bending stiffness, which is measured with all that gives way."""
+    normal = drive.belt.replace(shear_correction=None)
+    assert normal.shear_stiffness == pytest.approx(20.0 * normal.axial_stiffness)
+    assert normal.replace(bending_factor=1e-3).shear_stiffness == normal.shear_stiffness
+    assert drive.belt.replace(shear_correction=0.5).shear_stiffness == pytest.approx(0.5 * 1e8 / 2.6 * 1e-6)
 
 
 def test_replace_validates(drive: Drive) -> None:

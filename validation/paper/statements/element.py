@@ -57,6 +57,7 @@ def _belt(thickness: float = 1e-2, elements: int = 4, poissons_ratio: float = 0.
         density=1000.0,
         youngs_modulus=1e8,
         poissons_ratio=poissons_ratio,
+        shear_correction=10.0 * (1.0 + poissons_ratio) / (12.0 + 11.0 * poissons_ratio),
         elements=elements,
         **factors,
     )
