@@ -5,7 +5,7 @@ from beltdyn.model import Belt, Drive
 
 
 def test_section_of_the_papers_belt(drive: Drive) -> None:
-    belt = drive.belt
+    belt = drive.belt.replace(shear_correction=13 / 15.3)
     assert belt.area == pytest.approx(1e-4)
     assert belt.second_moment == pytest.approx(1e-8 / 12)
     assert belt.fourth_moment == pytest.approx(1e-12 / 80)
@@ -25,7 +25,7 @@ def test_the_thickness_lies_in_the_plane_of_bending(drive: Drive) -> None:
 
 def test_sections_stay_normal_without_a_shear_correction(drive: Drive) -> None:
     """Then shear does not follow the bending stiffness, which is measured with all that gives way."""
-    normal = drive.belt.replace(shear_correction=None)
+    normal = drive.belt
     assert normal.shear_stiffness == pytest.approx(20.0 * normal.axial_stiffness)
     assert normal.replace(bending_factor=1e-3).shear_stiffness == normal.shear_stiffness
     assert drive.belt.replace(shear_correction=0.5).shear_stiffness == pytest.approx(0.5 * 1e8 / 2.6 * 1e-6)
