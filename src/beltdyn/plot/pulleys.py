@@ -64,7 +64,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     notes.append(
         "dotted: creep; the rest is sliding of the whole arc"
         if slides
-        else "dotted: elastic creep; the rest is the slope of the friction law"
+        else "dotted: elastic creep; the rest is bending and the slope of the friction law"
     )
     note(ax, "\n".join(notes))
     _limit(ax, parts["slip"], _after_start(run, summary.start))

@@ -34,8 +34,10 @@ class PulleySummary:
         ``1 - v_i / v_d`` of the mean rim speeds along the belt; NaN when the driver stands still.
     elastic_creep : float
         Part of the slip that the belt's change of stretch makes, as with Coulomb's friction.
+    bending : float
+        Part of the slip by what bending and its hysteresis take from the stretch until the belt touches.
     regularisation : float
-        Part of the slip that the slope of the friction law adds: what is left of the slip.
+        Part of the slip that the slope of the friction law makes: what is left of the slip.
     sliding : float
         Part of the slip that is no creep: the belt slides on the whole arc of this pulley or of the driver.
     sliding_speed : float
@@ -65,6 +67,7 @@ class PulleySummary:
     power: float
     slip: float
     elastic_creep: float
+    bending: float
     regularisation: float
     sliding: float
     sliding_speed: float

@@ -1,20 +1,41 @@
 """Slip of the pulleys against the driver, and what it is made of."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.results.mechanics import across, relative_loss
+from beltdyn.theory.elastic_creep import entry_strain
+
+
+class SlipParts(NamedTuple):
+    """Slip and its parts, shape (..., pulleys), over the speed of the driver's rim."""
+
+    slip: FloatArray
+    """The sum of the others."""
+    elastic_creep: FloatArray
+    """By the stretch of the spans that reach the two pulleys."""
+    bending: FloatArray
+    """By what bending and its hysteresis take from the stretch until the belt touches, beyond the rolling radii."""
+    regularisation: FloatArray
+    """What is left: by the slope of the friction law, and by errors of the mesh."""
+    sliding: FloatArray
+    """By arcs that slide as a whole."""
 
 
 def slip_parts(
     rim: FloatArray, tension: FloatArray, gross: FloatArray, elapsed: FloatArray | float, drive: Drive
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Take slip apart into elastic creep, what the slope of the friction law adds, and sliding.
+) -> SlipParts:
+    """Take slip apart into elastic creep, bending, what the slope of the friction law makes, and sliding.
 
     With Coulomb's friction the belt adheres to every rim where it reaches it, with the tension T of the span before
     and the stretch g(T) there: the elastic creep is 1 - g(T_i) / g(T_d), (T_d - T_i) / EA at small strain (Grashof
-    1883), with the driver d (`Drive.reference`). A law of friction that starts at zero lets the belt creep there too.
+    1883), with the driver d (`Drive.reference`). On its way there it bends, and the rim meets it with less stretch than
+    the span has (`theory.elastic_creep.entry_strain`), on small pulleys by as much as it creeps. The rolling radii have
+    a part of that already. A law of friction that starts at zero lets the belt creep where it touches, and on, while it
+    bends.
 
     Parameters
     ----------
@@ -31,9 +52,8 @@ def slip_parts(
 
     Returns
     -------
-    slip, elastic, regularisation, sliding : ndarray, shape (..., pulleys)
-        Parts of the driver's rim speed, of which the first is the sum of the others. NaN while the driver stands
-        still: while its rim goes no further than the belt is stretched.
+    SlipParts
+        NaN while the driver stands still: while its rim goes no further than the belt is stretched.
     """
     law = drive.belt.stretch_parameters
     stretched = (law.stretch(np.max(tension, axis=-1)) - 1.0) * drive.belt_length
@@ -41,7 +61,26 @@ def slip_parts(
     runs = np.abs(rim[..., driver]) * elapsed > np.maximum(stretched, 0.0)
     rim = np.where(runs[..., None], rim, 0.0)
     before, after = across(tension, drive)
-    reached = law.stretch(np.where(rim[..., driver, None] > 0.0, before, after))
+    reaching = np.where(rim[..., driver, None] > 0.0, before, after)
+    reached, lost = law.stretch(reaching), _entry_loss(reaching, drive)
     total, sliding = relative_loss(-rim, rim, driver), relative_loss(gross, rim, driver)
     elastic = np.where(runs[..., None], 1.0 - reached / reached[..., driver, None], np.nan)
-    return total, elastic, total - elastic - sliding, sliding
+    bending = np.where(runs[..., None], lost - lost[..., driver, None], np.nan)
+    return SlipParts(total, elastic, bending, total - elastic - bending - sliding, sliding)
+
+
+def _entry_loss(reaching: FloatArray, drive: Drive) -> FloatArray:
+    """Strain lost where the belt first touches, beyond that of the rolling radii; none of elements that do not bend."""
+    belt = drive.belt
+    if belt.element_kind.bent_strain == 0.0:
+        return np.zeros_like(reaching)
+    lost = entry_strain(
+        reaching,
+        drive.radii,
+        bending_stiffness=belt.bending_stiffness,
+        axial_stiffness=belt.axial_stiffness,
+        contact_stiffness=drive.contact_stiffness,
+        bent_strain=belt.element_kind.bent_strain,
+        loss_factor=belt.bending_loss_factor,
+    )
+    return np.asarray(lost + belt.bent_strain(drive.radii))

@@ -47,7 +47,7 @@ _EXPECTED = frozenset({gross_slip.__name__, near_gross_slip.__name__})
 _VARIABLES = {
     "torque": Variable(("slip",), "N m", "Torque"),
     "elastic": Variable(("slip",), "1", "Elastic creep"),
-    "added": Variable(("slip",), "1", "Added by the friction law"),
+    "added": Variable(("slip",), "1", "Added by bending and the friction law"),
     "slid": Variable(("slip",), "1", "Sliding of whole arcs"),
     "sliding_share": Variable(("slip",), "1", "Part of the arc that slides"),
     "capstan_torque": Variable(("slip",), "N m", "Limit by Euler's formula"),
@@ -222,7 +222,7 @@ def _curve(arrays: Mapping[str, NDArray[Any]], number: int, sense: float) -> Axe
     found = {
         "torque": torque,
         "elastic": arrays["elastic_creep"][:, number],
-        "added": arrays["regularisation"][:, number],
+        "added": arrays["bending"][:, number] + arrays["regularisation"][:, number],
         "slid": arrays["sliding"][:, number],
         "sliding_share": arrays["sliding_arc"][:, number] / arrays["wrap_angle"][:, number],
         "capstan_torque": np.abs(torque) * arrays["slip_safety"][:, number],

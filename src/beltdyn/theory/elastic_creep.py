@@ -1,7 +1,10 @@
 """Elastic creep of a two-pulley drive with Coulomb friction (Grashof 1883): adhesion, sliding, loss of speed."""
 
-from math import exp
+from math import exp, pi
 
+import numpy as np
+
+from beltdyn.arrays import FloatArray
 from beltdyn.stretch import StretchParameters
 from beltdyn.theory.capstan import sliding_angle
 from beltdyn.theory.path import open_belt
@@ -35,6 +38,47 @@ def slip_arc(tight: float, slack: float, friction: float, *, mass_per_length: fl
     Parameters are those of `capstan.sliding_angle`.
     """
     return sliding_angle(tight, slack, friction, mass_per_length=mass_per_length, speed=speed)
+
+
+def entry_strain(
+    tension: FloatArray,
+    radii: FloatArray,
+    *,
+    bending_stiffness: float,
+    axial_stiffness: float,
+    contact_stiffness: float,
+    bent_strain: float,
+    loss_factor: float = 0.0,
+) -> FloatArray:
+    """Strain that a belt has lost against its span where it first touches a pulley, and with it the speed of the rim.
+
+    In a span of tension T the belt bends towards a rim of stiffness k.  With q = EI k / T^2 the beam on springs, E I
+    d'''' - T d'' + k d = T / R, meets the rim with the curvature kappa and the angle alpha,
+
+        kappa R = sqrt(q) / (1 + sqrt(q) + sqrt(1 + 2 sqrt(q))),    alpha^2 = T / (k R^2).
+
+    What does not depend on the place along a belt, T g - psi and the energy of bending, takes (1/2 - e) EI kappa^2 from
+    the strain's EA, with e EI kappa^2 / EA the strain of a bent belt without tension; hysteresis takes pi/8 eta EI
+    kappa^2, half of what bending forth and back loses.  The rim sees cos(alpha) of the belt's speed.
+
+    Parameters
+    ----------
+    tension : ndarray, shape (..., pulleys)
+        T of the spans that reach the pulleys, N.
+    radii : ndarray, shape (pulleys,)
+        R, m.
+    bending_stiffness, axial_stiffness, contact_stiffness
+        EI (N m^2), EA (N), k (N/m^2).
+    bent_strain
+        e, -3/2 of the paper's element (Eq. 14).
+    loss_factor
+        eta of bending.
+    """
+    pull = np.maximum(tension, 1e-9 * axial_stiffness)
+    root = np.sqrt(bending_stiffness * contact_stiffness) / pull
+    bent = (root / (1.0 + root + np.sqrt(1.0 + 2.0 * root)) / radii) ** 2
+    share = 0.5 - bent_strain + pi / 8.0 * loss_factor
+    return np.asarray(share * bending_stiffness / axial_stiffness * bent + 0.5 * pull / (contact_stiffness * radii**2))
 
 
 def gross_slip_tensions(

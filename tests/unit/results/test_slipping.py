@@ -8,10 +8,20 @@ import pytest
 
 from beltdyn.results.slipping import slip_parts
 from beltdyn.stretch import Green
+from beltdyn.theory.elastic_creep import entry_strain
 
 STIFFNESS, LENGTH = 1e4, 2.0
+RADII = np.array([0.01, 0.05, 0.1])
+BELT: Any = SimpleNamespace(
+    stretch_parameters=Green(STIFFNESS),
+    element_kind=SimpleNamespace(bent_strain=-1.5),
+    bent_strain=lambda radii: -1.5e-3 / STIFFNESS / radii**2,
+    bending_stiffness=1e-3,
+    axial_stiffness=STIFFNESS,
+    bending_loss_factor=0.1,
+)
 DRIVE: Any = SimpleNamespace(
-    belt=SimpleNamespace(stretch_parameters=Green(STIFFNESS)), belt_length=LENGTH, pulleys=range(3), reference=0
+    belt=BELT, belt_length=LENGTH, pulleys=range(3), reference=0, radii=RADII, contact_stiffness=1e9
 )
 TENSION = np.array([30.0, 50.0, 90.0])
 """Of the spans that leave the pulleys: the tight one reaches the first pulley, which drives."""
@@ -21,16 +31,16 @@ NOTHING = np.zeros(3)
 
 def test_slip_is_what_the_rims_lose_and_its_parts_make_it_up() -> None:
     gross = np.array([-0.02, 0.01, 0.0])
-    total, elastic, added, sliding = slip_parts(RIM, TENSION, gross, 1.0, DRIVE)
+    total, elastic, bending, added, sliding = slip_parts(RIM, TENSION, gross, 1.0, DRIVE)
     np.testing.assert_allclose(total, [0.0, 0.01, 0.005], rtol=1e-12)
     np.testing.assert_allclose(sliding, [0.0, 0.003, 0.002], rtol=1e-12)
-    np.testing.assert_allclose(elastic + added + sliding, total, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(elastic + bending + added + sliding, total, rtol=0, atol=1e-15)
 
 
 def test_slip_is_told_against_the_driver_wherever_it_is_listed() -> None:
     """The same drive from another pulley on: the same slip, creep and sliding of each pulley."""
     gross = np.array([-0.02, 0.01, 0.0])
-    listed_third: Any = SimpleNamespace(**vars(DRIVE) | {"reference": 2})
+    listed_third: Any = SimpleNamespace(**vars(DRIVE) | {"reference": 2, "radii": np.roll(RADII, -1)})
     rim, tension, slid = (np.roll(values, -1) for values in (RIM, TENSION, gross))
     parts, others = slip_parts(RIM, TENSION, gross, 1.0, DRIVE), slip_parts(rim, tension, slid, 1.0, listed_third)
     for part, moved in zip(parts, others, strict=True):
@@ -74,3 +84,22 @@ def test_every_instant_counts_for_itself() -> None:
         alone = slip_parts(rims[index], tensions[index], NOTHING, 1.0, DRIVE)
         for one, all_of_them in zip(alone, together, strict=True):
             np.testing.assert_array_equal(one, all_of_them[index])
+
+
+def test_bending_is_by_the_stretch_that_is_lost_before_the_belt_touches() -> None:
+    """Beyond the rolling radii; most on the small pulley that drives, and nothing without stiffness."""
+    bending = slip_parts(RIM, TENSION, NOTHING, 1.0, DRIVE).bending
+    lost = entry_strain(
+        np.array([90.0, 30.0, 50.0]),
+        RADII,
+        bending_stiffness=1e-3,
+        axial_stiffness=STIFFNESS,
+        contact_stiffness=1e9,
+        bent_strain=-1.5,
+        loss_factor=0.1,
+    ) + BELT.bent_strain(RADII)
+    np.testing.assert_allclose(bending, lost - lost[0], rtol=1e-12)
+    assert bending[1] > 0.0
+    straight = SimpleNamespace(**vars(BELT) | {"element_kind": SimpleNamespace(bent_strain=0.0)})
+    limp: Any = SimpleNamespace(**vars(DRIVE) | {"belt": straight})
+    assert not slip_parts(RIM, TENSION, NOTHING, 1.0, limp).bending.any()

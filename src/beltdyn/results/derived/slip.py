@@ -30,8 +30,9 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
         elastic_creep_i = 1 - g(T_i) / g(T_d)
 
     with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is what Coulomb's
-    friction would leave (Reynolds 1874, Grashof 1883); ``regularisation``, the rest, is what the slope of the friction
-    law adds. What slides is a loss without bound, as on a pulley that is overloaded.
+    friction would leave a limp belt (Reynolds 1874, Grashof 1883). ``bending`` is by the stretch that bending and its
+    hysteresis take on the way to the rim (`theory.elastic_creep.entry_strain`), and ``regularisation``, the rest, is
+    what the slope of the friction law makes. What slides is a loss without bound, as on a pulley that is overloaded.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     Returns
     -------
     xarray.Dataset
-        ``slip``, ``creep``, ``elastic_creep``, ``regularisation`` and ``sliding`` in %, with the dimensions time and
+        ``slip``, ``creep``, ``elastic_creep``, ``bending``, ``regularisation`` and ``sliding`` in %, over time and
         pulley; NaN while the driver stands still.
 
     Examples
@@ -61,16 +62,17 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
     rim = rim_speeds(speed, run.drive)
     driver = np.abs(rim[:, run.drive.reference, None])
     rim = np.where(driver > _STANDING * np.max(driver, initial=0.0, where=np.isfinite(driver)), rim, 0.0)
-    total, elastic, added, slid = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.drive)
-    parts = {
-        "slip": (total, "Slip"),
-        "creep": (total - slid, "Creep"),
-        "elastic_creep": (elastic, "Elastic creep"),
-        "regularisation": (added, "Slip that the slope of the friction law adds"),
-        "sliding": (slid, "Sliding"),
+    parts = slip_parts(rim, tension, gross, np.ptp(run.dataset["time"].values), run.drive)
+    called = {
+        "slip": (parts.slip, "Slip"),
+        "creep": (parts.slip - parts.sliding, "Creep"),
+        "elastic_creep": (parts.elastic_creep, "Elastic creep"),
+        "bending": (parts.bending, "Slip by bending"),
+        "regularisation": (parts.regularisation, "Slip that the slope of the friction law makes"),
+        "sliding": (parts.sliding, "Sliding"),
     }
     like = dataset["pulley_speed"]
-    made = {name: labelled(100.0 * values, like, "%", long_name) for name, (values, long_name) in parts.items()}
+    made = {name: labelled(100.0 * values, like, "%", long_name) for name, (values, long_name) in called.items()}
     return xr.Dataset(made).sel(time=slice(start, end))
 
 
