@@ -98,6 +98,25 @@ def with_pitch_diameters(drive: Drive) -> Drive | None:
         return None
 
 
+def other_diameters(drive: Drive) -> str:
+    """What is different if the diameters are meant as those of the tension line, in words; empty where nothing is.
+
+    Parameters
+    ----------
+    drive : Drive
+        As it is given.
+    """
+    meant = None if drive.ends else with_pitch_diameters(drive)
+    if meant is None:
+        return ""
+    if drive.belt.length is None:
+        return f"{meant.belt_length:.5g} m of belt, not {drive.belt_length:.5g}"
+    try:
+        return f"{meant.tension_at_rest:.5g} N at rest, not {drive.tension_at_rest:.5g}"
+    except BeltdynError:
+        return ""
+
+
 def _small_pulleys(drive: Drive) -> Iterator[Finding]:
     least = drive.belt.smallest_diameter
     small = {one.name: 2.0 * one.radius for one in drive.pulleys if least and 2.0 * one.radius < (1.0 - 1e-9) * least}

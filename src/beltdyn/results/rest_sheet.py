@@ -5,6 +5,7 @@ import math
 from beltdyn.model import Drive, Installation, describe_time, tensioner_balances
 from beltdyn.model.frame import unused_settings
 from beltdyn.model.hysteresis import bending_resistance, compression_losses
+from beltdyn.model.plausibility import other_diameters
 from beltdyn.parts.columns import aligned
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
 from beltdyn.results.size import describe_size
@@ -49,7 +50,7 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
         Facts of the belt, tables of pulleys, spans and tensioners, and the numbers that are chosen.
     """
     parts: list[Table | Facts] = [
-        Facts(tuple(_facts(drive, installation, given.belt.installed_tension is not None))),
+        Facts(tuple(_facts(given, drive, installation))),
         Table("Pulleys at rest", _PULLEY_HEADINGS, tuple(_pulleys(drive, installation))),
         Table("Spans at rest", _SPAN_HEADINGS, tuple(_spans(drive, installation))),
     ]
@@ -60,14 +61,15 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
     return Sheet("", tuple(parts))
 
 
-def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tuple[str, str]]:
+def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple[str, str]]:
+    asked_for = given.belt.installed_tension is not None
     length, path = drive.belt_length, installation.path.length
     unused = unused_settings(drive) if drive.frame.stays else []
     return [
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
         ("belt length", f"{length:.5g} m unstretched, {installation.strain:z.3%} longer on its path of {path:.5g} m"),
-        *_as_sold(drive),
+        *_as_sold(given, drive),
         *_taken_up(drive),
         ("mesh", f"{drive.elements} {drive.element_kind.name} elements, {drive.frame.words}"),
         ("length of elements", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
@@ -78,17 +80,19 @@ def _facts(drive: Drive, installation: Installation, asked_for: bool) -> list[tu
     ]
 
 
-def _as_sold(drive: Drive) -> list[tuple[str, str]]:
-    """The length by which the belt is sold, with the force under which it is measured."""
+def _as_sold(given: Drive, drive: Drive) -> list[tuple[str, str]]:
+    """The length by which the belt is sold, with the force that measures it, and what other diameters would mean."""
     belt, force = drive.belt, drive.belt.measuring_force
     sold = force is not None or belt.nominal_length is not None
     if drive.ends or not sold:
         return []
     nominal = f"{belt.nominal_length_of(drive.belt_length):.5g} m"
+    other = other_diameters(given)
+    diameters = [("with pitch diameters", other)] if other else []
     if force is None:
-        return [("nominal length", f"{nominal}, taken as unstretched: no measuring force is known")]
+        return [("nominal length", f"{nominal}, taken as unstretched: no measuring force is known"), *diameters]
     stretched = f"{belt.measured_stretch - 1.0:.3%} longer than unstretched"
-    return [("nominal length", f"{nominal} under {force:.4g} N between two pulleys, {stretched}")]
+    return [("nominal length", f"{nominal} under {force:.4g} N between two pulleys, {stretched}"), *diameters]
 
 
 def _in_the_mean(drive: Drive) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beltdyn.model import Drive, advise, install, loads
-from beltdyn.model.plausibility import judge_plausibility
+from beltdyn.model.plausibility import judge_plausibility, other_diameters
 
 EXAMPLES = {
     name: loads(files("beltdyn").joinpath("examples", f"{name}.toml").read_text(encoding="utf-8"))
@@ -58,6 +58,18 @@ def test_what_would_set_a_tension_right_is_named_where_a_length_sets_it() -> Non
     less = drive.replace(pulley=[one.replace(radius=one.radius - 0.0015) for one in drive.pulleys])
     assert f"{install(drive).tension:.4g} N" in text
     assert f"{install(less).tension:.4g} N with the diameters as those of the tension line" in text
+
+
+def test_what_other_diameters_would_mean() -> None:
+    """Six ribs PK on fixed centres: 2 pi times the offset more of path, told in tension or in length."""
+    around = 1.0 + 0.12 * np.pi
+    drive = two_pulleys({"profile": "PK", "ribs": 6, "nominal_length": around - 0.012})
+    less = drive.replace(pulley=[one.replace(radius=one.radius - 0.0015) for one in drive.pulleys])
+    assert other_diameters(drive) == f"{less.tension_at_rest:.5g} N at rest, not {drive.tension_at_rest:.5g}"
+    assert drive.tension_at_rest - less.tension_at_rest == pytest.approx(120e3 * 2 * np.pi * 0.0015 / around, rel=0.05)
+    drive = two_pulleys({"profile": "PK", "ribs": 6, "installed_tension": 300.0})
+    assert drive.belt_length - 0.0094 == pytest.approx(float(other_diameters(drive).split()[0]), abs=2e-4)
+    assert other_diameters(two_pulleys({"profile": "SPZ", "ribs": 2, "installed_tension": 300.0})) == ""
 
 
 def test_a_pulley_below_the_smallest_of_the_belt() -> None:
