@@ -15,6 +15,13 @@ from beltdyn.results import Result
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install playwright")
 pytestmark = pytest.mark.browser
 
+FETCHING = """() => new Promise(resolve => {
+    document.addEventListener("securitypolicyviolation", event => resolve(event.violatedDirective));
+    const script = document.createElement("script");
+    script.src = "https://cdn.jsdelivr.net/npm/mathjax@3/es5/tex-svg.js";
+    document.head.appendChild(script);
+})"""
+"""What the policy of a page itself says of a script from elsewhere."""
 PAPER_WIDTH, PAPER_HEIGHT = 688, 1002
 """What the margins of a report leave of A4, 182 by 265 mm, at 96 to the inch as browsers lay out paper."""
 WIDER = """() => [...document.querySelectorAll("main *, body *")].filter(one => {
@@ -58,6 +65,30 @@ def test_a_report_fits_screens(
     shoot(page, f"report_{name}_{width}")
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     page.context.close()
+
+
+def test_formulas_in_titles_and_names_are_fetched_from_nowhere(browser: Any, tmp_path: Path) -> None:
+    """Bokeh would set what stands between such marks with MathJax, which it may fetch; the browser is cut off."""
+    text = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
+    found = bd.steady_state(bd.loads(text).replace(title=r"$$E = mc^2$$ <img src=https://example.com/a.png>"))
+    names = ["$$a$$", r"\(b\)", r"\[c\]"]
+    results = [bd.open_result(found.save(tmp_path / f"{name}.nc")) for name in names]
+    for number, shown in enumerate((found, results)):
+        report = bd.write_report(shown, tmp_path / f"$${number}$$.html")
+        context = browser.new_context(offline=True)
+        page, asked, faults = context.new_page(), list[str](), list[str]()
+        page.on("request", lambda request, asked=asked: asked.append(request.url))
+        page.on("pageerror", lambda error, faults=faults: faults.append(str(error)))
+        page.on("console", lambda line, faults=faults: faults.append(line.text) if line.type == "error" else None)
+        page.set_default_timeout(300_000)
+        page.goto(report.as_uri())
+        page.locator(".bk-Figure").first.wait_for()
+        page.mouse.wheel(0, 20_000)
+        page.wait_for_timeout(2000)
+        assert [url for url in asked if not url.startswith(("data:", "blob:"))] == [page.url]
+        assert faults == []
+        assert page.evaluate(FETCHING) == "script-src-elem"
+        context.close()
 
 
 @pytest.mark.parametrize("name", ["steady", "modes", "several"])

@@ -11,7 +11,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.parts.quantity import RPM
 from beltdyn.plot.modes import KINDS
 from beltdyn.plot.registry import Choice, always, figure
-from beltdyn.plot.style import INK, axes_or_new, color, label, new_figure
+from beltdyn.plot.style import INK, axes_or_new, color, label, new_figure, set_log_scale
 from beltdyn.results import Result
 
 _SIZE = (9.5, 8.5)
@@ -98,7 +98,7 @@ def mode_damping(result: Result, ax: Axes | None = None) -> Axes:
     dataset, ax = result.dataset, axes_or_new(ax)
     damping = dataset["damping_ratio"].values
     _draw_modes(ax, result, RPM * dataset["speed"].values, np.maximum(damping, _LEAST_DAMPING))
-    ax.set_yscale("log")
+    set_log_scale(ax)
     ax.set(xlabel=label(dataset["speed"]).replace("rad/s", "rpm"), ylabel=label(dataset["damping_ratio"]))
     _legend(ax, result, [])
     return ax

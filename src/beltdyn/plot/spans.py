@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import lines
 from beltdyn.plot.registry import figure, over_time
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, shade
+from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, set_log_scale, shade
 from beltdyn.results import Run, derived
 
 _FLOOR = 1e-6
@@ -83,7 +83,8 @@ def tension_spectrum(run: Run, start: float | None = None, end: float | None = N
         amplitude = spectrum[1:, number]
         ax.plot(amplitude["frequency"], amplitude, color=color(number), linestyle=dash(number), label=str(name), lw=1.2)
     highest = float(spectrum.max())
-    ax.set(xlabel=label(spectrum["frequency"]), ylabel=label(spectrum), yscale="log")
+    ax.set(xlabel=label(spectrum["frequency"]), ylabel=label(spectrum))
+    set_log_scale(ax)
     ax.set_ylim(bottom=max(_FLOOR * highest, float(np.percentile(spectrum[1:], 1.0))))
     name_lines(ax)
     return ax

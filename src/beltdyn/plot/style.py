@@ -13,6 +13,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 from matplotlib.typing import LineStyleType
 
 P = ParamSpec("P")
@@ -77,6 +78,7 @@ _RULES: dict[Any, Any] = {
     "legend.frameon": False,
     "legend.fontsize": 9,
     "text.color": INK,
+    "text.parse_math": False,  # names of files and titles may hold dollars
     "xtick.color": INK,
     "ytick.color": INK,
 }
@@ -102,6 +104,13 @@ def styled(function: Callable[P, R]) -> Callable[P, R]:
             return function(*args, **kwargs)
 
     return draw
+
+
+def set_log_scale(ax: Axes) -> None:
+    """Make the vertical axis logarithmic, with numbers that need no setting of formulas."""
+    ax.set_yscale("log")
+    ax.yaxis.set_major_formatter(LogFormatter())
+    ax.yaxis.set_minor_formatter(LogFormatter())
 
 
 def new_figure(size: tuple[float, float] = SIZE) -> Figure:

@@ -5,7 +5,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from beltdyn.report.glyphs import can_be_charted, draw_areas, draw_levels, draw_lines, name_the_rest, write_words
+from beltdyn.report.glyphs import can_be_charted, draw_areas, draw_levels, draw_lines, name_the_rest, plain, write_words
 
 _HEIGHT = 340
 _FEW_NAMES, _LINE = 4, 24
@@ -64,9 +64,10 @@ def _chart(ax: Axes) -> Any:
         tags=[labels["x"]],
     )
     chart.toolbar.logo = None
-    chart.xaxis.axis_label, chart.yaxis.axis_label = labels["x"], labels["y"]
+    chart.xaxis.axis_label, chart.yaxis.axis_label = plain(labels["x"]), plain(labels["y"])
     chart.axis.axis_label_text_font_style = "normal"
-    chart.title.text = ax.get_title(loc="left") or ax.get_title()
+    title = ax.get_title(loc="left") or ax.get_title()
+    chart.title.text = plain(title)
     chart.title.text_font_style = "normal"
     for one in (*chart.axis, chart.title):
         for name in ("axis_label_text_font_size", "major_label_text_font_size", "text_font_size"):
@@ -77,7 +78,7 @@ def _chart(ax: Axes) -> Any:
     draw_levels(chart, ax)
     write_words(chart, ax)
     named += name_the_rest(chart, ax, named)
-    if [one.name for one in named] not in ([], [chart.title.text]):
+    if [one.name for one in named] not in ([], [title]):
         items = [LegendItem(label=one.name, renderers=[one.glyph]) for one in named]
         legend = Legend(items=items, orientation="horizontal", ncols="auto", click_policy="hide")
         legend.update(background_fill_color=None, border_line_color=None, label_text_font_size=_FONT, padding=2)

@@ -103,7 +103,16 @@ def write_words(chart: Any, ax: Axes) -> None:
                 "text_align": text.get_horizontalalignment(),
             }
             turned = {"angle": float(text.get_rotation()), "angle_units": "deg"}
-            chart.add_layout(Label(x=x, y=y, x_offset=right, y_offset=up, text=text.get_text(), **look, **turned))
+            chart.add_layout(
+                Label(x=x, y=y, x_offset=right, y_offset=up, text=plain(text.get_text()), **look, **turned)
+            )
+
+
+def plain(text: str) -> Any:
+    """Text as it is: what stands between two dollars Bokeh would set with MathJax, which a page does not hold."""
+    from bokeh.models import PlainText
+
+    return PlainText(text=text)
 
 
 def name_the_rest(chart: Any, ax: Axes, named: Sequence[Named]) -> list[Named]:

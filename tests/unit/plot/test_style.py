@@ -1,5 +1,7 @@
 """The style of figures: in force while they are drawn, and labels from the dataset."""
 
+import io
+
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,6 +18,8 @@ from beltdyn.plot.style import (
     label,
     name_lines,
     polar_or_new,
+    set_log_scale,
+    styled,
     tension_colors,
     unit,
 )
@@ -64,6 +68,25 @@ def test_a_legend_stands_above_unless_its_names_are_many_or_long(ax: Axes, names
     assert legend is not None
     corner = legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted())
     assert (corner.x0, corner.y0) == pytest.approx((1.0, 0.5) if beside else (0.0, 1.0))
+
+
+def test_dollars_in_names_are_no_formulas() -> None:
+    """As in names of files: matplotlib cannot set every one of them."""
+
+    @styled
+    def draw() -> Axes:
+        ax = axes_or_new(None)
+        set_log_scale(ax)
+        for name in ("$$E = mc^2$$", "$a", "$x_$"):
+            ax.plot([1.0, 1000.0], label=name)
+        ax.set_title("$$")
+        name_lines(ax)
+        return ax
+
+    ax = draw()
+    ax.get_figure().savefig(io.BytesIO(), format="svg")
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["$$E = mc^2$$", "$a", "$x_$"]
+    assert "1000" in [text.get_text() for text in ax.get_yticklabels()]
 
 
 def test_axes_without_lines_have_no_legend(ax: Axes) -> None:

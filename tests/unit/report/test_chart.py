@@ -13,7 +13,7 @@ def test_lines_keep_names_numbers_and_labels() -> None:
     ax.plot([0.0, 1.0, 2.0], [1.0, 2.0, 3.0], label="driven", linestyle="--")
     ax.axhline(2.5)
     (chart,) = charts(figure)
-    assert (chart.xaxis[0].axis_label, chart.yaxis[0].axis_label) == ("Time [s]", "Torque [N·m]")
+    assert (chart.xaxis[0].axis_label.text, chart.yaxis[0].axis_label.text) == ("Time [s]", "Torque [N·m]")
     first, second = chart.renderers
     assert first.data_source is second.data_source  # read out together
     np.testing.assert_array_equal(first.data_source.data["y0"], [3.0, np.nan, 5.0])

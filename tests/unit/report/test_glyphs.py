@@ -30,7 +30,7 @@ def test_bands_areas_marks_and_words_are_drawn() -> None:
     boxes = [tuple(bound if isinstance(bound, float) else None for bound in box) for box in found]
     assert (None, None, 0.0, 0.5) in boxes
     assert (1.0, 3.0, None, None) in boxes
-    assert [one.text for one in chart.center if hasattr(one, "x_offset")] == ["1"]
+    assert [one.text.text for one in chart.center if hasattr(one, "x_offset")] == ["1"]
     assert [item.label.value for item in chart.legend[0].items] == ["first", "between", "bound", "critical"]
     points = [one.data_source.data for one in chart.renderers if list(one.data_source.data.get("x", [])) == [1.0, 2.0]]
     np.testing.assert_array_equal(points[0]["y"], [1.0, 1.5])
@@ -71,7 +71,7 @@ def test_panels_beside_each_other_have_the_label_that_they_share() -> None:
     left.plot([0.0, 1.0])
     right.plot([0.0, 1.0])
     left.set_ylabel("Force [N]")
-    assert [chart.yaxis[0].axis_label for chart in charts(figure)] == ["Force [N]", "Force [N]"]
+    assert [chart.yaxis[0].axis_label.text for chart in charts(figure)] == ["Force [N]", "Force [N]"]
 
 
 @pytest.mark.parametrize("bins", [10, 97])
