@@ -70,10 +70,11 @@ def test_a_report_fits_screens(
 def test_formulas_in_titles_and_names_are_fetched_from_nowhere(browser: Any, tmp_path: Path) -> None:
     """Bokeh would set what stands between such marks with MathJax, which it may fetch; the browser is cut off."""
     text = files("beltdyn").joinpath("examples", "alternator_drive.toml").read_text(encoding="utf-8")
-    found = bd.steady_state(bd.loads(text).replace(title=r"$$E = mc^2$$ <img src=https://example.com/a.png>"))
+    found = bd.steady_state(bd.loads(text).replace(name=r"$$E = mc^2$$ <img src=https://example.com/a.png>"))
     names = ["$$a$$", r"\(b\)", r"\[c\]"]
     results = [bd.open_result(found.save(tmp_path / f"{name}.nc")) for name in names]
-    for number, shown in enumerate((found, results)):
+    several: list[Result | Sequence[Result]] = [found, results]
+    for number, shown in enumerate(several):
         report = bd.write_report(shown, tmp_path / f"$${number}$$.html")
         context = browser.new_context(offline=True)
         page, asked, faults = context.new_page(), list[str](), list[str]()

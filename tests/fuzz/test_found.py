@@ -11,7 +11,9 @@ import pytest
 
 from beltdyn.errors import ModelError
 from beltdyn.model import advise, install, load, loads, tensioner_balances
-from beltdyn.results import open_run
+from beltdyn.results import open_result, open_run
+from beltdyn.solve import simulate
+from beltdyn.solve.checkpoint import is_checkpoint, read_checkpoint
 from validation.published import demo_text
 
 LENGTH, WIDTH = "length = 1.2727", "width = 0.01"
@@ -142,6 +144,16 @@ def test_tables_are_quoted_only_where_they_are_tables(tmp_path: Path, content: s
 def test_pipes_and_devices_are_not_read(tmp_path: Path, name: str) -> None:
     os.mkfifo(tmp_path / "pipe")
     table = demo_text().replace(TORQUE, f'torque = {{ kind = "table", file = "{name}" }}')
-    for read in (lambda: loads(table, tmp_path), lambda: load(tmp_path / name), lambda: open_run(tmp_path / name)):
-        with pytest.raises(ModelError, match=r"it is (a device or a pipe, )?not a file"):
+    path = tmp_path / name
+    later = loads(demo_text()).with_({"simulation.start": {"file": str(path)}})
+    for read in (
+        lambda: loads(table, tmp_path),
+        lambda: load(path),
+        lambda: open_run(path),
+        lambda: open_result(path),
+        lambda: read_checkpoint(path),
+        lambda: simulate(later),
+    ):
+        with pytest.raises(ModelError, match="it is a device or a pipe, not a file"):
             read()
+    assert not is_checkpoint(path)

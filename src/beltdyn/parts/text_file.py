@@ -1,10 +1,11 @@
 """Texts from files, and TOML from texts, within bounds that keep reading quick and memory small."""
 
+import os
 import re
 import stat
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 LONGEST_TOML = 4_000_000
 """Bytes of the longest drive file or catalogue."""
@@ -12,6 +13,7 @@ LONGEST_TOML = 4_000_000
 LONGEST_TABLE = 100_000_000
 """Bytes of the longest CSV file."""
 
+_NO_WAITING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
 _DEEPEST = 32
 _NO_STRUCTURE = re.compile(
     r'"""(?:\\.|[^\\])*?"""|' r"'''.*?'''|" r'"(?:\\.|[^"\\\n])*"|' r"'[^'\n]*'|" r"(?P<comment>\#[^\n]*)", re.DOTALL
@@ -65,16 +67,30 @@ def read_bytes(path: Path, longest: int) -> bytes:
     ValueError
         If it is no regular file, is too long, or its name is impossible.
     """
-    status = path.stat()
-    if stat.S_ISDIR(status.st_mode):
-        raise ValueError("is a directory")
-    if not stat.S_ISREG(status.st_mode):
-        raise ValueError("it is a device or a pipe, not a file")
-    with path.open("rb") as file:
-        data = file.read(longest + 1)
+    with open_file(path) as file:
+        data, size = file.read(longest + 1), os.fstat(file.fileno()).st_size
     if len(data) > longest:
-        raise ValueError(f"it holds {max(status.st_size, len(data)):,} bytes, and {longest:,} are the limit")
+        raise ValueError(f"it holds {max(size, len(data)):,} bytes, and {longest:,} are the limit")
     return data
+
+
+def open_file(path: Path) -> BinaryIO:
+    """Open a regular file to read it, and nothing else: a pipe would let the reader wait without end.
+
+    Raises
+    ------
+    OSError
+        If it cannot be opened.
+    ValueError
+        If it is no regular file, or its name is impossible.
+    """
+    if path.is_dir():  # which some systems do not open
+        raise ValueError("is a directory")
+    file = os.open(path, os.O_RDONLY | _NO_WAITING)
+    if not stat.S_ISREG(os.fstat(file).st_mode):
+        os.close(file)
+        raise ValueError("it is a device or a pipe, not a file")
+    return os.fdopen(file, "rb")
 
 
 def parse_toml(text: str) -> dict[str, Any]:

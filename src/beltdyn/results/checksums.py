@@ -19,6 +19,8 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from beltdyn.parts.text_file import open_file
+
 PAGE = 4096
 """Bytes that have a checksum; the system writes a page as a whole, or not at all."""
 
@@ -161,8 +163,8 @@ def verify(path: Path) -> bool:
     ------
     DamageError
         If it is not.
-    OSError
-        If it cannot be read.
+    OSError, ValueError
+        If it cannot be read, or is no regular file.
     """
     status = path.stat()
     return _verify(path, (status.st_dev, status.st_ino, status.st_mtime_ns, status.st_size))
@@ -170,7 +172,7 @@ def verify(path: Path) -> bool:
 
 @lru_cache(maxsize=64)
 def _verify(path: Path, _stamp: tuple[int, ...]) -> bool:
-    with path.open("rb") as file:
+    with open_file(path) as file:
         for attempt in range(_ATTEMPTS):
             found = find_checksums(file)
             wrong = [] if found is None else list(_wrong_pages(file, found))

@@ -1,6 +1,5 @@
 """The labelled dataset of a run, from arrays in memory or lazily from its file."""
 
-import stat
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -132,8 +131,6 @@ def read_dataset(path: Path) -> "xr.Dataset":
     from beltdyn.results.stored_values import open_values
 
     try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise ValueError("it is not a file")
         require_intact(path)
         dataset = open_values(path)
     except Exception as error:  # readers of HDF5 raise many unrelated types where bytes are wrong

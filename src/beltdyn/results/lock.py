@@ -10,6 +10,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from beltdyn.errors import ModelError
+from beltdyn.parts.text_file import open_file
 from beltdyn.results.checksums import find_checksums
 
 _OURS: ContextVar[frozenset[Path]] = ContextVar("_OURS", default=frozenset())
@@ -100,9 +101,9 @@ def lock_file(path: Path) -> Path:
 
 def _is_written_by_another_name(path: Path) -> bool:
     """Whether a file that has hard links grows under another name: it tells who has locked it."""
-    with suppress(OSError):
+    with suppress(OSError, ValueError):
         if path.stat().st_nlink > 1:
-            with path.open("rb") as file:
+            with open_file(path) as file:
                 found = find_checksums(file)
             return found is not None and bool(found.owner) and _is_held(Path(found.owner))
     return False

@@ -23,6 +23,7 @@ from beltdyn.machines.loads.shaft import ShaftLoads
 from beltdyn.machines.profiles.functions import Profiles
 from beltdyn.model import Drive
 from beltdyn.model.instants import Instants
+from beltdyn.parts.text_file import open_file
 from beltdyn.quadrature import Quadrature
 from beltdyn.results.atomic import atomic_path, remove_leftovers, target_of
 from beltdyn.results.friction_work import FrictionWork, WorkSoFar
@@ -189,8 +190,10 @@ def read_checkpoint(path: Path) -> Checkpoint:
         If there is none, it was written by another version, or is damaged.
     """
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             head, content = file.readline(_LONGEST_HEAD), file.read()
+    except ValueError as error:
+        raise ModelError(f"{path} is no checkpoint of a run: {error}. Run the drive again.") from error
     except OSError as error:
         raise ModelError(
             f"there is no checkpoint {path} to go on from: the run is complete, ended before the first one, or is a "
@@ -214,7 +217,7 @@ def read_checkpoint(path: Path) -> Checkpoint:
 
 def is_checkpoint(path: Path) -> bool:
     """Tell whether a file is a checkpoint of beltdyn."""
-    with suppress(OSError), path.open("rb") as file:
+    with suppress(OSError, ValueError), open_file(path) as file:
         return file.read(len(_HEAD)) == _HEAD.encode()
     return False
 

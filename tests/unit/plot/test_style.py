@@ -84,8 +84,10 @@ def test_dollars_in_names_are_no_formulas() -> None:
         return ax
 
     ax = draw()
-    ax.get_figure().savefig(io.BytesIO(), format="svg")
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["$$E = mc^2$$", "$a", "$x_$"]
+    plt.gcf().savefig(io.BytesIO(), format="svg")
+    legend = ax.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["$$E = mc^2$$", "$a", "$x_$"]
     assert "1000" in [text.get_text() for text in ax.get_yticklabels()]
 
 

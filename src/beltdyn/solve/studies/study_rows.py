@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from beltdyn.errors import ModelError, OutputError
+from beltdyn.parts.text_file import LONGEST_TABLE, read_text
 from beltdyn.results.atomic import atomic_path, unwritable
 from beltdyn.solve.studies.point_work import Outcome
 from beltdyn.solve.studies.study_plan import Plan
@@ -104,8 +105,8 @@ class StudyRows:
         if not self.path.exists():
             return []
         try:
-            text = self.path.read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
+            text = read_text(self.path, LONGEST_TABLE)
+        except (OSError, ValueError) as error:
             raise ModelError(f"{self.path} cannot be read ({error}). Move it away, or choose another name.") from error
         headings, *rows = csv.reader(io.StringIO(text[: text.rfind("\n") + 1])) if "\n" in text else [[]]
         numbers = 1 + len(self._plan.paths)
