@@ -84,6 +84,38 @@ def creep_speed_loss(tight: float, slack: float, law: StretchParameters, arc: fl
     return (first - second) / tanh(0.5 * arc / layer) / rim
 
 
+def entry_creep(elastic: float, saturation: float, lengths: float) -> float:
+    """Slip velocity v0 at the entry of an arc, which Coulomb's friction does not have.
+
+    Below the cap the slip velocity grows e-fold over each layer length, to v0 + V dT / EA at the exit. Where that is
+    above v_c, the belt slides from v_c on, after n' layer lengths: v0 = v_c e^-n' with
+    n' = n - (V dT / EA - v_c + v0) / v_c, which Lambert's function solves. The belt slips by v0 more, and friction
+    takes v0 dT more.
+
+    Parameters
+    ----------
+    elastic
+        V dT / EA, by which the belt's speed changes along the arc, m/s, not negative.
+    saturation
+        v_c, m/s.
+    lengths
+        n, the arc over the layer length.
+
+    Returns
+    -------
+    float
+        m/s; v_c where the whole arc slides.
+    """
+    from scipy.special import lambertw
+
+    creep = elastic / saturation
+    if creep >= lengths:
+        return saturation
+    if creep <= -expm1(-lengths):
+        return elastic * exp(-lengths) / -expm1(-lengths)
+    return saturation * float(-lambertw(-exp(creep - 1.0 - lengths)).real)
+
+
 def creeping_arc(
     x: FloatArray,
     entry: float,

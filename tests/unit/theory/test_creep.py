@@ -4,9 +4,17 @@ from math import exp
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from beltdyn.stretch import Green
-from beltdyn.theory.creep import creep_speed_loss, creeping_arc, friction_along_arc, layer_length, tension_along_arc
+from beltdyn.theory.creep import (
+    creep_speed_loss,
+    creeping_arc,
+    entry_creep,
+    friction_along_arc,
+    layer_length,
+    tension_along_arc,
+)
 
 LAW, ARC, TIGHT, SLACK = Green(1e5), 0.25, 1900.0, 1300.0
 X = np.linspace(0.0, ARC, 4001)
@@ -67,3 +75,18 @@ def test_cap_gives_the_capstan_ratio() -> None:
     )
     assert tension[-1] / tension[0] == pytest.approx(exp(0.3 * ARC / 0.08), rel=1e-4)
     np.testing.assert_allclose(friction, -0.3 * tension / 0.08, rtol=1e-4)
+
+
+@pytest.mark.parametrize("creep", [0.1, 0.5, 2.0, 3.5])
+@pytest.mark.parametrize("lengths", [0.5, 2.0, 4.0, 8.0])
+def test_creep_at_the_entry_is_that_of_an_integrated_arc(creep: float, lengths: float) -> None:
+    """dv/dn = min(v, v_c): the slip velocity grows by V dT / EA from v0 on; where it cannot, the whole arc slides."""
+    saturation = 0.02
+    found = entry_creep(creep * saturation, saturation, lengths)
+    if creep >= lengths:
+        assert found == saturation
+        return
+    grown = solve_ivp(
+        lambda _, v: np.minimum(v, saturation), (0.0, lengths), [found], rtol=1e-10, atol=1e-14, max_step=0.01
+    ).y[0, -1]
+    assert grown - found == pytest.approx(creep * saturation, rel=1e-4)

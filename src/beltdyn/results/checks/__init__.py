@@ -16,7 +16,7 @@ from beltdyn.results.checks.contact import (
     lifted_by_speed,
     slack_spans,
 )
-from beltdyn.results.checks.creep import impossible_slip, regularised_slip
+from beltdyn.results.checks.creep import impossible_slip, regularised_slip, smoothed_friction
 from beltdyn.results.checks.ending import NOTHING_RECORDED, unfinished, unsettled
 from beltdyn.results.checks.energy import numerical_damping, open_account, unbalanced_powers
 from beltdyn.results.checks.evidence import Check, Evidence
@@ -48,6 +48,7 @@ CHECKS: tuple[Check, ...] = (
     gross_slip_before,
     impossible_slip,
     regularised_slip,
+    smoothed_friction,
     driving_loads,
     mean_torques,
     begun_by_means,

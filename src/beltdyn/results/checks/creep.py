@@ -7,12 +7,19 @@ import numpy as np
 from beltdyn.model.advice import other_creep
 from beltdyn.parts.finding import Finding, listing
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.theory.creep import entry_creep
 
 SLIP_DEFECT = 5e-4
 """Part of the speed by which slip may fall short of elastic creep without a warning."""
 
 LEAST_SLIP = 1e-3
 """Slip up to which it does not matter what makes it."""
+
+LOSS_LIMIT = 0.02
+"""Part of the losses by which they may be wrong without a warning."""
+
+_LEAST = 0.01
+"""Friction without what its slope adds, over that, at least."""
 
 _TRANSMITS = 0.01
 """Part of the power put in above which a pulley counts as one that transmits power."""
@@ -75,6 +82,39 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
             f"Slip is too large by as much, and friction losses by about {losses:.2g} W.",
             f"To have the slip of the belt, {other_creep(evidence.drive, 0.1)}.",
         )
+
+
+def smoothed_friction(evidence: Evidence) -> Iterator[Finding]:
+    """Losses of friction that the slope of its law adds, by the creep at the entries of arcs (`entry_creep`)."""
+    window, lost = evidence.window, evidence.balance.lost
+    if evidence.drive.ends or not window.turns or any(regularised_slip(evidence)):
+        return
+    added = [_added_by_slope(evidence, number) for number in range(len(evidence.pulleys))]
+    power = sum(added)
+    if lost > power and power > LOSS_LIMIT * (lost - power):
+        worst = evidence.pulleys[int(np.argmax(added))]
+        yield Finding(
+            f"friction builds up so slowly with the slip velocity that it takes about {power:.2g} W more than a "
+            f"belt's creep, most on {worst.name}.",
+            f"Losses are {power / (lost - power):.1%} too large, those of friction by "
+            f"{power / max(evidence.balance.losses['friction'] - power, _LEAST * power):.0%}.",
+            f"To have the losses of the belt, {other_creep(evidence.drive, 0.1)}.",
+        )
+
+
+def _added_by_slope(evidence: Evidence, number: int) -> float:
+    """Power that friction takes on a pulley beyond Coulomb's, W."""
+    drive, pulley = evidence.drive, evidence.pulleys[number]
+    radius, friction = float(drive.radii[number]), float(drive.frictions[number])
+    tensions = np.asarray(evidence.recorded["span_tension"][evidence.window.first :]).mean(axis=0)
+    tension, rim = 0.5 * float(tensions[number - 1] + tensions[number]), abs(pulley.speed) * radius
+    pressing, pull = tension - drive.belt.mass_per_length * rim**2, abs(pulley.belt_torque) / radius
+    if not min(rim, pressing, pull, friction) > 0.0:
+        return 0.0
+    by_strain = rim / drive.belt.local_stiffness(tension)
+    saturation = float(drive.friction_parameters.saturation(pressing / radius, friction, rim))
+    lengths = pulley.wrap_angle * friction * pressing * by_strain / saturation
+    return entry_creep(by_strain * pull, saturation, lengths) * pull
 
 
 def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
