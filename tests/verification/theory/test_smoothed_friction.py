@@ -35,7 +35,8 @@ def drive_of(seed: int) -> Drive:
     distance = float(rng.uniform(0.15, 0.5) + radii.sum())
     tension = ribs * float(rng.uniform(20.0, 60.0)) * (1.0 if profile == "PJ" else 2.0)
     speed, friction, use = (float(rng.uniform(*ends)) for ends in ((3.0, 20.0), (0.2, 0.5), (0.2, 0.6)))
-    belt = Belt(profile=profile, ribs=ribs, installed_tension=tension)
+    section: dict[str, Any] = {"profile": profile, "ribs": ribs}
+    belt = Belt(**section, installed_tension=tension)
     first, second = (float(radius) + belt.pitch_offset for radius in radii)
     wrap = pi - 2.0 * asin(abs(first - second) / distance)
     pressing = tension - belt.mass_per_length * speed**2
