@@ -46,7 +46,9 @@ class Ring(NamedTuple):
     wraps: FloatArray
 
     @classmethod
-    def of(cls, centers: Sequence[FloatArray], radii: Sequence[float] | FloatArray, idle: list[bool]) -> "Ring":
+    def of(
+        cls, centers: Sequence[FloatArray] | FloatArray, radii: Sequence[float] | FloatArray, idle: list[bool]
+    ) -> "Ring":
         """With the wraps of its path."""
         path = Path(np.array(centers), np.array(radii))
         return cls(path.centers, path.radii, idle, path.wrap_angles)
@@ -87,6 +89,12 @@ def drawn_layout(rng: np.random.Generator, count: int, small: float) -> tuple[Ri
         if tensioning:
             carried = base + number
     return ring, None if carried is None else order.index(carried)
+
+
+def idler_between(radius: float, wrap: float) -> Ring:
+    """Pulleys of 80 and 30 mm, 300 mm apart, with an idler of a signed radius (m) and wrap (rad) before the second."""
+    two = Ring.of(np.array([[0.0, 0.0], [0.3, 0.0]]), [0.08, 0.03], [False, False])
+    return _inserted(two, 0, radius, wrap, 0.5)
 
 
 def _inserted(ring: Ring, span: int, radius: float, wrap: float, part: float) -> Ring:

@@ -97,8 +97,18 @@ def without_hysteresis(system: System) -> System:
         Any.
     """
     if isinstance(system.element, Quintic):
-        system = _with_section(system, bending_hysteresis=0.0)
+        system = with_bending_loss(system, 0.0)
     return system._replace(hysteresis=system.hysteresis[:0].view(np.recarray))
+
+
+def with_bending_loss(system: System, factor: float) -> System:
+    """The same drive with the hysteresis of bending on a mesh that stays times a factor."""
+    return _with_section(system, bending_hysteresis=factor * system.element.section.bending_hysteresis)
+
+
+def loses_in_bending(system: System) -> bool:
+    """Whether the belt has hysteresis of bending on a mesh that stays."""
+    return bool(system.element.section.bending_hysteresis > 0.0)
 
 
 def _with_section(system: System, **numbers: Any) -> System:

@@ -156,7 +156,7 @@ def test_every_example(name: str) -> None:
         with pytest.raises(bd.ModelError, match="open belt"):
             steady_state(drive)
     elif name == "slip_through":
-        with pytest.raises(ConvergenceError, match="slips through on conveyor"):
+        with pytest.raises(ConvergenceError, match="slips on `"):
             steady_state(drive)
     else:
         assert steady_state(drive).resolution.errors["peak pressure"] < 0.01

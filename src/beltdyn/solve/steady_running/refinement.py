@@ -20,6 +20,8 @@ from beltdyn.system.observations import Observations
 from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
+_FINER = FINER, 0.9 * FINER, 1.15 * FINER
+"""Elements of a finer mesh over those of the one before; the others where the first one finds nothing."""
 _MOST_STARTS = 4
 """Meshes at rest from which steady running is sought."""
 _OF_TENSION = 0.3
@@ -131,24 +133,45 @@ def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict
     Returns
     -------
     errors : dict of str to float
-        Differences between the last two meshes, relative: "tension", "mean pressure", "peak pressure", "slip".
+        Differences between the last two meshes, relative: "tension", "mean pressure", "peak pressure", "slip". They
+        exceed the tolerance where no finer mesh finds steady running, or would have too many elements.
     rule
         That of the last mesh.
 
     Raises
     ------
     ConvergenceError
-        If a finer mesh finds no steady running.
+        If no finer mesh finds steady running.
     """
-    before = _solution(search)
+    before, errors = _solution(search), dict[str, float]()
     while True:
-        rule = rule.finer()
-        search.move_to(_mesh(search.drive, before, rule))
-        after = _solution(search)
+        finer = _moved(search, before, rule)
+        if finer is None:
+            if errors:
+                return errors, rule
+            raise ConvergenceError(
+                f"steady running is found with {before.system.nodes} elements, but on no finer mesh, so that its "
+                "errors are not known. Give the number of elements, or simulate the drive over time with `beltdyn run`."
+            )
+        rule, after = finer, _solution(search)
         errors = _differences(before, after)
         if is_fine(errors, tolerance) or rule.elements or after.system.nodes > MOST_ELEMENTS:
             return errors, rule
         before = after
+
+
+def _moved(search: SteadySearch, now: Solution, rule: MeshRule) -> MeshRule | None:
+    """Move a search to a finer mesh and give its rule; None, and the search as it was, if none of some is found."""
+    for factor in _FINER:
+        finer, trial = rule.finer(factor), copy(search)
+        try:
+            trial.move_to(_mesh(search.drive, now, finer))
+        except ConvergenceError:
+            search.iterations = trial.iterations
+            continue
+        vars(search).update(vars(trial))
+        return finer
+    return None
 
 
 def against_coarser(search: SteadySearch, rule: MeshRule) -> tuple[dict[str, float], SteadySearch]:

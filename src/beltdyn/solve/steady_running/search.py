@@ -5,7 +5,6 @@ under a small part of the loads.  Each way is gone in as long steps as Newton's 
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,9 +14,9 @@ from beltdyn.model import Drive
 from beltdyn.solve.rest.staying import TOLERANCE, Standing, anchor_at, transfer
 from beltdyn.solve.steady_running.continuation import go_on
 from beltdyn.solve.steady_running.newton import FOUND, SteadyWork, find_steady, make_step, steady_work
-from beltdyn.solve.steady_running.slip_limit import slips_through
+from beltdyn.solve.steady_running.slip_limit import GROSS, Passed, Setting, gross_slip, slip_limit
 from beltdyn.system.arrays import System
-from beltdyn.system.build_staying import on_other_mesh
+from beltdyn.system.build_staying import loses_in_bending, on_other_mesh, with_bending_loss
 from beltdyn.system.constant_drive import (
     constant_drive,
     drive_shafts,
@@ -39,26 +38,17 @@ where no solution is any more, and what a drive transmits comes out 0.2 % too la
 _FIRST_LOAD = 0.05
 _SOFT = 0.05
 """Length over which slow changes of the stretch are smoothed at first on another mesh, over that of the drive."""
+_SMOOTHINGS = 10.0, 100.0
+"""Of friction at first on another mesh, where the search fails without."""
+_BISECTIONS = 8
+"""Between two solutions, to learn at which load a pulley begins to slip as a whole."""
+_SHARP = 1.6
+"""Slip over the least gross one, up to which that solution shows what a pulley transmits."""
 _FIRST_SPEEDS = (1.0, 0.3, 0.1, 0.03, 0.01)
 _NEAR = 1e-3
 """Part of the way to another push at which the tangent still tells the solution."""
 _GENTLE = 0.3
 """Slip velocity at which friction is fully used at first, over the belt's speed, at least."""
-
-
-class Setting(NamedTuple):
-    """How far a drive is from the one that is asked for."""
-
-    speed: float = 1.0
-    """Factor on prescribed speeds."""
-    load: float = 1.0
-    """Factor on torques and loads."""
-    smoothing: float = 1.0
-    """Factor on the slip velocity at which friction is fully used."""
-    support: float = 0.0
-    """Part of the torque that keeps a motor at the speed at which it was held."""
-    stretch_length: float = 1.0
-    """Factor on the length over which hysteresis smoothes slow changes of the stretch; small, it is viscous damping."""
 
 
 class SteadySearch:
@@ -81,6 +71,7 @@ class SteadySearch:
         self.drive, self._time = drive, time
         self.state, self.iterations, self.setting = state, 0, Setting()
         self.tolerance = TOLERANCE
+        self._passed = list[Passed]()
         self._held: int | None = None
         self._supported: int | None = None
         self._held_speed = self._support = 0.0
@@ -166,16 +157,69 @@ class SteadySearch:
             self._held_speed = speed / float(self.drive.path.radii[driver])
             self._hold(driver)
         gentle = Setting(1.0, _FIRST_LOAD, self._gentle(speed, rest.tension))
-        if not any(self._start(rest.place, speed, gentle._replace(speed=first)) for first in _FIRST_SPEEDS):
-            raise ConvergenceError(
-                f"no steady running at t = {self._time:g} s, not even at {_FIRST_SPEEDS[-1]:.0%} of the speed "
-                f"and under {_FIRST_LOAD:.0%} of the loads. Check speeds, loads and tension with `beltdyn check`, "
-                "or look at a run over time with `beltdyn run`."
-            )
-        for target in (gentle, gentle._replace(smoothing=1.0), Setting()):
-            self._follow(target)
+        if not self._run_up(rest.place, speed, gentle):
+            raise self._refusal()
         if driver is not None:
             self._release(driver)
+
+    def _run_up(self, place: FloatArray, speed: float, gentle: Setting) -> bool:
+        """Go from rest to the speeds and loads that are asked for; where that fails, without bending losses at first.
+
+        Where the belt bends over an idler of small wrap, its curvature nowhere settles, and hysteresis that turns its
+        sign there leaves Newton's method no way from a belt at rest.
+        """
+        bends_with_loss, passed = loses_in_bending(self._system), list[Passed]()
+        for bending_loss in (1.0, 0.0) if bends_with_loss else (1.0,):
+            first = gentle._replace(bending_loss=bending_loss)
+            targets = first, first._replace(smoothing=1.0), Setting(bending_loss=bending_loss), Setting()
+            if not any(self._start(place, speed, first._replace(speed=part)) for part in _FIRST_SPEEDS):
+                continue
+            self._passed = []
+            if all(self.setting == target or self._reach(target) for target in targets):
+                return True
+            passed = passed or self._passed
+        self._passed = passed
+        return False
+
+    def _refusal(self) -> ConvergenceError:
+        """Say why there is no steady running."""
+        passed = self._refined() or [self._here()]
+        reason = slip_limit(self.drive, self.constant, self._at(Setting()), passed)
+        return ConvergenceError(f"no steady running found at t = {self._time:g} s: {reason}")
+
+    def _refined(self) -> list[Passed]:
+        """What was passed on the way to the loads, with more between where a pulley begins to slip as a whole."""
+        passed = self._confirmed()
+        for _ in range(_BISECTIONS):
+            at, slip = gross_slip(self.drive, self.constant, passed)
+            if at == 0 or slip < _SHARP * GROSS:
+                break
+            before, after = passed[at - 1], passed[at]
+            middle, count = _between(before.setting, after.setting, 0.5), len(self._passed)
+            if not any(self._solve(middle, one.unknowns, 0.5) is not None for one in (before, after)):
+                break
+            passed[at:at] = self._passed[count:]
+        return passed
+
+    def _confirmed(self) -> list[Passed]:
+        """What was passed and is a solution by the tolerance of the search too, and further ones close to the last."""
+        passed, beyond = list(self._passed), list[Passed]()
+        while len(passed) > 1 and self._solve(passed[-1].setting, passed[-1].unknowns, 1.0) is None:
+            beyond.append(passed.pop())
+        if beyond and passed:
+            fails = beyond[-1].setting
+            for _ in range(_BISECTIONS):
+                middle = _between(passed[-1].setting, fails, 0.5)
+                if self._solve(middle, passed[-1].unknowns, 1.0) is None:
+                    fails = middle
+                else:
+                    passed.append(self._passed[-1])
+        return passed
+
+    def _here(self) -> Passed:
+        position, velocity = self.state.position.copy(), self.state.velocity.copy()
+        state = State(position, velocity, np.zeros_like(position))
+        return Passed(self.setting, state, self.belt_parameter, self.unknowns())
 
     def move_to(self, lengths: FloatArray) -> None:
         """Go on to another mesh of the same drive.
@@ -197,8 +241,9 @@ class SteadySearch:
         self.state, self.constant = transfer(self.constant, self.state, other), other
         self._hold(self._held)
         target = self.setting
-        soft = target._replace(stretch_length=_SOFT)
-        if not (self._try(soft) and self._reach(target) if other.hysteresis.size else self._try(target)):
+        soft = target._replace(stretch_length=_SOFT if other.hysteresis.size else 1.0)
+        softer = soft._replace(bending_loss=0.0), *(soft._replace(bending_loss=0.0, smoothing=s) for s in _SMOOTHINGS)
+        if not any(self._try(first) and (first == target or self._reach(target)) for first in (soft, *softer)):
             raise ConvergenceError(
                 f"steady running is found with fewer elements, but not with the {other.nodes} that force_tolerance "
                 "asks for. Give a larger force_tolerance."
@@ -304,9 +349,7 @@ class SteadySearch:
     def _follow(self, target: Setting) -> None:
         """Go on to another setting, or say why that is not possible."""
         if not self._reach(target):
-            asked = self._at(Setting())
-            seen = slips_through(self.drive, self.constant, self.state, self.setting.load, asked)
-            raise ConvergenceError(f"no steady running at t = {self._time:g} s: {seen}")
+            raise self._refusal()
 
     def _reach(self, target: Setting) -> bool:
         """Go on to another setting; False if the way ends before."""
@@ -340,6 +383,8 @@ class SteadySearch:
         self.iterations += iterations
         if status == FOUND:
             self.setting, self._moments = setting, self._work.equations.forces.moment.copy()
+            if setting.smoothing == 1.0:
+                self._passed.append(self._here())
             return True
         self.place(before)
         return False
@@ -357,7 +402,8 @@ class SteadySearch:
             offset[self._supported] += setting.support * self._support
         friction, hysteresis = system.law.friction.smoothed(setting.smoothing), system.hysteresis.copy()
         hysteresis["stretch_length"] *= setting.stretch_length
-        return system._replace(law=system.law._replace(friction=friction), hysteresis=hysteresis)
+        system = system._replace(law=system.law._replace(friction=friction), hysteresis=hysteresis)
+        return system if setting.bending_loss == 1.0 else with_bending_loss(system, setting.bending_loss)
 
 
 def _between(begin: Setting, end: Setting, part: float) -> Setting:

@@ -1,7 +1,15 @@
-"""Why a drive has no steady running: which pulley slips through, and what it transmits at most."""
+"""Why a drive has no steady running: which pulley slips, and the torque that it transmits at most.
+
+Beyond gross slip a solution may go on: a belt that slows down while its driver turns is pressed to the pulleys by what
+its inertia took before.  What a pulley transmits is told where its slip becomes gross.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.parts.quantity import RPM
 from beltdyn.system.arrays import System
@@ -11,51 +19,124 @@ from beltdyn.system.observe import observe
 from beltdyn.system.state import State
 
 _FULL = 0.9
-"""Use of friction of a pulley that slips through, at least."""
+"""Use of friction of a pulley that slips as a whole, at least."""
 _ALIKE = 0.98
 """Of pulleys that use so much of the friction that the worst one does, the one that takes most power is named."""
+_MOST = 0.99
+"""Slip from which the speed without slip is told, at most."""
+GROSS = 0.05
+"""Slip that is gross: creep is a few strains of the belt."""
 
 
-def slips_through(drive: Drive, system: System, state: State, load: float, asked: System) -> str:
-    """Say how much the drive transmits.
+class Setting(NamedTuple):
+    """How far a drive is from the one that is asked for."""
+
+    speed: float = 1.0
+    """Factor on prescribed speeds."""
+    load: float = 1.0
+    """Factor on torques and loads."""
+    smoothing: float = 1.0
+    """Factor on the slip velocity at which friction is fully used."""
+    support: float = 0.0
+    """Part of the torque that keeps a motor at the speed at which it was held."""
+    stretch_length: float = 1.0
+    """Factor on the length over which hysteresis smoothes slow changes of the stretch; small, it is viscous damping."""
+    bending_loss: float = 1.0
+    """Factor on the hysteresis of bending."""
+
+
+class Passed(NamedTuple):
+    """Steady running on the way to the loads that are asked for."""
+
+    setting: Setting
+    state: State
+    belt_parameter: float
+    """Length of unstretched belt that passes in a second, m/s."""
+    unknowns: FloatArray
+    """As from `SteadySearch.unknowns`."""
+
+
+def slip_limit(drive: Drive, system: System, asked: System, passed: Sequence[Passed]) -> str:
+    """Name the pulley that slips, and say how much it transmits.
 
     Parameters
     ----------
     drive, system
         The drive.
-    state
-        The last steady running on the way to the loads that are asked for.
-    load
-        Factor on the loads there.
     asked
         The drive under the loads that are asked for.
+    passed
+        Steady running on the way there, in the order of the search.
     """
-    seen = observe(system, np.zeros(1), state.position[None], state.velocity[None])
-    touched, normal, friction = (one[0] for one in (seen.contact_pulley, seen.normal_force, seen.friction_force))
+    slips = np.array([_slips(drive, system, one) for one in passed])
+    last, (at, slip) = passed[-1], gross_slip(drive, system, passed)
+    here = passed[at] if slip > GROSS else last
+    torques, used = _transmitted(system, here)
+    used[[_idles(asked, here, p) for p in range(used.size)]] = 0.0
+    taken = torques * here.state.velocity[system.first_body :][: used.size]
+    most = np.where(used > _ALIKE * used.max(), taken, -np.inf)
+    worst = int(np.argmax(most if slip <= GROSS else np.where(slips[0] > GROSS, -1.0, slips[at])))
+    if slip <= GROSS and used[worst] < _FULL:
+        return (
+            f"the search ends at {last.setting.load:.1%} of the loads, where `{drive.pulleys[worst].name}` uses "
+            f"{used[worst]:.0%} of its friction. Simulate the drive over time with `beltdyn run`."
+        )
+    torque = abs(float(torques[worst]))
+    wanted = abs(_asked_of(drive, asked, last, slips[-1], worst))
+    of = f" of the {wanted:.4g} N m asked" if wanted > torque else ""
+    speed = RPM * abs(float(here.state.velocity[system.first_body + worst]))
+    return (
+        f"the belt slips on `{drive.pulleys[worst].name}`, which transmits at most {torque:.4g} N m{of} at this "
+        f"tension ({speed:.4g} rpm). Raise the tension, the friction or the wrap angle, or reduce the load."
+    )
+
+
+def gross_slip(drive: Drive, system: System, passed: Sequence[Passed]) -> tuple[int, float]:
+    """Find the first of the solutions in which a pulley slips as a whole that did not at first, and its slip.
+
+    Without one, 0 and 0. An idler that slips at the least loads already limits nothing.
+    """
+    if not passed:
+        return 0, 0.0
+    slips = np.array([_slips(drive, system, one) for one in passed])
+    slips[:, slips[0] > GROSS] = 0.0
+    beyond = np.flatnonzero(np.max(slips, axis=1) > GROSS)
+    return (int(beyond[0]), float(np.max(slips[beyond[0]]))) if beyond.size else (0, 0.0)
+
+
+def _slips(drive: Drive, system: System, one: Passed) -> FloatArray:
+    """Difference of speed of each rim and the belt, over the larger of them."""
+    rims = np.abs(one.state.velocity[system.first_body :][: system.pulleys.size] * drive.rolling_radii)
+    belt = abs(one.belt_parameter) * drive.path.length / drive.belt_length
+    return np.asarray(np.abs(rims - belt) / np.maximum(rims, belt))
+
+
+def _transmitted(system: System, one: Passed) -> tuple[FloatArray, FloatArray]:
+    """Torque of the belt on each pulley, N m, and the part of its friction that is used."""
+    seen = observe(system, np.zeros(1), one.state.position[None], one.state.velocity[None])
+    touched, normal, friction = (given[0] for given in (seen.contact_pulley, seen.normal_force, seen.friction_force))
     weights = np.outer(curve_lengths(system), system.contact.weights).ravel()
     used = np.zeros(system.pulleys.size)
     for p, coefficient in enumerate(system.pulleys.friction):
         here = touched == p
         limit = coefficient * float(np.sum((weights * normal)[here]))
         used[p] = abs(float(np.sum((weights * friction)[here]))) / limit if limit > 0.0 else 0.0
-    taken = seen.pulley_torque[0] * state.velocity[system.first_body :][: used.size]
-    worst = int(np.argmax(np.where(used > _ALIKE * used.max(), taken, -np.inf)))
-    name, torque = drive.pulleys[worst].name, abs(float(seen.pulley_torque[0, worst]))
-    speed = RPM * abs(float(state.velocity[system.first_body + worst]))
-    shaft = int(system.pulleys.shaft[worst])
-    held = system.bodies.unknown[shaft] < 0
-    wanted = abs(own_torque(asked, state, worst, float(state.velocity[system.first_body + shaft])))
-    if used[worst] >= _FULL and held:
-        return (
-            f"the search ends where the belt slides on the whole arc of {name}, with {torque:.4g} N m at {speed:.4g} "
-            "rpm. Its speed is prescribed: let it slip less, or raise the tension, the friction or the wrap angle."
-        )
-    if used[worst] < _FULL or torque >= wanted:
-        return (
-            f"the search ends at {load:.1%} of the loads, where {name} uses {used[worst]:.0%} of its friction. Look at "
-            "a run over time with `beltdyn run`."
-        )
-    return (
-        f"the belt slips through on {name}, which transmits at most {torque:.4g} N m at {speed:.4g} rpm; "
-        f"{wanted:.4g} N m is asked for. Raise the tension, the friction or the wrap angle, or reduce the load."
-    )
+    return np.asarray(seen.pulley_torque[0]), used
+
+
+def _idles(asked: System, here: Passed, pulley: int) -> bool:
+    """Whether a pulley has neither load nor motor nor prescribed speed."""
+    shaft = int(asked.pulleys.shaft[pulley])
+    speed = float(here.state.velocity[asked.first_body + shaft])
+    return bool(asked.bodies.unknown[shaft] >= 0 and own_torque(asked, here.state, pulley, speed) == 0.0)
+
+
+def _asked_of(drive: Drive, asked: System, last: Passed, slips: FloatArray, pulley: int) -> float:
+    """Torque of the loads of a pulley without slip, or else what those of the others need of it, N m."""
+    shafts = asked.pulleys.shaft
+    speeds = last.state.velocity[asked.first_body + shafts] / (1.0 - np.minimum(slips, _MOST))
+    torques = np.array([own_torque(asked, last.state, p, float(speed)) for p, speed in enumerate(speeds)])
+    if asked.bodies.unknown[shafts[pulley]] >= 0:
+        return float(torques[pulley])
+    free = asked.bodies.unknown[shafts] >= 0
+    return float(np.sum((torques / drive.path.radii)[free])) * float(drive.path.radii[pulley])

@@ -13,7 +13,7 @@ from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running import search
 from beltdyn.solve.traction import traction
 
-NUMBERS = re.compile(r"slips through on (\w+), which transmits at most (\S+) N m at \S+ rpm; (\S+) N m is asked for")
+NUMBERS = re.compile(r"slips on `(\w+)`, which transmits at most (\S+) N m of the (\S+) N m asked")
 
 
 FAN = {"kind": "fan", "rated_power": "3 kW", "rated_speed": "955 rpm"}
@@ -46,7 +46,7 @@ def test_what_is_transmitted_and_what_is_asked_for(driven: dict[str, Any], asked
     found = NUMBERS.search(str(caught.value))
     assert found, str(caught.value)
     most, wanted = map(float, found.groups()[1:])
-    assert found[1] == "driven"
+    assert found[1] in ("motor", "driven")  # which transmit the same
     assert wanted == pytest.approx(asked, rel=0.02)
     limit = float(traction(drive(torque={"kind": "constant", "value": -1.0}), points=8).dataset.limit_torque)
     assert 0.9 * limit < most < 1.02 * limit
