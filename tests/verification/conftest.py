@@ -29,7 +29,8 @@ SECTION_HELD = [(0, 0), (0, 1), (0, 4), (0, 5)]
 @pytest.fixture(scope="session")
 def drive() -> Drive:
     """The paper's drive."""
-    return loads(files("beltdyn").joinpath("examples", "two_pulley.toml").read_text(encoding="utf-8"))
+    drive = loads(files("beltdyn").joinpath("examples", "two_pulley.toml").read_text(encoding="utf-8"))
+    return drive.replace(belt=drive.belt.replace(shear_correction=13 / 15.3))
 
 
 @pytest.fixture(scope="session")

@@ -216,7 +216,7 @@ class _Reader:
         if isinstance(number, int | float):
             _check_size(number, self.smallest)
             if abs(number) < _DUST:
-                return 0.0
+                return type(number)(0)
         return number
 
 

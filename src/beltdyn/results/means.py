@@ -57,7 +57,7 @@ class PulleySummary:
     --------
     >>> driver = bd.summarize(run).pulleys[0]
     >>> print(f"{driver.name}: {driver.hub_load:.1f} N")
-    driver: 54.3 N
+    driver: 54.8 N
     """
 
     name: str

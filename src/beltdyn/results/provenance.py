@@ -7,6 +7,8 @@ from functools import cache
 from importlib.metadata import version
 from typing import Any
 
+import numpy as np
+
 from beltdyn.analyses import RUN
 from beltdyn.elements import ANCF, QUINTIC
 from beltdyn.model import Drive
@@ -85,7 +87,7 @@ def mesh_facts(attributes: Mapping[str, Any]) -> list[tuple[str, str]]:
     """
     if "mesh_frame" not in attributes:
         return []
-    count = f"{int(attributes['mesh_elements'])} " if "mesh_elements" in attributes else ""
+    count = f"{np.asarray(attributes['mesh_elements']).item()} " if "mesh_elements" in attributes else ""
     words = Frame(attributes["mesh_frame"], str(attributes["mesh_frame_reason"])).words
     facts = [("mesh", f"{count}{attributes['mesh_element']} elements, {words}")]
     unused = str(attributes["mesh_unused"])

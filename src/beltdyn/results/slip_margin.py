@@ -112,7 +112,9 @@ class _Balance:
         self._pulled = _pulled_span(drive)
         smallest = float(np.min(drive.radii))
         reaches = [float(np.linalg.norm(one.place(0.0)[1])) for one in self._carriers]
-        self._scales = np.array([max(float(np.nanmax(np.abs(tension))), 1e-9), *(smallest / one for one in reaches)])
+        self._scales = np.array(
+            [max(float(np.nanmax(np.abs(tension), initial=0.0)), 1e-9), *(smallest / one for one in reaches)]
+        )
         self._places = _places(drive, centers)
         self._held = np.zeros((len(tension), self._scales.size))
         rows, still = np.arange(len(tension)), self.start

@@ -51,7 +51,7 @@ CASES = (
         f"{BELT}\ninstalled_tension = 30",
         ("belt.length and belt.installed_tension are both given", "0 fixed tensioners", "Give one [[tensioner]]"),
     ),
-    Case("side", DRIVEN, f'{DRIVEN}\nside = "back"', ("pulley[driven].side", '"back"', "inside, outside")),
+    Case("side", DRIVEN, f'{DRIVEN}\nside = "edge"', ("pulley[driven].side", '"edge"', "inside, outside")),
     Case(
         "outside of two",
         DRIVEN,
@@ -208,7 +208,7 @@ CASES = (
         ('pulley[driver].speed.kind = "rampe"', 'Did you mean "ramp"?'),
     ),
     Case("profile without kind", 'kind = "ramp", ', "", ("pulley[driver].speed", "has no kind")),
-    Case("profile as a number", SPEED, "speed = 12.0", ("pulley[driver].speed = 12.0", "{ kind = ")),
+    Case("profile as a flag", SPEED, "speed = true", ("pulley[driver].speed = true", "{ kind = ")),
     # what belongs together
     Case("neither speed nor inertia", SPEED, "", ("pulley[driver] has neither speed nor inertia", "Give speed")),
     Case("free without inertia", "inertia = 0.1\n", "", ("pulley[driven] has neither speed nor inertia",)),

@@ -113,7 +113,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
         f'{RESISTANCE}schedule = {{ kind = "table", file = "nix.csv" }} }}]',
         ("load[1].schedule", "nix.csv", "no such file", "folder of the drive file"),
     ),
-    "schedule as a number": ("driven", f"{RESISTANCE}schedule = 0.5 }}]", ("load[1].schedule = 0.5 has no kind",)),
+    "schedule as a flag": ("driven", f"{RESISTANCE}schedule = true }}]", ("load[1].schedule = true has no kind",)),
     # hub chains
     "link without kind": ("driven", "hub = [{ inertia = 1 }]", ("hub[1]", "has no kind", "one_way_clutch")),
     "misspelled link": ("driven", 'hub = [{ kind = "clutch" }]', ("hub[1].kind", 'Did you mean "one_way_clutch"?')),

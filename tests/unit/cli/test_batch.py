@@ -1,6 +1,5 @@
 """`beltdyn run` of several drives: what it refuses beforehand, and what it says of every ending."""
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -84,18 +83,6 @@ def test_every_drive_gets_a_line_and_a_file_beside_it(
             f"{name}.nc",
         ]
     assert all(warning in output for warning in summary.warnings)
-
-
-def test_files_of_killed_runs_are_named(
-    run_main: RunMain, files: list[Path], simulated: Callable[..., Any], summary: Summary
-) -> None:
-    left = files[1].with_name(".two.0123abcd.nc")
-    left.touch()
-    os.utime(left, (0.0, 0.0))
-    simulated(*[done(summary)] * 3)
-    output = run_main(words(files))[1]
-    assert output.count("A killed run has left") == 1
-    assert f"A killed run has left {left}, which is of no use: remove it." in output
 
 
 def test_output_names_a_folder(

@@ -23,7 +23,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
     show_result(run)
     output = " ".join(capsys.readouterr().out.split())
     for part in (
-        "driver 114.59 12.000 2.438 29.25 0.000% 0.000% 180.0° 0.0° 2.86 90.00",
+        "driver 114.59 12.000 2.438 29.25 0.000% 0.000% 180.0° 0.0° 3.66 90.00",
         "0.500%",
         "180.0°",
         "29.25 W in, 29.1 W out",
@@ -154,10 +154,10 @@ def test_progress(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_a_run_that_takes_long_is_told_of_once_and_why(capsys: pytest.CaptureFixture[str]) -> None:
     with progress_bar() as report:
-        for time, elapsed in ((0.001, 4.0), (0.002, 8.0), (0.003, 12.0)):
+        for time, elapsed in ((0.02, 40.0), (0.06, 120.0), (0.07, 140.0)):
             report(Progress(time, 1.0, 1e-6, 3, elapsed=elapsed, bound="Steps are short."))
     shown = " ".join(capsys.readouterr().err.split())
-    assert shown.count("This run will take about 67 minutes more") == 1
+    assert shown.count("This run will take about 31 minutes more") == 1
     assert "Steps are short." in shown
 
 
@@ -173,10 +173,10 @@ def test_runs_that_take_long_are_told_of_once(
     now = [0.0]
     monkeypatch.setattr("beltdyn.cli.progress.perf_counter", lambda: now[0])
     with runs_bar() as report:
-        for part, now[0] in ((0.0, 0.0), (0.01, 4.0), (0.02, 8.0), (0.03, 12.0)):
+        for part, now[0] in ((0.0, 0.0), (0.04, 20.0), (0.24, 120.0), (0.28, 140.0)):
             report(BatchProgress(0, 4, {Path("long.nc"): part}))
     shown = " ".join(capsys.readouterr().err.split())
-    assert shown.count("These runs will take about 27 minutes more") == 1
+    assert shown.count("These runs will take about 31 minutes more") == 1
 
 
 def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:

@@ -25,6 +25,7 @@ BELT = {
     "youngs_modulus": 1.25e9,
     "poissons_ratio": 0.3,
     "bending_factor": 0.01,
+    "shear_correction": 13 / 15.3,
     "elements": 60,
 }
 """EA = 100 kN, EI = 1.3e-3 N m^2 and 0.1 kg/m."""

@@ -81,6 +81,7 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     first, drive = evidence.window.first, evidence.drive
     torque, times = np.asarray(evidence.recorded["pulley_torque"]), evidence.time[:first]
     reached = slides_through(evidence.recorded, drive)[:first]
+    durations = np.gradient(times) if times.size > 1 else np.zeros_like(times)
     found, longest = [], 0.0
     for number in np.flatnonzero(reached.any(axis=0)).tolist():
         when = reached[:, number]
@@ -89,7 +90,7 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
             f"{drive.pulleys[number].name} from t = {times[when][0]:.4g} to {times[when][-1]:.4g} s, first at "
             f"{load:.4g} N m"
         )
-        longest = max(longest, float(np.gradient(times)[when].sum()))
+        longest = max(longest, float(durations[when].sum()))
     if found:
         yield Finding(
             f"the belt slid through on {listing(found)}: that was more than friction transmits.",

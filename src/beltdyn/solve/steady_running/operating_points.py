@@ -108,9 +108,11 @@ class OperatingPoints:
 
     def __enter__(self) -> Self:
         """Begin."""
-        if self._path is not None:
-            self._held.enter_context(locked_output(self._path))
-        self._tell()
+        with ExitStack() as held:
+            if self._path is not None:
+                held.enter_context(locked_output(self._path))
+            self._tell()
+            self._held = held.pop_all()
         return self
 
     def __exit__(

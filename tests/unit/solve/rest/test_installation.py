@@ -197,7 +197,7 @@ def test_a_drive_travels_with_the_tension_that_is_asked_for() -> None:
 
 def test_a_drive_of_given_length_is_left_alone() -> None:
     drive = serpentine(length=1.85)
-    assert bring_to_rest(drive).drive is drive
+    assert bring_to_rest(drive).drive == drive
 
 
 @pytest.mark.parametrize("elements", [12, 20, 40, 80, 200])
