@@ -13,13 +13,16 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from random import Random
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from beltdyn.errors import BeltdynError
+from beltdyn.model import Drive
 from beltdyn.solve import simulate
 from tools.campaign import damage, hostile, kills
 from tools.campaign.analyses import WORKS
@@ -48,8 +51,9 @@ def mutants(seed: int, count: int, folder: Path) -> Iterator[Trial]:
 
 def odd(seed: int, count: int, folder: Path) -> Iterator[Trial]:
     """Odd drives, each with all analyses in turn."""
-    for name, work in WORKS.items():  # kernels are compiled before the clock of a trial starts
-        _quietly(partial(work, _usual(), _emptied(folder / "odd")))
+    for name, compiles in WORKS.items():  # before the clock of a trial starts
+        with suppress(BeltdynError):
+            compiles(_usual(), _emptied(folder / "odd"))
         sys.stderr.write(f"\r{name} is compiled  ")
     names = list(WORKS)
     for number in range(count):
@@ -137,21 +141,12 @@ def report(name: str, trials: Iterator[Trial]) -> int:
     return int(bool(wrong))
 
 
-def _usual() -> object:
-    from random import Random
-
+def _usual() -> Drive:
+    """The first odd drive that is one."""
     for seed in range(1000):
-        drive = _quietly(partial(odd_drive, Random(seed).randrange(10**6)))
-        if drive is not None:
-            return drive
+        with suppress(BeltdynError):
+            return odd_drive(Random(seed).randrange(10**6))
     raise AssertionError("no odd drive is a drive")
-
-
-def _quietly(work: Callable[[], object]) -> object:
-    try:
-        return work()
-    except BeltdynError:
-        return None
 
 
 def _emptied(folder: Path) -> Path:

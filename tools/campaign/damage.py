@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import numpy as np
 
@@ -56,9 +57,10 @@ def two_pulley() -> Drive:
 def make(folder: Path) -> list[Kind]:
     """Make an intact file of each kind."""
     drive, kinds = two_pulley(), list[Kind]()
+    analyses: dict[str, dict[str, Any]] = {"static": {}, "map": {"speed": "60, 100 rpm", "force_tolerance": 0.1}}
     simulate(drive, folder / "run.nc")
     kinds.append(Kind("result of a run", folder / "run.nc", _of_result))
-    for name, options in (("static", {}), ("map", {"speed": "60, 100 rpm", "force_tolerance": 0.1})):
+    for name, options in analyses.items():
         ANALYSES[name].write(drive, folder / f"{name}.nc", **options)
         kinds.append(Kind(f"result of {name}", folder / f"{name}.nc", _of_result))
     simulate(drive, folder / "stopped.nc", _stop, checkpoint=1e-9)

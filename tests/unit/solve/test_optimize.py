@@ -15,6 +15,7 @@ from beltdyn.solve.steady import steady_state
 from beltdyn.solve.studies.designs import Designs, free_number
 from beltdyn.solve.studies.goals import aims_of
 from beltdyn.solve.studies.study_points import held, study_points
+from beltdyn.solve.traction import traction
 from validation.published.cases import better, loaded_two_pulley
 
 TENSION, SAFETY = 600.0, 2.0
@@ -40,14 +41,13 @@ def found(loaded: Drive) -> Result:
     return optimize(loaded, study=study())
 
 
-def test_least_hub_load_for_a_slip_safety(found: Result, loaded: Drive) -> None:
-    """Two pulleys alike: S = s dT / tanh(mu pi / 2), with the difference of tensions dT = M / R under full load."""
-    best = found.dataset.sel(point="load 1")
-    torque, grip = 45.0, np.tanh(0.5 * float(loaded.frictions[0]) * np.pi)
-    expected = SAFETY * torque / loaded.radii[0] / grip
-    assert float(best.best_result.sel(result="hub_load[driver]")) == pytest.approx(expected, rel=0.01)
-    safeties = best.best_result.sel(result=["slip_safety[driver]", "slip_safety[driven]"])
+def test_least_hub_load_for_a_slip_safety(found: Result) -> None:
+    """Its belt slides at the safety times the load: to 5 % as margins promise, and 1 % since it creeps by 25 %."""
+    best = found.dataset.sel(point="load 1").best_result
+    safeties = best.sel(result=["slip_safety[driver]", "slip_safety[driven]"])
     assert float(safeties.min()) == pytest.approx(SAFETY, rel=2e-4)
+    largest = float(traction(found.drive, slip="20, 25 %").dataset.torque.max())
+    assert largest == pytest.approx(SAFETY * 45.0, rel=0.06)
 
 
 def test_its_goal_is_that_of_its_drive(found: Result) -> None:
@@ -82,7 +82,7 @@ def test_a_design_that_slips_through_is_no_solution(loaded: Drive) -> None:
     wanted = study(requirement=[], number=[FREE | {"least": 20.0}], points={})
     found = optimize(loaded, study=wanted, most=5)
     failures = [str(one) for one in found.dataset.failure.values]
-    assert any("slips through" in one for one in failures)
+    assert any("the belt slips on `driven`" in one for one in failures)
     assert np.all(np.isnan(found.dataset.design_goal.values) == np.array([bool(one) for one in failures]))
     assert any("not run" in warning for warning in found.warnings)
     assert steady_state(found.drive).status == "completed"
