@@ -12,6 +12,7 @@ import pytest
 from beltdyn.errors import ModelError
 from beltdyn.model import advise, install, load, loads, tensioner_balances
 from beltdyn.results import open_result, open_run
+from beltdyn.results.dataset import is_result
 from beltdyn.solve import simulate
 from beltdyn.solve.checkpoint import is_checkpoint, read_checkpoint
 from validation.published import demo_text
@@ -157,3 +158,4 @@ def test_pipes_and_devices_are_not_read(tmp_path: Path, name: str) -> None:
         with pytest.raises(ModelError, match="it is a device or a pipe, not a file"):
             read()
     assert not is_checkpoint(path)
+    assert not is_result(path)

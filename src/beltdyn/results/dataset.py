@@ -264,14 +264,16 @@ def is_result(path: Path) -> bool:
     Parameters
     ----------
     path : Path
-        A regular file.
+        A file.
 
     Returns
     -------
     bool
-        False too if it cannot be read.
+        False too if it cannot be read, as a pipe, which would be waited for.
     """
     try:
+        if not path.is_file():
+            return False
         with h5py.File(path, "r") as file:
             return all(name in file.attrs for name in _OURS)
     except Exception:  # see open_dataset

@@ -76,13 +76,12 @@ def _percent(part: float) -> str:
 
 def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
     """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output at a time."""
-    if evidence.drive.ends:
-        return
     first, drive = evidence.window.first, evidence.drive
+    if drive.ends or first < 2:
+        return
     torque, times = np.asarray(evidence.recorded["pulley_torque"]), evidence.time[:first]
     reached = slides_through(evidence.recorded, drive)[:first]
-    durations = np.gradient(times) if times.size > 1 else np.zeros_like(times)
-    found, longest = [], 0.0
+    durations, found, longest = np.gradient(times), [], 0.0
     for number in np.flatnonzero(reached.any(axis=0)).tolist():
         when = reached[:, number]
         load = abs(torque[:first][when, number][0])
