@@ -106,6 +106,30 @@ def test_nothing_is_computed_twice(study_file: Path, tmp_path: Path, monkeypatch
     assert len(computed) == 3 + 4
 
 
+@pytest.mark.parametrize("row", [1, 4, 9])
+def test_a_damaged_row_is_computed_again(
+    row: int, study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A digit that has changed on the disk never becomes a result."""
+    first = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    lines = (tmp_path / "s.csv").read_text(encoding="utf-8").splitlines(keepends=True)
+    place = lines[row].rindex("0.")
+    lines[row] = lines[row][: place + 2] + chr(ord(lines[row][place + 2]) ^ 1) + lines[row][place + 3 :]
+    (tmp_path / "s.csv").write_text("".join(lines), encoding="utf-8")
+    computed = counted(monkeypatch)
+    again = study(study_file, output=tmp_path / "s.nc", jobs=1)
+    assert len(computed) == 1
+    assert again.dataset["tension"].equals(first.dataset["tension"])
+
+
+def test_rows_under_a_damaged_head_are_refused(study_file: Path, tmp_path: Path) -> None:
+    study(study_file, output=tmp_path / "s.nc", jobs=1)
+    text = (tmp_path / "s.csv").read_text(encoding="utf-8")
+    (tmp_path / "s.csv").write_text(text.replace("tension [N]", "tensiom [N]", 1), encoding="utf-8")
+    with pytest.raises(ModelError, match="is damaged: no row has its checksum"):
+        study(study_file, output=tmp_path / "s.nc", jobs=1)
+
+
 def test_a_row_that_was_cut_off_is_computed_again(
     study_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

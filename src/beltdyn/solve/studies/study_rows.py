@@ -1,10 +1,11 @@
 """The rows of a study in a CSV file: added to as points finish, and read again when the study goes on.
 
 A row has the number of its point, the values of the numbers that vary, results in SI units, the time that it took,
-warnings, and why it failed.  Values stand there with all digits, so that the row of a point is found by them.
+warnings, why it failed, and a checksum of all that.  Values have all digits, so that a point is found by them.
 """
 
 import csv
+import hashlib
 import io
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,7 +19,7 @@ from beltdyn.results.atomic import atomic_path, unwritable
 from beltdyn.solve.studies.point_work import Outcome
 from beltdyn.solve.studies.study_plan import Plan
 
-_FIRST, _LAST = "point", ("seconds [s]", "warnings", "failure")
+_FIRST, _LAST = "point", ("seconds [s]", "warnings", "failure", "checksum")
 
 
 class Row(NamedTuple):
@@ -85,45 +86,52 @@ class StudyRows:
         return [_FIRST, *(f"{name} [{unit or '1'}]" for part in units for name, unit in part), *_LAST]
 
     def _lines(self, outcomes: Sequence[Outcome]) -> str:
-        return _as_lines([self._cells(one) for one in outcomes])
+        headings = self._headings()
+        rows = [self._cells(one) for one in outcomes]
+        return _as_lines([[*cells, _checksum(headings, cells)] for cells in rows])
 
     def _cells(self, outcome: Outcome) -> list[str]:
+        """All but the checksum."""
         values = [_written(outcome.values.get(name, np.nan)) for name in self.columns]
         last = f"{outcome.seconds:.4g}", outcome.warnings, outcome.failure
         return [str(outcome.point + 1), *self.key(outcome.point), *values, *last]
 
     def read(self) -> list[Row]:
-        """The whole rows of the file, and with them the columns; none where there is no file.
+        """The intact rows of the file, and with them the columns; none where there is no file.
 
-        A last row that a killed process left unfinished is left out.
+        A row that is damaged, or that a killed process left unfinished, is left out: its point is computed again.
 
         Raises
         ------
         ModelError
-            If the file is none of a study of these numbers.
+            If the file is none of a study of these numbers, or no row is intact.
         """
         if not self.path.exists():
             return []
         try:
             text = read_text(self.path, LONGEST_TABLE)
-        except (OSError, ValueError) as error:
+            headings, *rows = csv.reader(io.StringIO(text[: text.rfind("\n") + 1])) if "\n" in text else [[]]
+        except (OSError, ValueError, csv.Error) as error:
             raise ModelError(f"{self.path} cannot be read ({error}). Move it away, or choose another name.") from error
-        headings, *rows = csv.reader(io.StringIO(text[: text.rfind("\n") + 1])) if "\n" in text else [[]]
         numbers = 1 + len(self._plan.paths)
         if tuple(headings[-len(_LAST) :]) != _LAST or headings[:numbers] != self._headings()[:numbers]:
             raise ModelError(f"{self.path} holds no points of this study. Move it away, or choose another name.")
         self.columns = dict(map(_name_and_unit, headings[numbers : -len(_LAST)]))
-        return list(self._rows(headings, rows))
+        intact = list(self._rows(headings, rows))
+        if rows and not intact:
+            raise ModelError(f"{self.path} is damaged: no row has its checksum. Move it away, or choose another name.")
+        return intact
 
     def _rows(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[Row]:
         numbers = 1 + len(self._plan.paths)
         for cells in rows:
-            if len(cells) == len(headings):
-                texts = cells[numbers : -len(_LAST)]
-                values = {name: float(text) for name, text in zip(self.columns, texts, strict=True) if text}
-                seconds, warnings, failure = cells[-len(_LAST) :]
-                outcome = Outcome(int(cells[0]) - 1, values, failure, warnings, float(seconds))
-                yield Row(tuple(cells[1:numbers]), outcome)
+            if cells[-1:] != [_checksum(headings, cells[:-1])]:
+                continue
+            texts = cells[numbers : -len(_LAST)]
+            values = {name: float(text) for name, text in zip(self.columns, texts, strict=True) if text}
+            seconds, warnings, failure, _ = cells[-len(_LAST) :]
+            outcome = Outcome(int(cells[0]) - 1, values, failure, warnings, float(seconds))
+            yield Row(tuple(cells[1:numbers]), outcome)
 
 
 def is_study_table(path: Path) -> bool:
@@ -134,6 +142,11 @@ def is_study_table(path: Path) -> bool:
     except (OSError, UnicodeDecodeError, csv.Error):
         return False
     return headings[:1] == [_FIRST] and tuple(headings[-len(_LAST) :]) == _LAST
+
+
+def _checksum(headings: Sequence[str], cells: Sequence[str]) -> str:
+    """Of a row under its headings, so that a damaged head is noticed, too."""
+    return hashlib.sha256("\0".join([*headings, *cells]).encode()).hexdigest()[:16]
 
 
 def _name_and_unit(heading: str) -> tuple[str, str]:

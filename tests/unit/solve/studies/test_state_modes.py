@@ -46,7 +46,8 @@ def test_derivatives_against_modes_found_anew(drive: Drive, running: Running, pa
     """By Richardson's extrapolation from two steps, to 1e-5 of derivative or result.
 
     Where the belt moves, wider steps would let further points of the mesh come into contact, at which tangents jump.
-    Over the small ones the rounding of eigenvalues, 1e-12, is 1e-7 in derivatives of damping ratios.
+    Over the small ones the rounding of eigenvalues, 1e-12, is at most 1.5e-7 in extrapolated derivatives of damping
+    ratios: 4/3 of 1e-12 / 1e-5, and 1/3 of half of that.
     """
     value = drive_value(drive, path)
 
@@ -57,7 +58,7 @@ def test_derivatives_against_modes_found_anew(drive: Drive, running: Running, pa
     expected = (4.0 * narrow - wide) / 3.0
     followed = slopes(lambda part: running.neighbour(drive.with_({path: value * (1.0 + part)})), 1e-5)
     allowed = 1e-5 * np.maximum(np.abs(expected), np.abs([running.value(name) for name in NAMES]))
-    allowed[len(NAMES) // 2 :] += 1e-7
+    allowed[len(NAMES) // 2 :] += 1.5e-7
     assert np.all(np.abs(followed - expected) <= allowed)
     assert np.abs(expected[0]) > 100.0 * allowed[0]  # there is an effect to be compared
 
