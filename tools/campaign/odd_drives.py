@@ -79,7 +79,7 @@ def odd_drive(seed: int, elements: int = 30) -> Drive:
         given["gravity"] = [0.0, -numbers.random.choice((9.81, 1e4))]
     if len(pulleys) > 2 and numbers.chance(0.5):
         given["tensioner"] = [_tensioner(numbers, pulleys[-1])]
-    return Drive.model_validate(given)
+    return Drive(**given)
 
 
 def _pulley(numbers: _Numbers, place: int) -> Part:
