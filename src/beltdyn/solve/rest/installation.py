@@ -36,7 +36,9 @@ _SOUND = 0.1
 """Depth over radius up to which contact may be soft."""
 _ACCURACY = 1e-6
 """Of the tension that is asked for, relative."""
-_MOST_TRIALS = 30
+_JUMP = 0.005
+"""Largest miss of the tension that is asked for, relative, where it jumps over the length of the belt."""
+_MOST_TRIALS = 60
 _LONGEST_CHANGE = 0.02
 """Change of a belt's length from one trial to the next, over its length, at most."""
 _LEAST_CHANGE = 1e-7
@@ -180,11 +182,19 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
     """
     length = first.drive.belt_length
     rest, done, slope = first, 0.0, _tension_over_length(first.drive)
-    for _ in range(_MOST_TRIALS):
+    sides: dict[bool, tuple[float, At]] = {}  # the nearest trials with too much and too little tension
+    for trial in range(_MOST_TRIALS):
         missing = wanted - rest.tension
         if abs(missing) <= _ACCURACY * wanted:
             return rest
+        sides[missing > 0.0] = done, rest
         change = float(np.clip(missing / slope, -_LONGEST_CHANGE * length, _LONGEST_CHANGE * length))
+        if len(sides) == 2:
+            (low, slack), (high, tight) = sides[True], sides[False]
+            if abs(high - low) < _LEAST_CHANGE * length:
+                return _beside_jump(slack, tight, wanted)
+            if trial % 2 or not min(low, high) < done + change < max(low, high):
+                change = 0.5 * (low + high) - done
         ahead, change = _shortened(first.drive, done, change, at_rest)
         gained = ahead.tension - rest.tension
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
@@ -197,8 +207,26 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
     raise _out_of_reach(
         first.drive,
         f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt_length:.6g} m, and "
-        f"{first.tension:.5g} N with {length:.6g} m, since tensioners hold it.",
+        f"{first.tension:.5g} N with {length:.6g} m{', since tensioners hold it' if first.drive.carriers else ''}.",
     )
+
+
+def _beside_jump(slack: At, tight: At, wanted: float) -> At:
+    """Of two states on both sides of a jump, as a node of the mesh meets a pulley, the nearer one.
+
+    Raises
+    ------
+    ConvergenceError
+        If the jump is larger than what meshes are taken for.
+    """
+    nearer = min(slack, tight, key=lambda one: abs(one.tension - wanted))
+    if abs(nearer.tension - wanted) > _JUMP * wanted:
+        raise _out_of_reach(
+            nearer.drive,
+            f"at rest the tension jumps from {slack.tension:.5g} to {tight.tension:.5g} N at a length of "
+            f"{nearer.drive.belt_length:.6g} m, as nodes of the mesh meet pulleys. Raise belt.elements.",
+        )
+    return nearer
 
 
 def _tension_over_length(drive: Drive) -> float:
