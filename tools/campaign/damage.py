@@ -71,7 +71,8 @@ def make(folder: Path) -> list[Kind]:
     )
 
     def studied(path: Path) -> str:
-        return _digest(study(points, drive, jobs=1, output=path.with_suffix(".nc")).dataset[["tension"]])
+        found = study(points, drive, jobs=1, output=path.with_suffix(".nc")).dataset[["tension"]]
+        return _digest(found.assign_attrs(created=""))  # when it was read
 
     study(points, drive, jobs=1, output=folder / "study.nc")
     kinds.append(Kind("rows of a study", folder / "study.csv", studied))
