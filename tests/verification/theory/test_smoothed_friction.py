@@ -21,8 +21,11 @@ SLOW: tuple[Mapping[str, Any], ...] = (
 )
 LAWS = [{"creep_ratio": ratio} for ratio in RATIOS] + [pytest.param(law, marks=pytest.mark.slow) for law in SLOW]
 SAID = re.compile(r"takes about (\S+) W more")
-SURE = 1.5
-"""Largest factor between the loss that is said and that which is added."""
+SURE = 2.0
+"""Largest factor between the loss that is said and that which is added: the estimate takes the mean tension of an arc.
+
+Where a law is in proportion to the tension, and the tensions of the spans differ by four times, it is 1.9; else 1.5.
+"""
 BELOW = 2.5 * LOSS_LIMIT
 """Largest part of the losses that friction adds without a word."""
 
