@@ -85,7 +85,7 @@ ELSEWHERE = {
     "cosimulation/slave.py": "unit/cosimulation/test_fmu.py",
     "model/advice.py": "unit/model/test_drive.py",
     "model/open_path.py": "unit/model/test_end.py",
-    "model/picture.py": "unit/model/test_notebook.py",
+    "model/picture.py": "unit/results/test_notebook_drive.py",
     "results/__init__.py": "unit/test_public_names.py",
     "results/static.py": "unit/solve/test_equilibrium.py",
     "results/rest_sheet.py": "unit/cli/test_commands.py",

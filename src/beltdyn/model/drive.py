@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
+from importlib import import_module
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -12,7 +13,7 @@ from beltdyn.arrays import FloatArray
 from beltdyn.contact.friction import FrictionParameters
 from beltdyn.elements import ELEMENTS, ElementKind
 from beltdyn.errors import ModelError
-from beltdyn.machines import MovingTensioner, Tensioner
+from beltdyn.machines import FunctionLoad, MovingTensioner, Tensioner
 from beltdyn.machines.tensioners.registry import AnyTensioner
 from beltdyn.model.belt import Belt
 from beltdyn.model.carrier import Carrier, carriers_of
@@ -83,8 +84,6 @@ class Drive(Part):
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file, which holds no functions of Python."""
-        from beltdyn.model.toml_writer import refuse_functions
-
         refuse_functions(self, "a drive goes to other processes as a text, without functions", "run it in this process")
         return drive_of_text, (self.text,)
 
@@ -275,10 +274,9 @@ class Drive(Part):
         return self.path.centers
 
     def _repr_html_(self) -> str:
-        """Show the drive in a notebook."""
-        from beltdyn.model.notebook import drive_html
-
-        return drive_html(self)
+        """Show the drive in a notebook: presentation lies above, and is found by its name."""
+        html: str = import_module("beltdyn.results.notebook").drive_html(self)
+        return html
 
     @property
     def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
@@ -388,3 +386,30 @@ def drive_of_text(text: str) -> Drive:
     drive = Drive.model_validate(parse_toml(text))
     drive._source = text
     return drive
+
+
+def has_functions(drive: Drive) -> bool:
+    """Tell whether a load of a drive is a function of Python, which no file holds and no other process has."""
+    return any(isinstance(load, FunctionLoad) for pulley in drive.pulleys for load in pulley.load)
+
+
+def refuse_functions(drive: Drive, rule: str, remedy: str) -> None:
+    """Make sure that all of a drive can be written as text.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    rule, remedy : str
+        Why it must be, and what to do beside giving a table.
+
+    Raises
+    ------
+    ModelError
+        If a load is a function of Python.
+    """
+    for pulley in drive.pulleys:
+        if any(isinstance(load, FunctionLoad) for load in pulley.load):
+            raise ModelError(
+                f'pulley "{pulley.name}" has a load of kind "function": {rule}. Give the load as a table, or {remedy}'
+            )

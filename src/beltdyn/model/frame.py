@@ -1,15 +1,12 @@
 """On which mesh a drive is simulated over time: one that stays in place, or one that travels with the belt."""
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from beltdyn.elements import ANCF, QUINTIC
 from beltdyn.model.belt import Belt
 from beltdyn.model.contact import Contact
 from beltdyn.model.simulation import Simulation
-
-if TYPE_CHECKING:
-    from beltdyn.model.drive import Drive
 
 FrameName = Literal["staying", "travelling"]
 """How a mesh stands to the belt."""
@@ -67,14 +64,9 @@ def element_settings(belt: Belt, contact: Contact) -> Iterator[tuple[str, str, A
                 yield group, key, value
 
 
-def unused_settings(drive: "Drive") -> list[str]:
-    """Settings of elements that an analysis on a mesh that stays does not use, such as 'belt.discretization = "truss"'.
-
-    Parameters
-    ----------
-    drive
-    """
-    return [_written(*one) for one in element_settings(drive.belt, drive.contact)]
+def unused_settings(belt: Belt, contact: Contact) -> list[str]:
+    """Settings of elements that a staying mesh does not use, such as 'belt.discretization = "truss"'."""
+    return [_written(*one) for one in element_settings(belt, contact)]
 
 
 def element_of(belt: Belt, frame: Frame) -> str:

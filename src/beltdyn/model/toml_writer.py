@@ -5,9 +5,7 @@ from typing import Any
 
 import tomli_w
 
-from beltdyn.errors import ModelError
-from beltdyn.machines import FunctionLoad
-from beltdyn.model.drive import Drive
+from beltdyn.model.drive import Drive, refuse_functions
 from beltdyn.model.tolerances import tolerances_of
 from beltdyn.parts.change import steps_of, unit_at
 from beltdyn.parts.error_location import entry_name
@@ -96,30 +94,3 @@ def _key(holder: Any, step: str) -> str | int:
         return step
     names = [entry_name(one) or str(number) for number, one in enumerate(holder, 1)]
     return names.index(step) if step in names else int(step) - 1
-
-
-def has_functions(drive: Drive) -> bool:
-    """Tell whether a load of a drive is a function of Python, which no file holds and no other process has."""
-    return any(isinstance(load, FunctionLoad) for pulley in drive.pulleys for load in pulley.load)
-
-
-def refuse_functions(drive: Drive, rule: str, remedy: str) -> None:
-    """Make sure that all of a drive can be written as text.
-
-    Parameters
-    ----------
-    drive : Drive
-        The drive.
-    rule, remedy : str
-        Why it must be, and what to do beside giving a table.
-
-    Raises
-    ------
-    ModelError
-        If a load is a function of Python.
-    """
-    for pulley in drive.pulleys:
-        if any(isinstance(load, FunctionLoad) for load in pulley.load):
-            raise ModelError(
-                f'pulley "{pulley.name}" has a load of kind "function": {rule}. Give the load as a table, or {remedy}'
-            )

