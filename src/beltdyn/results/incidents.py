@@ -1,4 +1,4 @@
-"""What happens at any time of a run: belts that slide through, spans that go slack, tensioners on a stop."""
+"""Events at any time of a run: gross slip, slack spans, tensioners on a stop."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,13 +11,13 @@ from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.recorded import Recorded, names
 
 SLIDING_LIMIT = 1e-3
-"""Largest velocity of sliding of a whole arc, over the speed of the belt, that is not yet gross slip."""
+"""Sliding speed of a whole arc, over the belt speed, above which it is gross slip."""
 GROSS_SLIP, SLACK, STOP = "gross slip", "slack", "stop"
 
 
 @dataclass(frozen=True, slots=True)
 class Incident:
-    """Something that happened at any time of a run.
+    """An event at any time of a run.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Incident:
     name : str
         Name of the pulley or the span.
     periods : tuple of tuples of float
-        From when to when, s; none in a result without time.
+        Start and end, s; empty in a result without time.
     side : str
         "lower" or "upper" stop.
     """
@@ -38,14 +38,14 @@ class Incident:
 
     @property
     def severe(self) -> bool:
-        """Whether no drive may do that."""
+        """Whether it is a fault in any drive."""
         return self.kind != STOP
 
     def __str__(self) -> str:
         words = {
-            GROSS_SLIP: f"the belt slid through on {self.name}",
+            GROSS_SLIP: f"the belt was in gross slip on {self.name}",
             SLACK: f"{self.name} went slack",
-            STOP: f"the tensioner of {self.name} lay on its {self.side} stop",
+            STOP: f"the tensioner of {self.name} was on its {self.side} stop",
         }[self.kind]
         if not self.periods:
             return words
@@ -56,14 +56,14 @@ class Incident:
 
 
 def incidents(recorded: Recorded, drive: Drive) -> tuple[Incident, ...]:
-    """Find what happened at any time of a run.
+    """Find the events of a run.
 
     Parameters
     ----------
     recorded : Recorded
         What was recorded, with at least one output.
     drive : Drive
-        The drive. A belt with ends that slides does what it is there for.
+        The drive. A belt with ends slides by design.
     """
     found = [
         (GROSS_SLIP, name, "", on) for name, on in _each(names(recorded, "pulley"), slides_through(recorded, drive))
@@ -78,7 +78,7 @@ def incidents(recorded: Recorded, drive: Drive) -> tuple[Incident, ...]:
 
 
 def slides_through(recorded: Recorded, drive: Drive) -> BoolArray:
-    """Whether the belt slides on whole arcs, at two outputs or more, shape (outputs, pulleys)."""
+    """Whether the belt slides on whole arcs, at two or more outputs in a row, shape (outputs, pulleys)."""
     sliding, speed = (np.asarray(recorded[name]) for name in ("sliding_speed", "pulley_speed"))
     slid = np.abs(sliding) > SLIDING_LIMIT * np.nanmax(np.abs(rim_speeds(speed, drive)[:, drive.reference]))
     if drive.ends:
@@ -105,7 +105,7 @@ def on_stops(recorded: Recorded, drive: Drive) -> tuple[BoolArray, BoolArray]:
 
 
 def _each(labels: list[str], on: BoolArray) -> Iterator[tuple[str, BoolArray]]:
-    """Those that it happens to at all, and when."""
+    """Names with at least one event, and when."""
     return ((name, column) for name, column in zip(labels, on.T, strict=True) if column.any())
 
 

@@ -1,4 +1,4 @@
-"""The numbers that decide about a drive, each where it is worst, beside the limits that its file states."""
+"""Key numbers of a drive, each at its worst place, against the limits of the drive file."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -20,20 +20,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class KeyNumber:
-    """A number that decides about a drive, where it is worst.
+    """A key number of a drive at its worst place.
 
     Attributes
     ----------
     key : str
         Key of its limit in the group ``[limits]`` of the drive file.
     value : float
-        The number; NaN where there is none, as the margin of a drive without load.
+        The value; NaN if undefined, such as the margin of an unloaded drive.
     unit : str
-        Its SI unit, "1" for a pure number; "%" for one that is written as a part in a hundred.
+        Its SI unit, "1" for a pure number; "%" for a share shown in per cent.
     where : str
         Pulley or span, and when or at which operating point.
     limit : float or None
-        What the drive file states, or None.
+        The limit of the drive file, or None.
     """
 
     key: str
@@ -49,22 +49,22 @@ class KeyNumber:
 
     @property
     def at_most(self) -> bool:
-        """Whether the limit is one from above."""
+        """Whether the limit is an upper limit."""
         return self.key.startswith("largest")
 
     @property
     def passes(self) -> bool | None:
-        """Whether the number keeps to the limit; None without a limit or a number."""
+        """Whether the value is within its limit; None without a limit or a value."""
         if self.limit is None or np.isnan(self.value):
             return None
         return self.value <= self.limit if self.at_most else self.value >= self.limit
 
 
 def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
-    """Give the numbers that decide about a drive, and judge them by its limits.
+    """Compare the key numbers of a drive with its limits.
 
-    Of a run, hub loads and tensions are the worst at any output, slip and capstan margin the worst of the means over
-    its end; of operating points all are the worst of all points.
+    In a run, hub loads and tensions are the worst of all outputs; slip and capstan margin are the worst mean over the
+    averaging window. In a table of operating points all are the worst of all points.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def key_numbers(result: Result) -> tuple[KeyNumber, ...]:
     Returns
     -------
     tuple of KeyNumber
-        Those that the result knows. None of other results: a traction curve goes on until the belt slips.
+        Those that the result holds; empty for other results: a traction curve continues until the belt slips.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def _of_table(result: Result) -> Iterator[Found]:
 
 
 def _places(dataset: "xr.Dataset") -> list[str]:
-    """The operating points in words, in the order of the table; one without words at rest."""
+    """The operating points in words, in the order of the table; one empty text at rest."""
     axes = [dataset[name] for name in str(dataset.attrs.get("axes", "")).split()]
     shape = [axis.size for axis in axes]
     return [

@@ -33,7 +33,7 @@ def test_gross_slip_and_slack_at_any_time_fail(make_run: Callable[..., Run]) -> 
     sliding, tension = np.zeros((101, 2)), np.full((101, 2), 40.0)
     sliding[10:20, 1], tension[5, 0] = 0.5, -1.0
     for changed, words in (
-        ({"sliding_speed": sliding}, "All 2 limits are kept, but the belt slid through on driven from"),
+        ({"sliding_speed": sliding}, "All 2 limits are kept, but the belt was in gross slip on driven from"),
         ({"span_tension": tension}, "All 2 limits are kept, but driver-driven went slack at"),
     ):
         run = make_run(**changed)
@@ -49,7 +49,7 @@ def test_a_stop_qualifies(make_run: Callable[..., Run], drive: Drive) -> None:
     dataset = make_run().dataset.assign(tensioner_position=(("time", "tensioner"), np.full((101, 1), 0.02)))
     kind, said = verdict([Run(dataset, drive.replace(limits=KEPT, tensioner=[stopped]))])
     assert kind == "open"
-    assert "but the tensioner of driven lay on its upper stop from" in said
+    assert "but the tensioner of driven was on its upper stop from" in said
 
 
 @pytest.mark.parametrize(

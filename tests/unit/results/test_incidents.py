@@ -26,7 +26,7 @@ def test_gross_slip_has_periods_and_is_not_that_of_a_single_output(make_run: Mak
     sliding[[*range(20, 31), *range(60, 71), 90], 1] = 0.5
     run = make_run(sliding_speed=sliding)
     time = run.dataset["time"].values
-    assert found(run) == [f"the belt slid through on driven from {time[20]:.4g} to {time[70]:.4g} s, 2 times"]
+    assert found(run) == [f"the belt was in gross slip on driven from {time[20]:.4g} to {time[70]:.4g} s, 2 times"]
     sliding[:] = 0.0
     sliding[50, 0] = 0.5
     assert found(make_run(sliding_speed=sliding)) == []
@@ -45,7 +45,7 @@ def test_stops(make_run: MakeRun, drive: Drive, place: float, side: str) -> None
     slide = {"kind": "sliding", "pulley": "driven", "direction": [1, 0], "mass": 1.0, "preload": 60.0}
     stopped = drive.replace(tensioner=[{**slide, "stops": [-0.01, 0.01], "stop_stiffness": 1e5}])
     dataset = make_run().dataset.assign(tensioner_position=(("time", "tensioner"), np.full((101, 1), place)))
-    expected = [f"the tensioner of driven lay on its {side} stop from 0 to {float(dataset['time'][-1]):.4g} s"]
+    expected = [f"the tensioner of driven was on its {side} stop from 0 to {float(dataset['time'][-1]):.4g} s"]
     assert found(Run(dataset, stopped)) == (expected if side else [])
 
 

@@ -109,7 +109,7 @@ def test_file_is_readable_while_it_grows(
     with run.dataset as late:
         assert late.sizes["time"] == 5
         assert run.status == "running"
-        assert any("the run goes on, or was killed" in warning for warning in run.warnings)
+        assert any("the run is still going, or was killed" in warning for warning in run.warnings)
 
 
 @pytest.mark.parametrize("status", ["completed", "interrupted", "failed"])

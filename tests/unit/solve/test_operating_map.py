@@ -111,7 +111,7 @@ def test_a_belt_lifts_off_at_the_speed_that_check_names() -> None:
     loads = found.dataset.hub_load.sel(pulley="driven").values
     assert loads[1] / loads[0] == pytest.approx(0.75, abs=0.01)
     assert loads[2] / loads[0] < 0.1  # what bends the belt around a pulley presses on its middle
-    assert any("lifts it off" in text for text in found.warnings)
+    assert any("lifts the belt off" in text for text in found.warnings)
 
 
 def test_bad_input(loaded: Drive) -> None:
@@ -140,7 +140,7 @@ def test_a_torque_over_the_angle_counts_with_its_mean_and_the_map_says_so(loaded
         for torque, load in ((None, [table]), ({"kind": "constant", "value": -10.0}, ()))
     )
     np.testing.assert_allclose(uneven.dataset.span_tension, even.dataset.span_tension, rtol=1e-9)
-    said = [warning for warning in uneven.warnings if "it counts with its mean over a cycle" in warning]
+    said = [warning for warning in uneven.warnings if "steady running uses its mean over a cycle" in warning]
     assert len(said) == 1
     assert said[0].startswith("at speed 573 rpm: the load of driven")
     assert said[0].endswith("So at 1 more point, up to speed 1146 rpm.")

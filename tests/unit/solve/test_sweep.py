@@ -109,8 +109,8 @@ def test_a_sweep_begins_at_its_first_speed_where_the_settling_ended(drive: Drive
     assert float(abs(data.energy_closure).max()) < closure
     assert float(data.driver_work[0]) == 0.0
     assert run.warnings[0].startswith(
-        "the first speed had not settled when the run-up began: an unknown part of the tensions was still due to the "
-        "start. It spoils spectra at the lowest speeds. Give a settling of 3.1 s or more"
+        "the drive had not settled at the first speed when the run-up began: a transient of unknown size remains. It "
+        "distorts the spectra at the lowest speeds. Set a settling time of 3.1 s or more"
     )
 
 
@@ -127,4 +127,4 @@ def test_the_swept_speed_is_not_called_constant(drive: Drive) -> None:
     """Without time for ten turns of the driver nobody knows what is left of the start: a warning names it."""
     run = sweep(drive, pulley="driver", from_=20.0, to=30.0, duration="5 ms", settling="10 ms")
     assert "driver.speed" not in run.dataset.attrs["held"]
-    assert "Give a settling of 3.1 s or more" in " ".join(run.warnings)
+    assert "Set a settling time of 3.1 s or more" in " ".join(run.warnings)

@@ -50,8 +50,8 @@ def test_slope_of_the_friction_law(slope: float) -> None:
 def test_contact_damping_that_takes_power() -> None:
     """Under a tenth of the load, of which damping of a hundred times the critical one takes 3 %."""
     damped = simulate(loaded(torque=-0.2, damping=1e5))
-    free = simulate(loaded(torque=-0.2, damping=remedy(damped, "damping between belt and pulleys takes")))
-    assert not [warning for warning in free.warnings if "damping between belt and pulleys" in warning]
+    free = simulate(loaded(torque=-0.2, damping=remedy(damped, "contact damping dissipates")))
+    assert not [warning for warning in free.warnings if "contact damping dissipates" in warning]
     assert summarize(free).balance.losses["contact damping"] < 2e-3 * summarize(free).balance.power_in
 
 

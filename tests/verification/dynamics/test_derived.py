@@ -52,7 +52,7 @@ def test_a_drive_that_slides_through_has_the_margin_of_a_capstan(
     stretch, creep = 24.0 / 1e4, 2.0 * 0.3 * 40.0 / 0.08125 / 1e5 / RIM
     assert float(np.abs(parts["creep"]).max()) < 100.0 * 2.0 * (stretch + creep)
     assert float(parts["sliding"][:, 1].min()) > 50.0
-    assert any("through: the belt slides on the whole arc" in warning for warning in fine.warnings)
+    assert any("gross slip: the belt slides on the whole arc" in warning for warning in fine.warnings)
     assert driver.slip == 0.0
 
 

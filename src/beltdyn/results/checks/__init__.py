@@ -1,4 +1,4 @@
-"""What makes a result doubtful, said with numbers and a remedy.
+"""Checks of a result: findings with numbers and a remedy.
 
 A check takes the `Evidence` of a run and gives `Finding` objects, none when all is well. Each file holds a family of
 them; to add one, write it there and enter it in `CHECKS`.
@@ -59,11 +59,11 @@ CHECKS: tuple[Check, ...] = (
     stopped_tensioners,
     unresolved_by_mesh,
 )
-"""Every check, in the order in which its findings are shown."""
+"""All checks, in the order in which their findings are shown."""
 
 
 def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> list[Finding]:
-    """Look for what makes a result doubtful.
+    """Check a result.
 
     Parameters
     ----------
@@ -77,11 +77,11 @@ def find(recorded: Recorded, drive: Drive, resolution: Resolution | None) -> lis
     Returns
     -------
     list of Finding
-        What was found.
+        The findings.
     """
     if resolution is None:
         return [NOTHING_RECORDED]
     evidence = Evidence(recorded, drive, resolution)
     if "slips_through" in recorded.attrs:
-        return list(ended_by_slip(evidence))  # the other checks would tell of the same in other words
+        return list(ended_by_slip(evidence))  # the other checks would repeat this
     return [replace(finding, kind=check.__name__) for check in CHECKS for finding in check(evidence)]

@@ -1,4 +1,4 @@
-"""Contact and tension that are lost, and belts that sink in or stretch more than belts do."""
+"""Lost contact, slack spans, and excessive penetration, tension or strain."""
 
 from collections.abc import Iterator
 
@@ -16,10 +16,10 @@ DEEPEST_OF_RADIUS, DEEPEST_OF_THICKNESS = 0.1, 0.5
 """Largest penetrations over the radius and over the belt's thickness that pass without a warning."""
 
 LIFTED = 0.95
-"""Part of the tension that m v^2 may take before the belt counts as lifted off."""
+"""Share of the tension that m v^2 may reach before the belt counts as lifted off."""
 
 _INSTANTS = 40
-"""Outputs of fields at which places of contact are looked at, at most."""
+"""Largest number of field outputs examined for contact."""
 
 
 def slack_spans(evidence: Evidence) -> Iterator[Finding]:
@@ -35,15 +35,15 @@ def slack_spans(evidence: Evidence) -> Iterator[Finding]:
     missing = -float(lowest.min())
     by = f" by more than {missing:.2g} N" if missing > 0.0 else ""
     yield Finding(
-        f"the belt goes slack, since its tension falls to zero or below: {listing(falls)}.",
-        "A slack belt sags and flaps, and this one is pushed: tensions, hub loads and slip are wrong then, in "
+        f"the belt goes slack (tension zero or negative): {listing(falls)}.",
+        "A real belt would sag and flap; the model carries compression. Tensions, hub loads and slip are wrong in "
         f"{np.mean(slack):.0%} of the run.",
-        f"Raise the installed tension{by}, start more gently, or lower the load.",
+        f"Raise the installed tension{by}, start more gently, or reduce the load.",
     )
 
 
 def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that the belt leaves, of those it is laid on."""
+    """Pulleys that lose all contact with the belt."""
     free = np.asarray(evidence.recorded["wrap_angle"]) <= 0.0
     left = free & (evidence.drive.path.wrap_angles > 0.0)
     lost = [
@@ -54,14 +54,14 @@ def leaves_pulley(evidence: Evidence) -> Iterator[Finding]:
     if lost:
         yield Finding(
             f"the belt lifts off {listing(lost)}.",
-            f"Spans beside a pulley without belt have no tension and no speed: in {left.any(axis=1).mean():.0%} of the "
-            "run numbers are missing.",
+            f"The spans beside a pulley without contact have no tension or speed: values are missing in "
+            f"{left.any(axis=1).mean():.0%} of the run.",
             "Raise the installed tension, or lower the speed.",
         )
 
 
 def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys on which the moving belt hardly presses, since m v^2 takes the tension of both spans beside."""
+    """Pulleys on which the moving belt barely presses because m v^2 approaches the tension of the adjacent spans."""
     drive = evidence.drive
     if drive.ends:
         return
@@ -79,17 +79,17 @@ def lifted_by_speed(evidence: Evidence) -> Iterator[Finding]:
         row, number = np.argwhere(lifted)[0]
         fastest, held = float(np.nanmax(np.abs(speed[row]))), float(mean[row, number])
         yield Finding(
-            f"the speed of the belt lifts it off {listing(times)}: at {fastest:.4g} m/s it takes "
-            f"{taken[row, number]:.4g} N to bend it around {drive.pulleys[number].name}, of a tension of {held:.4g} N.",
-            f"It presses there with less than {1.0 - LIFTED:.0%} of its tension, and transmits as little: torques and "
-            f"slip in {lifted.any(axis=1).mean():.0%} of the results are those of a belt that hardly touches.",
-            "Raise the installed tension, lower the speed, take a lighter belt, or a tensioner with a spring, which "
-            "keeps the belt on.",
+            f"centrifugal force lifts the belt off {listing(times)}: at {fastest:.4g} m/s it is "
+            f"{taken[row, number]:.4g} N on {drive.pulleys[number].name}, of a tension of {held:.4g} N.",
+            f"Less than {1.0 - LIFTED:.0%} of the tension presses the belt on the pulley, so it transmits almost no "
+            f"torque: torques and slip are affected in {lifted.any(axis=1).mean():.0%} of the results.",
+            "Raise the installed tension, reduce the speed, choose a lighter belt, or add a spring-loaded tensioner, "
+            "which keeps the belt on.",
         )
 
 
 def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys into which the belt sinks so far that the softness of the contact shapes the result."""
+    """Pulleys into which the belt sinks so far that the contact stiffness affects the result."""
     drive = evidence.drive
     depths, times = _deepest(evidence)
     most = np.minimum(DEEPEST_OF_RADIUS * drive.radii, DEEPEST_OF_THICKNESS * drive.belt.thickness)
@@ -104,7 +104,7 @@ def deep_penetration(evidence: Evidence) -> Iterator[Finding]:
             f"the belt sinks {listing(deep)}.",
             "Torque arms, wrap angles and tensions are those of pulleys up to "
             f"{(depths / drive.radii).max():.1%} smaller.",
-            f"Raise contact.stiffness = {drive.contact_stiffness:g} N/m^2 to "
+            f"Increase contact.stiffness from {drive.contact_stiffness:g} N/m^2 to "
             f"{drive.contact_stiffness * (depths / most).max():.1e}.",
         )
 
@@ -123,20 +123,20 @@ def _deepest(evidence: Evidence) -> tuple[FloatArray, FloatArray]:
 
 
 def large_tension(evidence: Evidence) -> Iterator[Finding]:
-    """Spans under more tension than their belt is used with."""
+    """Spans whose tension exceeds the rating of the belt."""
     most, tension = evidence.drive.belt.largest_tension, np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     if most is not None and tension.max() >= most:
         row, span = np.unravel_index(int(tension.argmax()), tension.shape)
         yield Finding(
             f"the span {names(evidence.recorded, 'span')[span]} carries {tension[row, span]:.4g} N at t = "
-            f"{evidence.time[row]:.4g} s, and the belt is used below {most:.4g} N.",
-            "Cords stretch for good, and belt and bearings live a fraction of their time.",
-            f"Take a belt {tension.max() / most:.2g} times as wide or more, or lower tension or load.",
+            f"{evidence.time[row]:.4g} s; the belt is rated for {most:.4g} N.",
+            "The cords stretch permanently, and belt and bearings fail early.",
+            f"Choose a belt at least {tension.max() / most:.2g} times as wide, or reduce the tension or the load.",
         )
 
 
 def large_strain(evidence: Evidence) -> Iterator[Finding]:
-    """Spans that stretch more than belts do."""
+    """Spans with an unrealistic strain."""
     tension = np.nan_to_num(np.asarray(evidence.recorded["span_tension"]))
     row, span = np.unravel_index(int(tension.argmax()), tension.shape)
     belt, most = evidence.drive.belt, float(tension[row, span])
@@ -145,15 +145,15 @@ def large_strain(evidence: Evidence) -> Iterator[Finding]:
     if belt.stretch_curve is not None:
         if strain > belt.stretch_curve.strains[-1]:
             yield Finding(
-                f"{where} is stretched by {strain:.2%}, and belt.stretch_curve ends at "
+                f"{where} is stretched by {strain:.2%}, but belt.stretch_curve ends at "
                 f"{belt.stretch_curve.strains[-1]:.2%}.",
-                f"Up to {most:.4g} N are a guess: beyond the last point the curve goes on as a straight line.",
-                "Measure farther, or lower the tension.",
+                f"Tensions up to {most:.4g} N are extrapolated by a straight line from the last point of the curve.",
+                "Extend the measured curve, or reduce the tension.",
             )
     elif strain > STRAIN_LIMIT:
         yield Finding(
-            f"{where} is stretched by {strain:.1%}, more than {STRAIN_LIMIT:.0%}: few belts bear that.",
-            f"Up to {most:.4g} N are taken from a constant axial stiffness, which few belts have so far.",
-            f"Lower the tension, see whether the axial stiffness of {belt.axial_stiffness:.4g} N is right, or give a "
-            "measured belt.stretch_curve.",
+            f"{where} is stretched by {strain:.1%}, more than the {STRAIN_LIMIT:.0%} that most belts withstand.",
+            f"Tensions up to {most:.4g} N assume a constant axial stiffness, which few belts have at this strain.",
+            f"Reduce the tension, check the axial stiffness of {belt.axial_stiffness:.4g} N, or give a measured "
+            "belt.stretch_curve.",
         )

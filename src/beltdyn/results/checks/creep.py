@@ -1,4 +1,4 @@
-"""Slip that creep cannot make, and slip that the slope of the friction law makes."""
+"""Slip below the elastic creep, and slip due to the slope of the friction law."""
 
 from collections.abc import Iterator
 
@@ -10,23 +10,23 @@ from beltdyn.results.checks.evidence import Evidence
 from beltdyn.theory.creep import entry_creep
 
 SLIP_DEFECT = 5e-4
-"""Part of the speed by which slip may fall short of elastic creep without a warning."""
+"""Share of the speed by which slip may fall short of elastic creep without a warning."""
 
 LEAST_SLIP = 1e-3
-"""Slip up to which it does not matter what makes it."""
+"""Slip below which its cause does not matter."""
 
 LOSS_LIMIT = 0.02
-"""Part of the losses by which they may be wrong without a warning."""
+"""Relative error of the losses without a warning."""
 
 _LEAST = 0.01
-"""Friction without what its slope adds, over that, at least."""
+"""Least friction loss without the part due to the slope, over that part."""
 
 _TRANSMITS = 0.01
-"""Part of the power put in above which a pulley counts as one that transmits power."""
+"""Share of the power input above which a pulley counts as loaded."""
 
 
 def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that lose less speed against the driver than elastic creep alone takes, over whole turns of the belt."""
+    """Pulleys whose slip behind the driver is below the elastic creep, over whole turns of the belt."""
     driver = max(evidence.pulleys, key=lambda pulley: pulley.power)
     if not (driver.power > 0.0 and evidence.window.turns and np.isfinite(driver.slip)):
         return
@@ -44,22 +44,22 @@ def impossible_slip(evidence: Evidence) -> Iterator[Finding]:
         if pulley.power < -_TRANSMITS * driver.power and defect > SLIP_DEFECT:
             worst = max(worst, defect)
             faults.append(
-                f"{pulley.name} turns {-slip:.3%} faster than {driver.name}, which drives it"
+                f"{pulley.name} runs {-slip:.3%} faster than its driver {driver.name}"
                 if slip < 0.0
-                else f"{pulley.name} slips {slip:.3%} behind {driver.name}, less than the {elastic:.3%} by which the "
-                "belt stretches"
+                else f"the slip of {pulley.name} behind {driver.name} is {slip:.3%}, less than its elastic creep of "
+                f"{elastic:.3%}"
             )
     if faults:
         yield Finding(
-            f"{listing(faults)}: no belt can do that.",
-            f"Speeds, speed ratios and slip are wrong by {worst:.2%} of the speed or more; tensions and torques are "
-            "not concerned.",
-            f"The belt has too few elements: set belt.elements = {2 * evidence.drive.elements} and compare.",
+            f"{listing(faults)}, which is physically impossible.",
+            f"Speeds, speed ratios and slip are wrong by at least {worst:.2%} of the speed; tensions and torques are "
+            "not affected.",
+            f"The mesh is too coarse: set belt.elements = {2 * evidence.drive.elements} and compare.",
         )
 
 
 def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
-    """Slip of which the slope of the friction law makes more than elastic creep does."""
+    """Slip that is due more to the slope of the friction law than to elastic creep."""
     led = [
         pulley
         for pulley in evidence.pulleys
@@ -77,15 +77,15 @@ def regularised_slip(evidence: Evidence) -> Iterator[Finding]:
         parts = [f"{one.regularisation:.2%} of {one.slip:.2%} on {one.name}" for one in led]
         losses = sum(abs(one.regularisation * one.belt_torque) / radii[one.name] for one in led) * rim
         yield Finding(
-            "friction builds up too slowly with the slip velocity: it makes more slip than the belt's stretch does, "
-            f"{listing(parts)}.",
+            "friction builds up too slowly with slip velocity: the slope of the friction law causes more slip than "
+            f"elastic creep, {listing(parts)}.",
             f"Slip is too large by as much, and friction losses by about {losses:.2g} W.",
-            f"To have the slip of the belt, {other_creep(evidence.drive, 0.1)}.",
+            f"To resolve elastic creep, {other_creep(evidence.drive, 0.1)}.",
         )
 
 
 def smoothed_friction(evidence: Evidence) -> Iterator[Finding]:
-    """Losses of friction that the slope of its law adds, by the creep at the entries of arcs (`entry_creep`)."""
+    """Friction losses added by the slope of the friction law, from the creep at arc entries (`entry_creep`)."""
     window, lost = evidence.window, evidence.balance.lost
     if evidence.drive.ends or not window.turns or any(regularised_slip(evidence)):
         return
@@ -94,16 +94,16 @@ def smoothed_friction(evidence: Evidence) -> Iterator[Finding]:
     if lost > power and power > LOSS_LIMIT * (lost - power):
         worst = evidence.pulleys[int(np.argmax(added))]
         yield Finding(
-            f"friction builds up so slowly with the slip velocity that it takes about {power:.2g} W more than a "
-            f"belt's creep, most on {worst.name}.",
-            f"Losses are {power / (lost - power):.1%} too large, those of friction by "
+            f"friction builds up too slowly with slip velocity: it dissipates about {power:.2g} W more than elastic "
+            f"creep, most of it on {worst.name}.",
+            f"Losses are too large by {power / (lost - power):.1%}, those in friction by "
             f"{power / max(evidence.balance.losses['friction'] - power, _LEAST * power):.0%}.",
-            f"To have the losses of the belt, {other_creep(evidence.drive, 0.1)}.",
+            f"To resolve the losses of elastic creep, {other_creep(evidence.drive, 0.1)}.",
         )
 
 
 def _added_by_slope(evidence: Evidence, number: int) -> float:
-    """Power that friction takes on a pulley beyond Coulomb's, W."""
+    """Friction loss on a pulley in excess of Coulomb friction, W."""
     drive, pulley = evidence.drive, evidence.pulleys[number]
     radius, friction = float(drive.radii[number]), float(drive.frictions[number])
     tensions = np.asarray(evidence.recorded["span_tension"][evidence.window.first :]).mean(axis=0)
@@ -118,7 +118,7 @@ def _added_by_slope(evidence: Evidence, number: int) -> float:
 
 
 def _exceeds_stretch(evidence: Evidence, slip: float) -> bool:
-    """Whether rims come apart by more, within the window, than the belt's stretch changes with its tension."""
+    """Whether rims drift apart within the window by more than the belt's stretch changes with its tension."""
     drive, window = evidence.drive, evidence.window
     speed, radius = evidence.pulleys[drive.reference].speed, float(drive.rolling_radii[drive.reference])
     passed = abs(speed) * radius * (window.end - window.start)

@@ -9,28 +9,28 @@ from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.recorded import attribute
 
 SETTLED = 0.01
-"""What may be left of the start of a run-up in the span tensions, over the largest mean one."""
+"""Starting transient left in the span tensions at the start of a run-up, over the largest mean span tension."""
 LEAST_WINDOWS = 5
-"""Windows of means from which on it is known what is left."""
+"""Averaging windows needed to measure the remaining transient."""
 _TURNS = 2.0
-"""Turns of the swept pulley, and waves of its slowest harmonic, that a window holds at least."""
+"""Least turns of the swept pulley, and waves of its slowest harmonic, in a window."""
 
 NOTHING_RECORDED = Finding(
     "nothing was recorded: the run ended before its first output.",
-    "There are no numbers.",
+    "The result holds no numbers.",
     "Run the drive again.",
 )
 
 
 def unfinished(evidence: Evidence) -> Iterator[Finding]:
-    """Say that the run ended before its time."""
+    """A run that ended early."""
     status = evidence.recorded.attrs["status"]
     if status != "completed":
-        ended = {"interrupted": "was interrupted", "failed": "failed"}.get(status, "goes on, or was killed")
+        ended = {"interrupted": "was interrupted", "failed": "failed"}.get(status, "is still going, or was killed")
         yield Finding(
             f"the run {ended}: results end at t = {evidence.time[-1]:.6g} s of {evidence.drive.simulation.end:.6g} s.",
-            f"Means are those from {evidence.window.start:.4g} s on, and may be those of a start.",
-            "Run the drive again for the rest, unless it is being computed.",
+            f"Means are taken from {evidence.window.start:.4g} s on and may include the starting transient.",
+            "Run the drive again to complete it, unless it is still being computed.",
         )
 
 
@@ -41,26 +41,26 @@ def least_window(pulley: Pulley, speed: float) -> float:
 
 
 def unsettled(evidence: Evidence) -> Iterator[Finding]:
-    """Say that a run-up, or a run from steady running, began before the transients of its start had died."""
+    """A run-up, or a run from steady running, that began before its starting transient had decayed."""
     left = attribute(evidence.recorded, "settling_left", 0.0)
     if not left < SETTLED and evidence.drive.simulation.start == "steady":
         yield Finding(
-            f"steady running had not settled on the mesh that travels: {left:.1%} of the largest mean span tension is "
-            "still on its way.",
-            "What the run shows at its beginning is in part that.",
-            'Set simulation.frame = "staying", or give more belt.elements.',
+            f"steady running had not settled on the travelling mesh: a transient of {left:.1%} of the largest mean "
+            "span tension remains.",
+            "The first part of the run still shows this transient.",
+            'Set simulation.frame = "staying", or increase belt.elements.',
         )
     elif not left < SETTLED:
-        much, longer = f"{left:.1%} of the largest mean span tension was", "a longer settling"
+        much, longer = f"a transient of {left:.1%} of the largest mean span tension", "a longer settling time"
         swept = [one for one in evidence.drive.pulleys if one.name == evidence.recorded.attrs.get("swept_pulley")]
         if isnan(left) and swept and swept[0].speed is not None:
             window = least_window(swept[0], float(swept[0].speed.at(evidence.time[:1])[0]))
             much, longer = (
-                "an unknown part of the tensions was",
-                f"a settling of {LEAST_WINDOWS * window:.2g} s or more",
+                "a transient of unknown size",
+                f"a settling time of {LEAST_WINDOWS * window:.2g} s or more",
             )
         yield Finding(
-            f"the first speed had not settled when the run-up began: {much} still due to the start.",
-            "It spoils spectra at the lowest speeds.",
-            f"Give {longer}, or begin at a higher speed.",
+            f"the drive had not settled at the first speed when the run-up began: {much} remains.",
+            "It distorts the spectra at the lowest speeds.",
+            f"Set {longer}, or start at a higher speed.",
         )

@@ -1,4 +1,4 @@
-"""What checks look at, and what they have in common."""
+"""The data that checks examine, and their common parts."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -17,12 +17,12 @@ from beltdyn.results.resolution import Resolution
 from beltdyn.results.window import Window
 
 IDLE = 0.01
-"""Power put in over tension times belt speed up to which a drive idles."""
+"""Power input over tension times belt speed below which a drive idles."""
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """What checks look at; a run with at least one output.
+    """The data that checks examine: a run with at least one output.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Evidence:
 
     @cached_property
     def window(self) -> Window:
-        """What means are taken over."""
+        """The averaging window."""
         return mean_window(self.recorded, self.drive)
 
     @cached_property
@@ -60,9 +60,9 @@ class Evidence:
 
     @cached_property
     def power(self) -> float:
-        """Power that shares are told of, W: that put in, and no less than `IDLE` of tension times belt speed.
+        """Reference power of shares, W: the power input, and no less than `IDLE` of tension times belt speed.
 
-        What a drive that idles loses is no part of a power that is transmitted.
+        The losses of an idling drive are not a share of a transmitted power.
         """
         spans = span_means(self.recorded, self.drive, self.window)
         carried = max((one.tension * abs(one.belt_speed) for one in spans), default=0.0)
@@ -72,10 +72,10 @@ class Evidence:
 Check = Callable[[Evidence], Iterator[Finding]]
 
 _FINER = 10.0
-"""How many times smaller a tolerance is that a remedy names."""
+"""Factor by which a remedy reduces a tolerance."""
 
 
 def shorter_steps(drive: Drive) -> str:
-    """The remedy where time steps are too long; steps of a second-order method grow with the root of the tolerance."""
+    """The remedy for long time steps; the steps of a second-order method scale with the root of the tolerance."""
     rtol = drive.simulation.rtol
-    return f"Set simulation.rtol = {rtol / _FINER:g} in place of {rtol:g}; a run then takes about three times as long."
+    return f"Reduce simulation.rtol from {rtol:g} to {rtol / _FINER:g}; a run then takes about three times as long."

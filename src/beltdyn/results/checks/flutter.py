@@ -1,4 +1,4 @@
-"""Vibrations of a belt where it slides: those that could grow far, and those that take power."""
+"""Flutter of a sliding belt: vibrations that could grow far, and those that dissipate power."""
 
 import math
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ _LARGEST = 700.0
 
 
 def flutter(evidence: Evidence) -> Iterator[Finding]:
-    """Vibrations that could grow further than the limit while the belt slid, or that contact damping tells of.
+    """Vibrations that could grow beyond the limit while the belt slid, or that show in the contact damping.
 
     States in which the belt flutters already show less growth than those from which it begins; but then the vibrations
     take power in contact damping.
@@ -26,18 +26,18 @@ def flutter(evidence: Evidence) -> Iterator[Finding]:
         attribute(evidence.recorded, f"flutter_{name}", 0.0) for name in ("growth", "start", "end", "frequency")
     )
     drive, share = evidence.drive, damping_share(evidence)
-    between = f"between t = {start:.4g} s and {end:.4g} s vibrations of {frequency:.0f} Hz"
+    between = f"between t = {start:.4g} s and {end:.4g} s, vibrations of {frequency:.0f} Hz"
     fault = ""
     if growth > GROWTH_LIMIT:
         factor = math.exp(min(growth, _LARGEST))
-        fault = f"the belt may flutter where it slides: {between} could grow {factor:.1g} times."
+        fault = f"the belt may flutter where it slides: {between} could grow by a factor of {factor:.1g}."
     elif share > DAMPING_LIMIT and may_flutter(evidence):
-        fault = f"the belt flutters where it slides: {between} grow, and take {share:.1%} of the power."
+        fault = f"the belt flutters where it slides: {between} grow and dissipate {share:.1%} of the power."
     if fault:
         yield Finding(
             fault,
-            f"Contact forces are uncertain then, and speeds and slip by as much as a run with simulation.rtol = "
-            f"{drive.simulation.rtol / 10.0:g} changes them; real belts rarely flutter so.",
-            f"Set contact.damping = {DAMPING_RATIO * drive.critical_damping:.2g} N s/m^2, half of critical, in place "
-            f"of {drive.contact_damping:.2g}.",
+            f"Contact forces are then uncertain; a run with simulation.rtol = {drive.simulation.rtol / 10.0:g} shows "
+            "by how much speeds and slip are. Real belts rarely flutter like this.",
+            f"Increase contact.damping from {drive.contact_damping:.2g} to "
+            f"{DAMPING_RATIO * drive.critical_damping:.2g} N s/m^2, half of critical.",
         )

@@ -1,4 +1,4 @@
-"""What the mesh does not resolve, and which one would."""
+"""Quantities that the mesh does not resolve, and the mesh that would."""
 
 import math
 import tomllib
@@ -12,7 +12,7 @@ from beltdyn.results.resolution import found_errors
 
 
 def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
-    """Quantities whose errors, estimated or found by a finer mesh, are above their limits.
+    """Quantities whose mesh error, estimated or found with a finer mesh, exceeds its limit.
 
     Pressures at the ends of arcs need not be resolved by a number of elements that is chosen for a run over time.
     """
@@ -25,9 +25,9 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
     if worse:
         yield Finding(
             f"the mesh does not resolve {', '.join(worse)}.",
-            "The numbers change by as much on a finer mesh.",
-            f"Leave `elements` out for a graded mesh, or set belt.elements = {2 * evidence.drive.elements}; in steady "
-            "running lower `force_tolerance`.",
+            "The values change by as much on a finer mesh.",
+            f"Omit belt.elements for a graded mesh, or set belt.elements = {2 * evidence.drive.elements}; in steady "
+            "running reduce `force_tolerance`.",
         )
     if not found:
         errors, needed = evidence.resolution.errors, evidence.resolution.needed

@@ -1,4 +1,4 @@
-"""Pulleys whose whole arc slides, or is near to it."""
+"""Pulleys in gross slip, or near it."""
 
 from collections.abc import Iterator
 from math import ceil, floor
@@ -11,15 +11,15 @@ from beltdyn.results.incidents import SLIDING_LIMIT, slides_through
 from beltdyn.results.mechanics import rim_speeds
 from beltdyn.results.slip_margin import STATE, friction_used
 
-SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or up to a lower speed."
-"""What to do where a pulley slips through in a run-up."""
+SWEEP_REMEDY = "Raise the tension or the wrap angle, reduce the load, or sweep more slowly or to a lower speed."
+"""Remedy for gross slip in a run-up."""
 
 MARGIN_LIMIT = 1.5
 """Smallest capstan margin that passes without a warning."""
 
 
 def gross_slip(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that slide through at the end of the run; a belt held at an end slides for its use."""
+    """Pulleys in gross slip at the end of the run; a belt held at an end slides by design."""
     drive, numbers = evidence.drive, _sliding(evidence)
     if not numbers:
         return
@@ -31,16 +31,15 @@ def gross_slip(evidence: Evidence) -> Iterator[Finding]:
         heats.append(f"{speed * abs(pulley.belt_torque) / drive.radii[number]:.3g} W on {pulley.name}")
     names = [evidence.pulleys[number].name for number in numbers]
     yield Finding(
-        f"{listing(names)} {'slide' if names[1:] else 'slides'} through: the belt slides on the whole arc, at "
-        f"{listing(speeds)}.",
-        f"Friction heats the belt by {listing(heats)}; speeds and torques are those that a coefficient of friction of "
-        f"{_frictions(evidence, numbers)} passes on, and change with it.",
+        f"gross slip: the belt slides on the whole arc of {listing(names)}, at {listing(speeds)}.",
+        f"Friction heats the belt with {listing(heats)}; speeds and torques depend directly on the coefficient of "
+        f"friction ({_frictions(evidence, numbers)}).",
         "Raise the tension or the wrap angle, or reduce the load.",
     )
 
 
 def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that are near to sliding through at the end of the run."""
+    """Pulleys near gross slip at the end of the run."""
     sliding = _sliding(evidence)
     near = [
         (pulley, number)
@@ -56,26 +55,25 @@ def near_gross_slip(evidence: Evidence) -> Iterator[Finding]:
     pressing = 1.0 - drive.belt.mass_per_length * float(np.mean(speed**2)) / float(np.mean(tension))
     missing = MARGIN_LIMIT / worst.margin - 1.0
     held = listing([f"the tensioner of {one.pulley}" for one in drive.moving_tensioners] or ["the belt"])
-    margins = [f"{floor(100.0 * one.margin) / 100.0:.2f} times all loads on {one.name}" for one, _ in near]
+    margins = [f"{floor(100.0 * one.margin) / 100.0:.2f} on {one.name}" for one, _ in near]
     yield Finding(
-        f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near slipping through: the belt "
-        f"would slide on the whole arc at {listing(margins)}, "
-        f"less than {MARGIN_LIMIT:g} times.",
-        f"The numbers hold as long as friction does: where it falls by more than {max(1.0 - least, 0.0):.0%}, as by "
-        f"water or oil, {worst.name} stops pulling.",
-        f"Raise the tension of {held} by about {_percent(missing * pressing)}, lower the loads by "
-        f"{_percent(missing / (1.0 + missing))}, or lay the belt around more of {worst.name}.",
+        f"{listing([pulley.name for pulley, _ in near])} {'are' if near[1:] else 'is'} near gross slip: the capstan "
+        f"margin is {listing(margins)}, less than {MARGIN_LIMIT:g}.",
+        f"If friction drops by more than {max(1.0 - least, 0.0):.0%}, for example through water or oil, "
+        f"{worst.name} loses its grip and these numbers no longer hold.",
+        f"Raise the tension of {held} by about {_percent(missing * pressing)}, reduce the loads by "
+        f"{_percent(missing / (1.0 + missing))}, or increase the wrap angle of {worst.name}.",
         weight=1.0 / worst.margin,
     )
 
 
 def _percent(part: float) -> str:
-    """A part that is to be changed, in whole percent and not below one."""
+    """A relative change in whole per cent, at least one."""
     return f"{max(ceil(100.0 * part - 1e-9), 1)}%"
 
 
 def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
-    """Pulleys that reached gross slip earlier than at the end of the run, for more than a single output at a time."""
+    """Pulleys in gross slip before the end of the run, for more than a single output at a time."""
     first, drive = evidence.window.first, evidence.drive
     if drive.ends or first < 2:
         return
@@ -86,21 +84,21 @@ def gross_slip_before(evidence: Evidence) -> Iterator[Finding]:
         when = reached[:, number]
         load = abs(torque[:first][when, number][0])
         found.append(
-            f"{drive.pulleys[number].name} from t = {times[when][0]:.4g} to {times[when][-1]:.4g} s, first at "
+            f"{drive.pulleys[number].name} from t = {times[when][0]:.4g} to {times[when][-1]:.4g} s, starting at "
             f"{load:.4g} N m"
         )
         longest = max(longest, float(durations[when].sum()))
     if found:
         yield Finding(
-            f"the belt slid through on {listing(found)}: that was more than friction transmits.",
-            f"Speeds and angles of the driven pulleys fell behind then, for {longest:.2g} s in all; means are those of "
-            f"the time from {evidence.window.start:.4g} s on.",
+            f"the belt was in gross slip on {listing(found)}: the torque exceeded what friction can transmit.",
+            f"Driven pulleys fell behind in speed and angle for {longest:.2g} s in total; means are taken from "
+            f"{evidence.window.start:.4g} s on.",
             "Raise the tension or the wrap angle, or start and load more gently.",
         )
 
 
 def _sliding(evidence: Evidence) -> list[int]:
-    """Numbers of the pulleys that slide through at the end of the run."""
+    """Numbers of the pulleys in gross slip at the end of the run."""
     limit = SLIDING_LIMIT * _driving_rim(evidence)
     sliding = (abs(pulley.sliding_speed) > limit for pulley in evidence.pulleys)
     return [] if evidence.drive.ends else [number for number, slides in enumerate(sliding) if slides]
@@ -118,6 +116,6 @@ def _frictions(evidence: Evidence, numbers: list[int]) -> str:
 
 
 def ended_by_slip(evidence: Evidence) -> Iterator[Finding]:
-    """A pulley that slipped through in a run-up, which ended there."""
+    """A pulley in gross slip during a run-up, which ended there."""
     fault = str(evidence.recorded.attrs["slips_through"])
-    yield Finding(fault, "Results end there; the last ones are those of a belt that slides.", SWEEP_REMEDY)
+    yield Finding(fault, "Results end there; the last ones are those of a sliding belt.", SWEEP_REMEDY)

@@ -1,4 +1,4 @@
-"""What steady running leaves out."""
+"""Excitation that steady running ignores."""
 
 from collections.abc import Iterator
 
@@ -10,35 +10,36 @@ from beltdyn.results.recorded import runs_steadily
 
 
 def mean_torques(evidence: Evidence) -> Iterator[Finding]:
-    """Loads over the angle of their shafts, of which steady running takes the means."""
+    """Loads that depend on the shaft angle, which steady running averages."""
     if not runs_steadily(evidence.recorded):
         return
     for pulley in evidence.drive.pulleys:
         for load in filter(_turns_with_its_shaft, pulley.load):
             yield Finding(
-                f'the load of {pulley.name} of kind "{load.kind}" changes with the angle of its shaft: it counts '
-                "with its mean over a cycle.",
-                "Steady running leaves out what it excites: torques, tensions and speeds swing about these values.",
-                "Look at `beltdyn response`, or simulate the drive with `beltdyn run`.",
+                f'the load of {pulley.name} of kind "{load.kind}" varies with the shaft angle; steady running uses its '
+                "mean over a cycle.",
+                "The vibration it excites is ignored: torques, tensions and speeds oscillate about these values.",
+                "Use `beltdyn response`, or simulate the drive with `beltdyn run`.",
             )
 
 
 def begun_by_means(evidence: Evidence) -> Iterator[Finding]:
-    """What begins with a run, as the steady running in which the run begins leaves it out."""
+    """Excitation that sets in with a run because the initial steady running ignores it."""
     drive = evidence.drive
     if runs_steadily(evidence.recorded) or drive.simulation.start != "steady":
         return
     swinging = list(_swinging(drive))
     if swinging:
         yield Finding(
-            f"the run begins in steady running with the means of {listing(swinging)}, which swing from then on.",
-            "What it shows at first is in part the response to their beginning.",
-            "Judge it when that has died, or begin with `beltdyn sweep`, which waits for it.",
+            f"the run starts from steady running with the mean of {listing(swinging)}; the oscillation sets in at "
+            "once.",
+            "The first part of the run still shows the transient that this causes.",
+            "Use the results after it has decayed, or use `beltdyn sweep`, which waits for it.",
         )
 
 
 def _swinging(drive: Drive) -> Iterator[str]:
-    """What swings with the angles of shafts, in words."""
+    """What oscillates with the shaft angles, in words."""
     for pulley in drive.pulleys:
         if pulley.harmonics:
             yield f"the speed of {pulley.name}"

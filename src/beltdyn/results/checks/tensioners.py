@@ -1,4 +1,4 @@
-"""Where tensioners stand."""
+"""Tensioners that are unstable or on a stop."""
 
 from collections.abc import Iterator
 
@@ -12,14 +12,14 @@ from beltdyn.results.incidents import on_stops
 
 
 def unstable_tensioners(evidence: Evidence) -> Iterator[Finding]:
-    """Tensioners whose balance at rest is not stable."""
+    """Tensioners whose static equilibrium is unstable."""
     names = str(evidence.recorded.attrs.get("unstable_tensioners", ""))
     if names:
         yield unstable_balance(names.split(", "))
 
 
 def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
-    """Tensioners that lay on a stop at any time: from when to when, or since when at the end."""
+    """Tensioners on a stop at any time, and when."""
     for number, tensioner in enumerate(evidence.drive.moving_tensioners):
         if tensioner.stops is None:
             continue
@@ -29,17 +29,17 @@ def stopped_tensioners(evidence: Evidence) -> Iterator[Finding]:
                 tension = float(np.nanmean(np.asarray(evidence.recorded["span_tension"])[on]))
                 yield Finding(
                     f"the tensioner of {tensioner.pulley} {_when(on, evidence.time, name)}.",
-                    f"There the length of the belt and not its spring sets the tension, {tension:.4g} N in the mean.",
+                    f"On the stop the belt length, not the spring, sets the tension ({tension:.4g} N on average).",
                     off_the_stop(name),
                 )
 
 
 def _when(on: BoolArray, time: FloatArray, stop: str) -> str:
-    """Say since when it is on a stop, or from when to when it was and how often."""
+    """Since when it is on a stop, or when and how often it was."""
     starts = np.flatnonzero(on & ~np.append(False, on[:-1]))
     if on[-1]:
         since = f" since t = {time[starts[-1]]:.4g} s" if len(time) > 1 else ""
-        before = f", and was before from t = {time[starts[0]]:.4g} s on" if starts[1:].size else ""
+        before = f", and first reached it at t = {time[starts[0]]:.4g} s" if starts[1:].size else ""
         return f"is on its {stop} stop{since}{before}"
     last = float(time[np.flatnonzero(on)[-1]])
     often = f", {len(starts)} times" if len(starts) > 1 else ""

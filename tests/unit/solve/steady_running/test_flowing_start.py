@@ -158,7 +158,7 @@ def test_what_begins_to_swing_with_the_run_is_told(constant: Drive) -> None:
         ],
         simulation=constant.simulation.replace(duration=2e-3),
     )
-    said = "steady running with the means of the speed of driver and the load of driven, which swing from then on"
+    said = "steady running with the mean of the speed of driver and the load of driven; the oscillation sets in at once"
     assert [said in warning for warning in bd.simulate(swinging).warnings].count(True) == 1
 
 
