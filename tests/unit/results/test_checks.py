@@ -64,7 +64,7 @@ def test_siblings_are_one_finding(turning: Callable[..., Run], run: Run) -> None
     ]
     lifted = said(turning(wrap_angle=np.zeros((101, 2))), "lifts off")
     assert [text.split(".")[0] for text in lifted] == ["the belt lifts off driver at t = 0 s and driven at t = 0 s"]
-    sliding = said(turning(slip_velocity=np.full_like(dataset["slip_velocity"].values, 0.4)), "gross slip")
+    sliding = said(turning(slip_velocity=np.full_like(dataset["slip_velocity"].values, 0.4)), "gross slip:")
     assert [text.split(",")[0] for text in sliding] == [
         "gross slip: the belt slides on the whole arc of driver and driven"
     ]

@@ -186,8 +186,8 @@ def test_flutter_is_said(run: Run, fine_drive: Drive) -> None:
     assert warnings(18.6) == [
         "the belt may flutter where it slides: between t = 0.082 s and 0.12 s, vibrations of 1498 Hz could grow by a "
         "factor of 1e+08. Contact forces are then uncertain; a run with simulation.rtol = 1e-05 shows by how much "
-        "speeds and slip are. Real belts rarely flutter like this. Increase contact.damping from 10 to 1e+03 N s/m^2, half of "
-        "critical."
+        "speeds and slip are. Real belts rarely flutter like this. Increase contact.damping from 10 to 1e+03 N s/m^2, "
+        "half of critical."
     ]
     assert "could grow by a factor of 1e+304." in warnings(1e4)[0]
 
@@ -227,6 +227,6 @@ def test_tensioner_on_its_stop_is_said(run: Run, position: np.ndarray, said: lis
     evidence = Evidence(dataset, SimpleNamespace(moving_tensioners=tensioners), None)  # type: ignore[arg-type]
     found = list(stopped_tensioners(evidence))
     assert [finding.fault.removesuffix(".").split(" on its ")[1] for finding in found] == said
-    assert all("25 N in the mean" in finding.spoils for finding in found)
+    assert all("(25 N on average)" in finding.spoils for finding in found)
     lengths = ["Shorten" if "upper" in text else "Lengthen" for text in said]
     assert [finding.remedy.split(" the belt")[0] for finding in found] == lengths
