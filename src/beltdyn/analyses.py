@@ -1,4 +1,4 @@
-"""Analyses by name: each is a function of a drive, which gives a result, a command and the files that it writes."""
+"""The analyses by name, each with its function, command and result files."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 RUN, STATIC = "run", "static"
-"""Kinds of results that have a class of their own: those that grow over time, of any analysis, and those at rest."""
+"""Kinds of results with a class of their own: results over time of any analysis, and results at rest."""
 
 STUDY = "study"
-"""Kind of the results of many analyses of drives that differ in some numbers."""
+"""Kind of the results of a parameter study."""
 
 
 class Analysis(NamedTuple):
-    """Where an analysis is found, without importing it.
+    """The location of an analysis, without importing it.
 
     Attributes
     ----------
@@ -44,16 +44,16 @@ class Analysis(NamedTuple):
 
     @property
     def grows(self) -> bool:
-        """Whether results grow over time and are written as they come: the function has a parameter ``output``."""
+        """Whether results are written while they are computed: the function has a parameter ``output``."""
         return "output" in signature(self.function).parameters
 
     @property
     def tells(self) -> bool:
-        """Whether the function tells of its progress: it has a parameter ``progress``."""
+        """Whether the function reports its progress: it has a parameter ``progress``."""
         return "progress" in signature(self.function).parameters
 
     def result_file(self, drive_file: Path) -> Path:
-        """The result file of a drive file where none is named.
+        """The default result file of a drive file.
 
         Parameters
         ----------
@@ -68,10 +68,10 @@ class Analysis(NamedTuple):
         return drive_file.with_name(f"{drive_file.stem}{'' if self.name == RUN else f'-{self.name}'}.nc")
 
     def write(self, drive: Any, path: Path, progress: Any = None, overwrite: bool = False, **options: Any) -> Any:
-        """Analyse a drive, with the results in a file.
+        """Analyse a drive and write the results to a file.
 
-        A function that has a parameter ``output`` writes there as it goes, and takes ``overwrite`` too; what others
-        give is saved at the end. One that has a parameter ``progress`` tells of it.
+        A function with a parameter ``output`` writes there while it computes, and takes ``overwrite`` too; results of
+        other functions are saved at the end. A function with a parameter ``progress`` reports it.
 
         Parameters
         ----------
@@ -82,14 +82,14 @@ class Analysis(NamedTuple):
         progress : callable, optional
             Called now and then with a `beltdyn.Progress`.
         overwrite : bool
-            Replace any regular file, and not only results.
+            Replace any regular file, not only results.
         **options
             Those of the function.
 
         Returns
         -------
         Result
-            What the function gave.
+            The result of the function.
         """
         function = self.function
         shared = {"output": path, "progress": progress, "overwrite": overwrite}
@@ -102,26 +102,34 @@ class Analysis(NamedTuple):
 
 _ALL = (
     Analysis(RUN, "beltdyn.solve.simulate:simulate", "Simulate drives over time."),
-    Analysis("sweep", "beltdyn.solve.sweep:sweep", "Run a drive up through a range of speeds."),
-    Analysis(STATIC, "beltdyn.solve.equilibrium:equilibrium", "Find the static equilibrium of a drive at rest."),
-    Analysis("steady", "beltdyn.solve.steady:steady_state", "Find the steady running of a drive."),
-    Analysis("map", "beltdyn.solve.operating_map:operating_map", "Find operating points over speed and load."),
-    Analysis("traction", "beltdyn.solve.traction:traction", "Find the slip of a pulley over its torque."),
-    Analysis("duty", "beltdyn.solve.duty:duty", "Find the operating points of a duty table, and means over it."),
-    Analysis("tensioner", "beltdyn.solve.tensioner_sheet:tensioner_sheet", "Find what a tensioner does to all belts."),
+    Analysis("sweep", "beltdyn.solve.sweep:sweep", "Simulate a run-up through a range of speeds."),
+    Analysis(STATIC, "beltdyn.solve.equilibrium:equilibrium", "Find the static equilibrium of a drive."),
+    Analysis("steady", "beltdyn.solve.steady:steady_state", "Compute the steady running of a drive."),
+    Analysis("map", "beltdyn.solve.operating_map:operating_map", "Compute operating points over speed and load."),
     Analysis(
-        "sensitivity", "beltdyn.solve.sensitivity:sensitivity", "Find what results owe to each number of a drive."
+        "traction", "beltdyn.solve.traction:traction", "Compute the traction curve of a pulley (slip over torque)."
     ),
-    Analysis("modes", "beltdyn.solve.modes:modes", "Find the modes of a drive: frequencies, damping, shapes."),
-    Analysis("optimize", "beltdyn.solve.optimize:optimize", "Find the numbers of a drive that are best for a goal."),
-    Analysis("calibrate", "beltdyn.solve.calibrate:calibrate", "Fit numbers of a drive to measured results."),
-    Analysis("campbell", "beltdyn.solve.campbell:campbell", "Find modes over speed, and critical speeds."),
-    Analysis("response", "beltdyn.solve.response:response", "Find vibrations under harmonics, over speed."),
-    # one line for each
+    Analysis("duty", "beltdyn.solve.duty:duty", "Compute the operating points of a duty cycle, and their means."),
+    Analysis(
+        "tensioner",
+        "beltdyn.solve.tensioner_sheet:tensioner_sheet",
+        "Compute tensioner positions and tensions over the range of belt lengths.",
+    ),
+    Analysis(
+        "sensitivity",
+        "beltdyn.solve.sensitivity:sensitivity",
+        "Compute the sensitivity of results to each input.",
+    ),
+    Analysis("modes", "beltdyn.solve.modes:modes", "Compute natural modes: frequencies, damping, shapes."),
+    Analysis("optimize", "beltdyn.solve.optimize:optimize", "Optimize parameters of a drive for a goal."),
+    Analysis("calibrate", "beltdyn.solve.calibrate:calibrate", "Fit parameters of a drive to measured results."),
+    Analysis("campbell", "beltdyn.solve.campbell:campbell", "Compute natural modes over speed, and critical speeds."),
+    Analysis("response", "beltdyn.solve.response:response", "Compute forced vibrations under harmonics, over speed."),
+    # one line each
 )
 
 STEADY_KINDS = ("map", "traction", "duty", "tensioner", "sensitivity", "modes", "campbell", "response")
-"""Kinds of results about the belt at rest or in steady running on a mesh that stays."""
+"""Kinds of results at rest or in steady running on a staying mesh."""
 
 ANALYSES = {analysis.name: analysis for analysis in _ALL}
 """All analyses by name."""

@@ -1,10 +1,10 @@
-"""What can go wrong, each with the exit code of the command line."""
+"""The errors that beltdyn raises, with their exit codes on the command line."""
 
 
 class BeltdynError(Exception):
-    """Base of every error that beltdyn raises on purpose.
+    """Base class of all errors that beltdyn raises on purpose.
 
-    The message says the value, the rule and the remedy, and is meant to be shown as it is.
+    The message gives the value, the rule and the remedy, and can be shown to users as it is.
 
     Examples
     --------
@@ -19,7 +19,7 @@ class BeltdynError(Exception):
 
 
 class ModelError(BeltdynError, ValueError):
-    """The input cannot be used: a drive file, a result file or an output path.
+    """Invalid input: a drive file, a result file or an output path.
 
     Examples
     --------
@@ -34,13 +34,13 @@ class ModelError(BeltdynError, ValueError):
 
 
 class SimulationError(BeltdynError, RuntimeError):
-    """A simulation cannot go on; what was computed is kept."""
+    """A simulation cannot continue; results up to then are kept."""
 
     exit_code = 3
 
 
 class ConvergenceError(SimulationError):
-    """The equations find no solution: the message says when, where and what to try.
+    """The equations have no solution, or none was found; the message says when, where and what to try.
 
     Examples
     --------
@@ -53,20 +53,20 @@ class ConvergenceError(SimulationError):
 
 
 class OutputError(SimulationError):
-    """Results can no longer be written, as on a full disk; what was written before stays readable."""
+    """Results can no longer be written, for example on a full disk; results written before remain readable."""
 
 
 class LostOutputError(OutputError):
-    """The result file was removed or replaced while it was written; nothing is kept."""
+    """The result file was removed or replaced while it was being written; no results are kept."""
 
 
 class SlipError(SimulationError):
-    """A pulley slips through where that ends the analysis.
+    """Gross slip of a pulley that ends the analysis.
 
     Parameters
     ----------
     fault : str
-        Which, when and why.
+        Which pulley, when and why.
     remedy : str
         What to do.
     """
@@ -77,5 +77,5 @@ class SlipError(SimulationError):
 
 
 def cause_of(error: Exception) -> str:
-    """What an error says of its cause; of one that is not raised on purpose its type too."""
+    """The message of an error; for unexpected errors also their type."""
     return str(error) if isinstance(error, BeltdynError) else f"{type(error).__name__}: {error}"

@@ -65,7 +65,7 @@ def replace(old: str, new: str) -> Change:
         (replace(WIDTH, "width = [" + '"x", ' * LONG + "]"), "must be a number"),
         (
             replace(TORQUE, 'torque = { kind = "table", times = [' + '"x", ' * LONG + "], values = [0] }"),
-            "more errors, which are not shown",
+            "more errors are not shown",
         ),
         (replace(LENGTH, "installed_tension = 1e-12"), "lost in rounding. Give at least"),
         (replace(FAR, "center = [8e12, 0]"), "the drive extends over 8e+12 m, and 1e+07 radii"),
@@ -127,7 +127,7 @@ def test_dots_in_texts_and_comments_are_no_keys() -> None:
         ("secret\nsecret\n" * LONG, "has no numbers"),
         ("0,1\n1,two\n", 'line 2, column 2: "two" is not a number'),
         ("0,1\n" + "x" * LONG, "is not two numbers"),
-        ("\n".join(f"{number},1" for number in range(1_000_000)), "has 1,000,000 lines, and 250,000 are the limit"),
+        ("\n".join(f"{number},1" for number in range(1_000_000)), "has 1,000,000 lines; the limit is 250,000"),
     ],
 )
 def test_tables_are_quoted_only_where_they_are_tables(tmp_path: Path, content: str, told: str) -> None:

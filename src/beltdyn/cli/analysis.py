@@ -1,4 +1,4 @@
-"""The command of an analysis, made of its function: options, progress, tables, warnings, and result files."""
+"""Make the command of an analysis from its function: options, progress, tables, warnings and result files."""
 
 import re
 from collections.abc import Callable
@@ -21,26 +21,26 @@ if TYPE_CHECKING:
     from beltdyn.results import Run
 
 SHARED = ("output", "progress", "overwrite", "start")
-"""Parameters of functions that every command fills in itself, or leaves alone."""
+"""Parameters of the functions that are no options of the command."""
 
 _ABOUT = """
-Several drives are computed side by side on all cores. Ctrl-C, or the signal to terminate, ends the command and keeps
-what was computed. Earlier results are replaced, and no other files.
+Several drives are computed in parallel on all cores. Ctrl-C, or a termination signal, ends the command and keeps the
+results computed so far. Earlier results are replaced, but no other files.
 """
 
 _PARAMETERS = """
 output
-    The result file; by default {file}, beside the drive file. Of several drives, the folder for these.
+    The result file; by default {file}, beside the drive file. For several drives, the folder of the result files.
 jobs
-    How many drives to compute at a time; by default as many as there are cores.
+    The number of drives to compute at a time; by default the number of cores.
 csv
-    Write plain tables too, into a folder beside the result file, named after it with -tables.
+    Also write plain tables, to the folder FILE-tables beside the result file.
 report
-    Write a report too: a page beside the result file, to mail, to look at and to print.
+    Also write a report, one HTML page beside the result file, to read, mail and print.
 strict
-    End with an error (exit code 4) where a warning makes results doubtful; they are kept.
+    Treat warnings as errors: exit with code 4 if there are any. The results are kept.
 force
-    Replace other files too.
+    Also replace files that beltdyn did not write.
 """
 
 
@@ -82,7 +82,7 @@ def analysis_command(analysis: Analysis) -> Callable[..., int]:
         drive: Drive | Run
         if options.get("resume") and is_result(file):
             if output is not None and target_of(output) != target_of(file):
-                raise ModelError(f"{file} goes on in its own file, and not in {output}. Leave --output out.")
+                raise ModelError(f"A resumed run continues in its own file {file}, not in {output}. Omit --output.")
             drive, path, files = open_result(file).drive, file, ()
         else:
             drive, path = read_given(analysis, file), output or analysis.result_file(file)
@@ -119,6 +119,6 @@ def _help(analysis: Analysis, own: dict[str, Parameter]) -> str:
     summary, _, rest = text.partition("\n\nParameters\n----------\n")
     entries = [entry for entry in re.split(r"\n(?=\S)", rest.partition("\n\n")[0]) if entry.partition("\n")[0] in own]
     shared = _PARAMETERS.strip().format(file=analysis.result_file(Path("FILE.toml")))
-    run = " Or the result file of a run, which stands for its drive." if takes_runs(analysis) else ""
-    files = ["file", f"    The drive file, TOML.{run}", "more", "    More of them."]
+    run = " Or the result file of a run, whose drive is used." if takes_runs(analysis) else ""
+    files = ["file", f"    The drive file, TOML.{run}", "more", "    More drive files."]
     return f"{summary}\n{_ABOUT}\nParameters\n----------\n" + "\n".join([*files, *entries, shared]) + "\n"

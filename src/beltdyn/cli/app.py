@@ -1,4 +1,4 @@
-"""The command `beltdyn`, and what it does with errors."""
+"""The command `beltdyn`, and how it reports errors."""
 
 import os
 import sys
@@ -31,7 +31,7 @@ _BAD_INPUT = 2
 app = App(
     name="beltdyn",
     version=__version__,
-    help="Simulate belt drives: speeds, torques, tensions, slip and contact forces from one drive file.",
+    help="Simulate belt drives: speeds, torques, tensions, slip and contact forces, from one drive file.",
     help_epilogue="Start with `beltdyn demo`, or with `beltdyn new`, `beltdyn check drive.toml` and "
     "`beltdyn run drive.toml`.",
     suppress_keyboard_interrupt=False,
@@ -51,10 +51,9 @@ for position, one in enumerate(_COMMANDS):
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit.
 
-    The exit code is 0 when all went well, 2 for bad input, 3 for a simulation that could not go on, 4 for doubtful
-    results where warnings are errors, and for an interruption 128 and the number of the signal: 130 for Ctrl-C.
-    Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise: matrices are so small that more would only
-    wait for each other.
+    The exit code is 0 for success, 2 for bad input, 3 for a simulation that could not continue, 4 for warnings under
+    --strict, and for an interruption 128 plus the number of the signal: 130 for Ctrl-C.
+    Linear algebra uses one thread unless OMP_NUM_THREADS says otherwise: the matrices are too small for more.
 
     Parameters
     ----------

@@ -30,7 +30,7 @@ def analyse_several(
     force: bool,
     **options: Any,
 ) -> int:
-    """Analyse drives side by side, and show a table of them.
+    """Analyse drives in parallel, and show a table of them.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def analyse_several(
     if any(extras):
         _write_all_extras(ends, results, extras, force)
     if any(end.status in ("interrupted", "not started") for end in ends.values()):
-        show("Interrupted: what was computed is kept.")
+        show("Interrupted. The results computed so far are kept.")
         return exit_code()
     if any(end.error for end in ends.values()):
         return SimulationError.exit_code
@@ -110,14 +110,14 @@ def _result_files(analysis: Analysis, files: Sequence[Path], folder: Path | None
         if count > 1:
             sharing = [str(file) for file, result in zip(files, results, strict=True) if target_of(result) == path]
             raise ModelError(
-                f"{' and '.join(sharing)} would share the result file {path}. Rename one, or run them one by one."
+                f"{' and '.join(sharing)} would share the result file {path}. Rename one, or run them separately."
             )
     return dict(zip(files, results, strict=True))
 
 
 def _show_endings(ends: Mapping[Path, "Ending"], results: Mapping[Path, Path]) -> None:
     """Write a table of all, their warnings, and why some failed."""
-    headings = ("", "status", "speed of the last pulley", "steps", "time taken", "warnings", "results")
+    headings = ("", "status", "speed of last pulley", "steps", "wall time", "warnings", "results")
     rows = [(str(file), end.status, *_numbers(end), str(results[file]) * end.kept) for file, end in ends.items()]
     filled = [column for column in zip(headings, *rows, strict=True) if any(column[1:])]
     headings, *rows = zip(*filled, strict=True)

@@ -24,19 +24,19 @@ def catalogue(
     figure: Annotated[Path | None, Parameter(alias="-f")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """List the belts of the catalogue, or show one with all its values and where they come from.
+    """List the belts of the catalogue, or show one profile with all its values and their sources.
 
     Parameters
     ----------
     profile
-        The name of a profile, such as SPB; without it, all are listed.
+        The name of a profile, such as SPB; by default all are listed.
     file
-        A catalogue of your own, TOML, over that of the package.
+        Your own catalogue, a TOML file that extends the one of the package.
     figure
-        Draw tension over strain of the profile into this file, such as stretch.png; it replaces figures of beltdyn, and
-        no other files.
+        Plot tension over strain of the profile to this file, such as stretch.png. Only figures that beltdyn wrote are
+        replaced.
     force
-        Replace other files too.
+        Also replace files that beltdyn did not write.
     """
     from beltdyn.errors import ModelError
     from beltdyn.model.catalogue import find_entry, read_catalogue
@@ -50,7 +50,7 @@ def catalogue(
         raise ModelError(f"{str(error).rstrip('.')}.") from None
     if profile is None or entry is None:
         if figure is not None:
-            raise ModelError(f"--figure {figure} shows one profile. Name it: beltdyn catalogue PK --figure {figure}.")
+            raise ModelError(f"--figure {figure} needs a profile. Name one: beltdyn catalogue PK --figure {figure}.")
         _list(entries)
         return
     _show(profile, entry)
@@ -63,11 +63,21 @@ def catalogue(
 
 def _list(entries: "dict[str, Entry]") -> None:
     """List profiles, grouped by their kind."""
-    headings = ("profile", "values of", "thick mm", "EA kN", "EI N·m²", "g/m", "friction", "groove", "min. pulley mm")
+    headings = (
+        "profile",
+        "values of",
+        "thickness mm",
+        "EA kN",
+        "EI N·m²",
+        "g/m",
+        "friction",
+        "groove",
+        "min. pulley mm",
+    )
     kinds = {entry.kind: position for position, entry in reversed(list(enumerate(entries.values())))}
     ordered = sorted(entries.items(), key=lambda item: kinds[item[1].kind])
     show_table("Catalogue", headings, _rows(ordered))
-    show("\nThe values are generic, typical of a profile. `beltdyn catalogue SPB` shows one, with sources.")
+    show("\nThe values are generic, typical of a profile. `beltdyn catalogue SPB` shows one profile with its sources.")
 
 
 def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
@@ -88,7 +98,7 @@ def _rows(entries: "Iterable[tuple[str, Entry]]") -> Iterator[tuple[str, ...]]:
 
 
 def _size(entry: "Entry") -> str:
-    """What the values belong to."""
+    """The belt size of the values."""
     if entry.sold_by == "ribs":
         return "1 belt" if entry.pulley_diameter == "datum" else "1 rib"
     return f"{1e3 * entry.width:.3g} mm {entry.sold_by}"
@@ -99,7 +109,7 @@ def _show(profile: str, entry: "Entry") -> None:
     show(f"{profile}: {entry.title}.{' Generic values.' if entry.generic else ''}\n")
     show(f"Values of {_size(entry)}")
     show_facts((f"  {name}", fact) for name, fact in _values(entry))
-    show("\nWhat follows")
+    show("\nDerived values")
     show_facts((f"  {name}", fact) for name, fact in _consequences(entry))
     size = {"ribs": "ribs = 1", "width": 'width = "50 mm"', "diameter": 'diameter = "8 mm"'}[entry.sold_by]
     show(f'\nIn a drive file\n  [belt]\n  profile = "{profile}"\n  {size}\n\nSources')
@@ -107,7 +117,7 @@ def _show(profile: str, entry: "Entry") -> None:
 
 
 def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
-    """What the catalogue says of a profile."""
+    """The values of a profile in the catalogue."""
     from beltdyn.model.belt_form import DAMPING_TIMES, LOSSES
 
     yield "width", f"{1e3 * entry.width:.4g} mm{', the pitch or datum width' * (entry.pulley_diameter == 'datum')}"
@@ -116,16 +126,16 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
     yield "back_offset", f"{1e3 * entry.back_offset:.3g} mm from the back to the tension line"
     if entry.wedge_angle is not None:
         yield "wedge_angle", f"{degrees(entry.wedge_angle):.3g}°"
-    begins = ", with which the measured curve begins" * (entry.stretch_curve is not None)
+    begins = ", the initial slope of the measured curve" * (entry.stretch_curve is not None)
     yield "axial_stiffness", f"{entry.axial_stiffness / 1e3:.4g} kN{begins}"
     yield "bending_stiffness", f"{entry.bending_stiffness:.3g} N·m²"
     yield "mass_per_length", f"{1e3 * entry.mass_per_length:.3g} g/m"
     if entry.friction is not None:
-        yield "friction", f"{entry.friction:.3g}, before the factor of the groove"
+        yield "friction", f"{entry.friction:.3g}, without the wedge factor of the groove"
     if entry.contact_stiffness is not None:
         yield "contact_stiffness", f"{entry.contact_stiffness / 1e6:.3g} MN/m²"
     if entry.measuring_force is not None:
-        yield "measuring_force", f"{entry.measuring_force:.4g} N, half of it in each strand"
+        yield "measuring_force", f"{entry.measuring_force:.4g} N, half in each strand"
     if entry.largest_tension is not None:
         yield "largest_tension", f"{entry.largest_tension:.4g} N"
     for name in LOSSES:
@@ -134,11 +144,11 @@ def _values(entry: "Entry") -> Iterator[tuple[str, str]]:
 
 
 def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
-    """Numbers that help with a profile."""
+    """Values derived from those of a profile."""
     offset, length = 1e3 * entry.pitch_offset, _LENGTHS[entry.pulley_diameter]
-    line = f"{offset:.3g} mm outside it" if offset else "there"
-    more = f"{2 * pi * offset:.3g} mm longer (2π × {offset:.3g} mm)" if offset else "as long"
-    yield "pulleys", f"diameter = {entry.pulley_diameter} diameter; the tension line runs {line}"
+    line = f"{offset:.3g} mm outside" if offset else "at that diameter"
+    more = f"{2 * pi * offset:.3g} mm longer (2π × {offset:.3g} mm)" if offset else "of that length"
+    yield "pulleys", f"diameter = {entry.pulley_diameter} diameter; the tension line is {line}"
     yield "belts", f"nominal_length = {length}; the tension line is {more}"
     if entry.measuring_force:
         yield "measured", f"{entry.measured_stretch - 1.0:.3%} longer than unstretched, under measuring_force"
@@ -147,8 +157,8 @@ def _consequences(entry: "Entry") -> Iterator[tuple[str, str]]:
     if entry.friction is not None and entry.wedge_angle is not None:
         yield "friction in grooves", f"{entry.friction / sin(entry.wedge_angle / 2):.3g}"
     if entry.stretch_curve is None:
-        yield "stretch", f"{entry.axial_stiffness / 100:.4g} N for 1 %"
+        yield "stretch", f"{entry.axial_stiffness / 100:.4g} N at 1 %"
     else:
         points = zip(entry.stretch_curve.strains, entry.stretch_curve.tensions, strict=True)
-        yield "stretch", ", ".join(f"{tension:.4g} N for {100 * strain:.3g} %" for strain, tension in points if strain)
-    yield "speed of stretch waves", f"{sqrt(entry.axial_stiffness / entry.mass_per_length):.0f} m/s"
+        yield "stretch", ", ".join(f"{tension:.4g} N at {100 * strain:.3g} %" for strain, tension in points if strain)
+    yield "longitudinal wave speed", f"{sqrt(entry.axial_stiffness / entry.mass_per_length):.0f} m/s"

@@ -18,9 +18,9 @@ def check(
     figure: Annotated[Path | None, Parameter(alias="-f")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
-    """Validate drive files, and say what to expect of each drive at rest.
+    """Validate drive files, and show each drive at rest.
 
-    Of several files each is checked, whatever is wrong with others; the exit code is 2 if one cannot be used.
+    All files are checked, even if some are invalid; the exit code is 2 if any file is invalid.
 
     Parameters
     ----------
@@ -29,17 +29,17 @@ def check(
     more
         More drive files.
     figure
-        Draw the layout of a single drive into this file too, such as layout.png; it replaces figures of beltdyn, and
-        no other files.
+        Also plot the layout of a single drive to this file, such as layout.png. Only figures that beltdyn wrote are
+        replaced.
     force
-        Replace other files too.
+        Also replace files that beltdyn did not write.
     """
     if not more:
         _check(file, figure, force)
         return 0
     if figure is not None:
         raise ModelError(
-            f"--figure {figure} draws one drive, and {1 + len(more)} files are given. Check them one by one."
+            f"--figure {figure} plots one drive, but {1 + len(more)} files are given. Check them separately."
         )
     codes = []
     for number, one in enumerate((file, *more)):
@@ -72,12 +72,12 @@ def _check(file: Path, figure: Path | None, force: bool) -> None:
         drive, installation, unstable = rest.drive, rest.installation, rest.unstable
     except ConvergenceError as error:
         failure, installation = error, estimate
-        show("No static equilibrium was found. These are estimates by hand, without bending and weight.\n")
+        show("No static equilibrium was found. These are closed-form estimates without bending and weight.\n")
     show_parts(rest_sheet(given, drive, installation).parts)
     show()
     show_warnings([*([str(unstable_balance(unstable))] if unstable else []), *advise(given, estimate)])
     if figure is None:
-        show(f"To see the layout: beltdyn check {file} --figure layout.png")
+        show(f"Plot the layout: beltdyn check {file} --figure layout.png")
     else:
         from beltdyn import plot
 

@@ -1,4 +1,4 @@
-"""Where the command line writes, and in which style."""
+"""Output of the command line, and its style."""
 
 import codecs
 import sys
@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 _WIDEST = 200
-"""Columns of the widest table that is not broken."""
+"""Columns of the widest table that is not wrapped."""
 
 
 _SPELLED = {

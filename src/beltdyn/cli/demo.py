@@ -26,7 +26,7 @@ def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
     if not (file.is_file() and file.read_text("utf-8", "replace") == text):
         refuse_existing(file)
         write_text(file, text)
-    show(f"Drive file: {file}   (look at it with: beltdyn check {file})")
+    show(f"Drive file: {file}   (summary: beltdyn check {file})")
     run = analyse_to(ANALYSES[RUN], load(file), folder / f"{_DRIVE}.nc")
     if run.status == "completed":
         draw([run], folder)

@@ -20,24 +20,24 @@ def export(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Write a result file in formats of other programs: ParaView, spreadsheets, MATLAB, data frames.
+    """Export a result file to other programs: ParaView, spreadsheets, MATLAB, data frames.
 
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another command.
+        The result file, NetCDF, written by `beltdyn run` or another analysis.
     vtk
-        Belt and pulleys over time for ParaView and VTK, FILE-belt.vtkhdf and FILE-pulleys.vtkhdf; of runs and sweeps.
+        Belt and pulleys over time for ParaView and VTK, FILE-belt.vtkhdf and FILE-pulleys.vtkhdf; runs and sweeps only.
     csv
         Plain tables, in the folder FILE-tables.
     mat
         The same tables for MATLAB and Octave, FILE.mat.
     parquet
-        The same tables for data frames, in the folder FILE-tables, which needs `pip install "beltdyn[parquet]"`.
+        The same tables as Parquet for data frames, in the folder FILE-tables; needs the extra beltdyn[parquet].
     output
-        The folder of these; by default that of the result file.
+        The folder of the exported files; by default that of the result file.
     force
-        Replace other files than those of beltdyn too.
+        Also replace files that beltdyn did not write.
     """
     from beltdyn.results import export as export_result
     from beltdyn.results import open_result

@@ -21,7 +21,7 @@ def fmu(
 ) -> None:
     """Write a drive as a functional mock-up unit (FMU) for co-simulation with models of other programs.
 
-    It needs `pip install "beltdyn[fmu]"`, and the program that simulates it a Python with beltdyn.
+    Writing needs the extra beltdyn[fmu]; the simulating program needs a Python with beltdyn.
 
     Parameters
     ----------
@@ -30,15 +30,15 @@ def fmu(
     to
         The FMU; by default FILE.fmu, beside the drive file.
     inputs
-        What other programs set, once for each: pulley[NAME].speed of a pulley whose speed is prescribed,
-        pulley[NAME].torque of another one; by default all that the drive file gives.
+        An input of the FMU, repeatable: pulley[NAME].speed of a pulley with prescribed speed, pulley[NAME].torque of
+        any other; by default all that the drive file prescribes.
     outputs
-        What they read, once for each: a result such as pulley_speed[NAME], or pulley_speed for that of all pulleys; by
+        An output of the FMU, repeatable: a result such as pulley_speed[NAME], or pulley_speed for all pulleys; by
         default all.
     fmi
-        The version of FMI.
+        The FMI version.
     force
-        Replace other files than those of beltdyn too.
+        Also replace files that beltdyn did not write.
     """
     from beltdyn.cosimulation import fmu as write
     from beltdyn.model import load

@@ -1,4 +1,4 @@
-"""What the file of a command holds: a drive, or a run that stands for its drive."""
+"""The input file of a command: a drive, or a run whose drive is used."""
 
 from inspect import signature
 from pathlib import Path
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def takes_runs(analysis: Analysis) -> bool:
-    """Whether a run may stand in place of the drive: the first parameter of the function may be one."""
+    """Whether a run can replace the drive: the first parameter of the function may be one."""
     from beltdyn.results import Run
 
     first = next(iter(signature(analysis.function, eval_str=True).parameters.values()))
@@ -44,7 +44,7 @@ def read_given(analysis: Analysis, file: Path) -> "Drive | Run":
     found = open_result(file)
     if not isinstance(found, Run):
         raise ModelError(
-            f"{file} holds results of {found.kind}, and no run. Give the result file of `beltdyn run` or "
+            f"{file} holds results of {found.kind}, not of a run. Give the result file of `beltdyn run` or "
             "`beltdyn steady`, or a drive file."
         )
     return found

@@ -18,9 +18,9 @@ def new(
     Parameters
     ----------
     file
-        The drive file to write, by default drive.toml, or the example's name with .toml; it must not exist yet.
+        The drive file to write, by default drive.toml or EXAMPLE.toml; it must not exist.
     example
-        Write an example in place of the plain two-pulley drive: accessory_drive, alternator_drive, band_brake,
+        Write an example instead of the plain two-pulley drive: accessory_drive, alternator_drive, band_brake,
         conveyor, crossed_belt, fan_direct_start, flat_belt_idler, slip_through, tensioner_stop, two_pulley,
         unequal_radii or washing_machine.
     """
@@ -33,7 +33,7 @@ def new(
     target = file or Path(f"{name}.toml")
     refuse_existing(target)
     write_text(target, text)
-    show(f"{target} is written. Edit it, then: beltdyn check {target}; beltdyn run {target}")
+    show(f"Written: {target}   (edit it, then: beltdyn check {target}; beltdyn run {target})")
 
 
 def refuse_existing(file: Path) -> None:
@@ -45,7 +45,7 @@ def refuse_existing(file: Path) -> None:
         If it is.
     """
     if file.exists():
-        raise ModelError(f"{file} exists already, and would be overwritten. Choose another name, or remove it.")
+        raise ModelError(f"{file} already exists and would be overwritten. Choose another name, or remove it.")
 
 
 def write_text(file: Path, text: str) -> None:

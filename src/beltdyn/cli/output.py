@@ -1,4 +1,4 @@
-"""From a drive to a result file, and what is said and ended with."""
+"""Analyse a drive into a result file: outputs, messages and exit codes."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -37,7 +37,7 @@ NO_EXTRAS = Extras(csv=False, report=False)
 
 
 def require_output(path: Path, files: Iterable[Path], extras: Extras, force: bool) -> None:
-    """Make sure that results, tables and reports would replace nothing but such, and never a drive file.
+    """Make sure that results, tables and reports replace only files of their kind, and never a drive file.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
     from beltdyn.results.tables import require_tables, tables_folder
 
     if target_of(path) in {target_of(file) for file in files}:
-        raise ModelError(f"{path} is the drive file: the results would overwrite it. Choose another --output.")
+        raise ModelError(f"{path} is the drive file; the results would overwrite it. Choose another --output.")
     require_replaceable(path, is_result, force)
     if extras.csv:
         require_tables(tables_folder(path), force)
@@ -60,7 +60,7 @@ def require_output(path: Path, files: Iterable[Path], extras: Extras, force: boo
 
 
 def write_extras(result: "Result", path: Path, extras: Extras, force: bool) -> None:
-    """Write what is asked for beside a result file, and name it."""
+    """Write tables and a report beside a result file if asked for, and show their names."""
     from beltdyn.results import open_result
     from beltdyn.results.tables import tables_folder, write_csv
 
@@ -80,7 +80,7 @@ def analyse_to(
     force: bool = False,
     **options: Any,
 ) -> "Result":
-    """Analyse a drive into a file with a progress bar, show the result, and write what is asked for beside it.
+    """Analyse a drive into a file with a progress bar, show the result, and write the extras.
 
     Raises
     ------
@@ -94,10 +94,10 @@ def analyse_to(
         with progress_bar() as report, locked_output(path):
             result: Result = analysis.write(drive, path, report, force, **options)
     except LostOutputError:
-        show("No results are kept.")
+        show("No results were kept.")
         raise
     except SimulationError:
-        show(nothing_kept(path) if stamp(path) in (before, None) else f"What was computed is in {path}")
+        show(nothing_kept(path) if stamp(path) in (before, None) else f"The results computed so far are in {path}")
         raise
     show_result(result)
     if stamp(path) == before:
@@ -106,24 +106,24 @@ def analyse_to(
     if result.status == "interrupted":
         from beltdyn.solve.checkpoint import checkpoint_file
 
-        goes_on = f" Go on with it: beltdyn {analysis.name} --resume {path}" if checkpoint_file(path).exists() else ""
-        show(f"\nInterrupted: what was computed is kept.{goes_on}")
+        goes_on = f" Resume with: beltdyn {analysis.name} --resume {path}" if checkpoint_file(path).exists() else ""
+        show(f"\nInterrupted. The results computed so far are kept.{goes_on}")
     show(f"\nResults: {path}   (figures: beltdyn plot {path})")
     write_extras(result, path, extras, force)
     return result
 
 
 def nothing_kept(path: Path) -> str:
-    """Say that an analysis ended before it had results, and whose the result file is then."""
-    return "No results are kept." + f" {path} holds those of an earlier analysis, as before." * path.exists()
+    """Say that an analysis ended without results, and that an older result file is unchanged."""
+    return "No results were kept." + f" {path} still holds those of an earlier analysis." * path.exists()
 
 
 def doubt(warnings: Sequence[str]) -> int:
-    """Exit code where warnings are errors, which are said; 0 without any."""
+    """Exit code under --strict, with a message; 0 without warnings."""
     if not warnings:
         return 0
-    count = f"{len(warnings)} warnings make" if warnings[1:] else "a warning makes"
-    show_error(f"{count} these results doubtful. They are kept; without --strict this is no error.")
+    count = f"{len(warnings)} warnings" if warnings[1:] else "1 warning"
+    show_error(f"{count}, which --strict treats as errors. The results are kept.")
     return DOUBTFUL
 
 

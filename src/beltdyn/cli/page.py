@@ -16,20 +16,19 @@ def app(
     port: Annotated[int, Parameter(validator=Number(gte=0, lte=65535))] = 0,
     show: bool = True,
 ) -> None:
-    """Lay out and run a drive on a page in the browser.
+    """Edit and simulate a drive in the browser.
 
-    The page is served to this machine alone, at an address that only this command knows, and works without a network.
-    It reads and writes drive files in the folder of the given file, by default in the working directory, and nowhere
-    else. Ctrl-C ends it.
+    The page is served on this machine only, at a secret address, and needs no network. It reads and writes drive files
+    only in the folder of the given file, by default the working directory. Ctrl-C ends it.
 
     Parameters
     ----------
     file
-        The drive file to begin with, TOML.
+        The drive file to open, TOML.
     port
-        The port; by default one that is free.
+        The port; by default any free one.
     show
-        Open the browser; with --no-show only the address is written.
+        Open the browser; --no-show only prints the address.
     """
     from beltdyn.errors import ModelError
 
@@ -39,7 +38,7 @@ def app(
         if error.name is None or error.name.startswith("beltdyn"):
             raise
         raise ModelError(
-            f'{error.name} is not installed, which the page needs. Install it: pip install "beltdyn[app]"'
+            f"the page needs {error.name}, which is not installed. Install beltdyn with its extra beltdyn[app]."
         ) from None
     from beltdyn.app.calculator import Calculator
     from beltdyn.app.computing import Asked
@@ -48,7 +47,7 @@ def app(
 
     folder = Folder(Path() if file is None else file.parent)
     if file is not None:
-        folder.read(file.name)  # what cannot be read is told here
+        folder.read(file.name)  # an unreadable file is reported here
     calculator = Calculator()
     workspace = Workspace(folder, None if file is None else file.name, calculator)
 

@@ -28,34 +28,34 @@ def plot(
     frames_per_turn: int | None = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Draw the figures of a result file, or of several files, to compare them.
+    """Plot the figures of a result file, or compare several.
 
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another command.
+        The result file, NetCDF, written by `beltdyn run` or another analysis.
     more
-        More result files, whose lines are drawn into the same figures.
+        More result files, plotted in the same figures.
     output
-        The folder of the figures; by default beside the first result file, named after the files with -figures.
+        The folder of the figures; by default FILE-figures beside the first result file.
     figures
-        Names of figures with commas between, such as slip,hub_loads; by default the essential ones. A name that is not
-        known gives the list of all.
+        Names of figures separated by commas, such as slip,hub_loads; by default the essential ones. An unknown name
+        lists all.
     pulley
-        The pulley of hub loads and contact, by default all; and the one whose speed counts in waterfall and orders, by
-        default the one that was swept, or else the first.
+        The pulley of hub loads and contact figures, by default all; in waterfall and orders, the reference pulley of
+        the speed, by default the swept one, or else the first.
     variable
-        What waterfall and orders show, such as span_tension, pulley_speed or pulley_torque.
+        The result in waterfall and orders, such as span_tension, pulley_speed or pulley_torque.
     animate
-        Draw an animation too, which takes longer.
+        Also make an animation, which takes longer.
     mp4
-        Write it as MP4 in place of GIF, which needs `pip install "beltdyn[video]"` or the program ffmpeg.
+        Write the animation as MP4 instead of GIF; needs the extra beltdyn[video] or the program ffmpeg.
     start, end
-        From when to when it shows the drive, such as "0.5 s", or in s; all of the run by default.
+        The period of the animation, such as "0.5 s", or in s; by default the whole run.
     frames_per_turn
-        Pictures for each turn of the first pulley: slow motion. By default 150 pictures in all.
+        Frames per turn of the first pulley, for slow motion. By default 150 frames in all.
     force
-        Replace other files than figures of beltdyn too.
+        Also replace files that are no figures of beltdyn.
     """
     from beltdyn.results import open_result
 
@@ -70,14 +70,14 @@ def plot(
 def draw(
     results: "Sequence[Result]", folder: Path, animation: tuple[Path, dict[str, Any]] | None = None, **choice: Any
 ) -> None:
-    """Draw figures of results into a folder, as `plot.save_all` does, and an animation with its options; name them."""
+    """Plot figures of results to a folder by `plot.save_all`, and an animation with its options; show their names."""
     from beltdyn import plot
     from beltdyn.results import Run
 
     first = results[0]
     if animation and not ((isinstance(first, Run) or first.kind == "modes") and len(results) == 1):
-        these = f"are of {first.kind}" if len(results) == 1 else f"are {len(results)}"
-        raise ModelError(f"--animate needs results over time of one run, or modes, and these {these}. Leave it away.")
+        these = f"results of {first.kind}" if len(results) == 1 else f"{len(results)} results"
+        raise ModelError(f"--animate needs the results of one run, or modes, not {these}. Omit it.")
     paths = plot.save_all(results, folder, **choice)
     if animation:
         path, film = animation

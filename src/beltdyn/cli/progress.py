@@ -15,29 +15,29 @@ if TYPE_CHECKING:
     from beltdyn.solve.progress import Progress as SolverProgress
 
 _EARLY = 5.0
-"""Computing time, s, after which a run that takes long is told of."""
+"""Computing time after which a long run is announced, s."""
 _LONG = 60.0
-"""Remaining computing time, s, that is long."""
+"""Remaining computing time of a long run, s."""
 
-_SLOW_RUNS = "Fine meshes, steep friction and small tolerances make runs long; `beltdyn check` judges a drive file."
+_SLOW_RUNS = "Fine meshes, steep friction and small tolerances make runs long; `beltdyn check` names the cause."
 
 _PHASES = {
-    "compiling": "preparing kernels (the first run compiles them: about 20 s)",
-    "equilibrium": "finding equilibrium",
+    "compiling": "compiling kernels (first run only, about 20 s)",
+    "equilibrium": "finding static equilibrium",
     "settling": "settling at the first speed",
     "integrating": "simulating",
-    "operating points": "finding operating points",
-    "designs": "trying designs",
+    "operating points": "computing operating points",
+    "designs": "evaluating designs",
     "points": "computing points",
-    "no workers": "waiting for workers, of which the cluster has none",
+    "no workers": "waiting for workers: the cluster has none",
 }
 _COUNTED = "integrating", "operating points", "designs", "points", "no workers"
-"""Phases of which it is known how far they are."""
+"""Phases with a known total."""
 
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
-    """Show simulated time, step size and remaining time on standard error; say early that a run takes long, and why.
+    """Show simulated time, step size and remaining time on standard error; announce a long run early, with the reason.
 
     Yields
     ------
@@ -66,11 +66,11 @@ def progress_bar() -> Iterator[Callable[["SolverProgress"], None]]:
 
 
 def _long(what: str, remaining: float, bound: str) -> str:
-    """How long it takes, in computing time that is left (s), and what makes it so."""
+    """The remaining computing time (s) in words, and its cause."""
     minutes = remaining / 60.0
     left = f"{minutes:.0f} minutes" if minutes < 120.0 else f"{minutes / 60.0:.0f} hours"
     about = "a minute or two" if minutes < 1.5 else f"about {left}"
-    return f"{what} will take {about} more, if it goes on as now. {bound}"
+    return f"{what} will take {about} more at the present rate. {bound}"
 
 
 def _state(progress: "SolverProgress") -> str:
@@ -81,17 +81,17 @@ def _state(progress: "SolverProgress") -> str:
 
 @contextmanager
 def runs_bar(at_end: str = "done") -> Iterator[Callable[["BatchProgress"], None]]:
-    """Show how many runs have ended, and a line for each that is on its way, on standard error.
+    """Show the number of completed runs, and a line for each active run, on standard error.
 
     Parameters
     ----------
     at_end
-        What is being done when all have ended.
+        The activity after all runs.
 
     Yields
     ------
     callable
-        What is told of the runs.
+        Called with the progress of the runs.
     """
     from beltdyn.solve.progress import FORECAST
 

@@ -15,21 +15,21 @@ def report(
     output: Annotated[Path | None, Parameter(alias="-o")] = None,
     force: Annotated[bool, Parameter(negative="")] = False,
 ) -> None:
-    """Write a report of a result file, or of several side by side: one page to mail, to look at and to print.
+    """Write a report of a result file, or of several side by side: one HTML page to read, mail and print.
 
-    The page needs a browser and nothing else. It shows key numbers beside the limits that the drive file states,
-    warnings with remedies, the drive moving, figures that zoom, tables, the drive file, and where it all comes from.
+    The page is self-contained. It shows key results against the limits in the drive file, warnings with remedies, an
+    animation of the drive, interactive figures, tables, the drive file, and the provenance of the results.
 
     Parameters
     ----------
     file
-        The result file, NetCDF, written by `beltdyn run` or another command.
+        The result file, NetCDF, written by `beltdyn run` or another analysis.
     more
-        More result files, which are compared with the first.
+        More result files, to compare with the first.
     output
-        The page, HTML; by default beside the first result file, and named after it.
+        The HTML page; by default beside the first result file, and named after it.
     force
-        Replace other files than reports too.
+        Also replace files that are no reports.
     """
     from beltdyn.report import report_file, require_report, write_report
     from beltdyn.results import open_result

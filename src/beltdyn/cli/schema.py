@@ -6,7 +6,7 @@ from beltdyn.cli.console import show
 
 
 def schema() -> None:
-    """Print the JSON schema of drive files, with which editors check and complete them."""
+    """Print the JSON schema of drive files, for checks and completion in editors."""
     from beltdyn.model import json_schema
 
     show(json.dumps(json_schema(), indent=2, ensure_ascii=False))

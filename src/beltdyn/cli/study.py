@@ -1,4 +1,4 @@
-"""The command `beltdyn study`: any analysis of a drive at many points, on all cores or on a cluster."""
+"""The command `beltdyn study`: any analysis of many variants of a drive, on all cores or on a cluster."""
 
 from pathlib import Path
 from typing import Annotated
@@ -24,29 +24,28 @@ def study(
     report: Annotated[bool, Option(negative="")] = False,
     force: Annotated[bool, Option(negative="")] = False,
 ) -> int:
-    """Analyse a drive at many points, at which numbers of its file differ, on all cores or on a cluster.
+    """Analyse many variants of a drive, on all cores or on a cluster.
 
-    A point that fails is marked with its reason, and the others go on. Rows are written to a CSV file as points finish.
-    A study that was interrupted or killed goes on where it was when the same command is given again; so does one to
-    which points were added.
+    A failed point is marked with its reason, and the others continue. Rows are written to a CSV file as points finish.
+    The same command resumes a study that was interrupted or killed, or that has new points.
 
     Parameters
     ----------
     file
         The study file, TOML.
     output
-        The result file; by default named after the study file, beside it, with the ending .nc. The rows are in the
+        The result file; by default STUDY.nc beside the study file. The rows are in the
         CSV file of the same name.
     jobs
-        How many points to compute at a time; by default as many as there are cores.
+        The number of points to compute at a time; by default the number of cores.
     scheduler
         Compute on a Dask cluster instead: the address of its scheduler, such as tcp://host:8786.
     retry
-        Compute points again that failed before.
+        Recompute points that failed before.
     report
-        Write a report too: a page beside the result file.
+        Also write a report, one HTML page beside the result file.
     force
-        Compute all points anew, and replace other files too.
+        Recompute all points, and also replace files that beltdyn did not write.
     """
     from beltdyn.cli.output import Extras, nothing_kept, write_extras
     from beltdyn.results.atomic import stamp, target_of
@@ -54,7 +53,7 @@ def study(
 
     path = output or file.with_suffix(".nc")
     if target_of(file) in (target_of(path), target_of(path.with_suffix(".csv"))):
-        raise ModelError(f"{file} is the study file: the results would overwrite it. Choose another --output.")
+        raise ModelError(f"{file} is the study file; the results would overwrite it. Choose another --output.")
     before = stamp(path)
     with progress_bar() as tell:
         result = compute(file, jobs=jobs, scheduler=scheduler, retry=retry, output=path, progress=tell, overwrite=force)
@@ -63,12 +62,12 @@ def study(
         show(f"\n{nothing_kept(path)}")
         return exit_code()
     if result.status == "interrupted":
-        show("\nInterrupted: what was computed is kept, and the same command goes on from there.")
+        show("\nInterrupted. The results computed so far are kept; the same command resumes the study.")
     show(f"\nResults: {path}, {path.with_suffix('.csv')}   (figures: beltdyn plot {path})")
     write_extras(result, path, Extras(csv=False, report=report), force)
     if result.status == "interrupted":
         return exit_code()
     if result.dataset.sizes["point"] == int((result.dataset["failure"] != "").sum()):
-        show_error("no point of the study has results.")
+        show_error("all points of the study failed.")
         return SimulationError.exit_code
     return 0

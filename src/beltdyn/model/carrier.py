@@ -98,7 +98,7 @@ def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley],
     for position, (item, name) in enumerate(zip(tensioners, carried, strict=True), 1):
         if name not in names:
             raise ValueError(
-                f'tensioner[{position}].pulley = "{name}" is not the name of a pulley. Known here: {", ".join(names)}'
+                f'tensioner[{position}].pulley = "{name}" is not the name of a pulley. Choose one of {", ".join(names)}'
             )
         if carried.count(name) > 1:
             raise ValueError(

@@ -167,7 +167,7 @@ def find_entry(catalogue: Mapping[str, Entry], profile: str) -> Entry:
     if entry is None:
         like = get_close_matches(profile.lower(), [name.lower() for name in catalogue], n=4, cutoff=0.5)
         near = [name for name in catalogue if name.lower() in like]
-        known = f"Near it: {', '.join(near)}" if near else f"Known are {', '.join(catalogue)}"
+        known = f"Similar names: {', '.join(near)}" if near else f"Choose one of {', '.join(catalogue)}"
         raise LookupError(f'profile = "{shorten(profile)}" is not in the catalogue. {known}')
     return entry
 

@@ -1,1 +1,1 @@
-"""What every part of a drive is made of: validated fields in SI units, error messages, text and table files."""
+"""Building blocks of the parts of a drive: validated fields in SI units, error messages, text and table files."""

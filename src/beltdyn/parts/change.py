@@ -1,4 +1,4 @@
-"""Changes of numbers deep inside a drive, by the paths that error messages write: ``pulley[driven].load[1].torque``."""
+"""Changes of nested values of a drive by paths such as ``pulley[driven].load[1].torque``."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -13,11 +13,11 @@ from beltdyn.parts.quantity import unit_of
 _STEP = re.compile(r"\.?([^.\[\]]+)|\[([^\[\]]+)\]")
 
 Steps = tuple[str, ...]
-"""A path, step by step: keys, and names or numbers of entries of lists."""
+"""A path as steps: keys, and names or numbers of list entries."""
 
 
 def changed_arguments(part: Part, changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments that make a part with some values changed, all at once.
+    """Constructor arguments of a part with some values changed at once.
 
     Parameters
     ----------
@@ -34,17 +34,17 @@ def changed_arguments(part: Part, changes: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     ModelError
-        If a path leads nowhere, or one leads into what another one replaces.
+        If a path does not exist, or leads into a value that another path replaces.
     """
     if not isinstance(changes, Mapping):
-        raise ModelError(f'changes = {shorten(repr(changes))} is no mapping. Write for example {{"belt.length": 1.2}}.')
+        raise ModelError(f'changes = {shorten(repr(changes))} must be a mapping, such as {{"belt.length": 1.2}}.')
     arguments = _changed(part, {steps_of(path): value for path, value in changes.items()}, "")
     assert isinstance(arguments, dict)
     return arguments
 
 
 def value_at(part: Part, path: str) -> Any:
-    """What stands at a path.
+    """The value at a path.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def value_at(part: Part, path: str) -> Any:
 
 
 def converted(part: Part, path: str, value: Any) -> Any:
-    """A value as it would stand at a path, such as ``"25 mm"`` in m, checked by the innermost part alone.
+    """A value converted as at a path, such as ``"25 mm"`` in m, validated by the innermost part alone.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def converted(part: Part, path: str, value: Any) -> Any:
     Raises
     ------
     ModelError
-        If the path leads nowhere, or the value cannot stand there.
+        If the path does not exist, or the value is invalid there.
     """
     inner, steps = _innermost(part, path)
     rest = f"{steps[0]}{''.join(f'[{one}]' for one in steps[1:])}"
@@ -89,7 +89,7 @@ def converted(part: Part, path: str, value: Any) -> Any:
 
 
 def unit_at(part: Part, path: str) -> str:
-    """The SI unit of the number at a path; empty for a pure number.
+    """The SI unit of the number at a path; empty for a dimensionless number.
 
     Parameters
     ----------
@@ -101,19 +101,19 @@ def unit_at(part: Part, path: str) -> str:
     Raises
     ------
     ModelError
-        If the path leads nowhere, or to no number.
+        If the path does not exist, or is not that of a number.
     """
     inner, steps = _innermost(part, path)
     fields = {field.alias or name: field for name, field in type(inner).model_fields.items()}
     field = (fields | dict(type(inner).alternatives()))[steps[0]]
     unit = next((unit for one in (*field.metadata, field.annotation) if (unit := unit_of(one)) is not None), None)
     if unit is None:
-        raise ModelError(f"{path} is no number that could change.")
+        raise ModelError(f"{path} is not a number. Choose a number of the drive file.")
     return unit
 
 
 def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:
-    """A number with a tolerance as the argument that it is turned into: of a diameter, the radius with half of it.
+    """A toleranced number as the argument that replaces it: for a diameter, the radius with half the tolerance.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def as_argument(part: Part, path: str, size: float) -> tuple[str, float]:
     Returns
     -------
     path, size
-        Those given where it is turned into no other.
+        Unchanged if the number is not replaced.
 
     Raises
     ------
@@ -179,11 +179,11 @@ def steps_of(path: str) -> Steps:
     Raises
     ------
     ModelError
-        If it is no path.
+        If it is not a valid path.
     """
     found = list(_STEP.finditer(str(path)))
     if not found or "".join(match[0] for match in found) != path or path.startswith((".", "[")):
-        raise ModelError(f'"{path}" is no path. Write for example "belt.length" or "pulley[driven].load[1].torque".')
+        raise ModelError(f'"{path}" is not a path. Write for example "belt.length" or "pulley[driven].load[1].torque".')
     return tuple(match[1] or match[2] for match in found)
 
 
@@ -191,7 +191,7 @@ def _changed(value: Any, changes: Mapping[Steps, Any], path: str) -> Any:
     """What takes the place of a value: new values at the ends of paths, and copies on the way to them."""
     if () in changes:
         if len(changes) > 1:
-            raise ModelError(f"{path} is replaced as a whole, and in parts. Change one or the other.")
+            raise ModelError(f"{path} is changed both as a whole and in parts. Change one or the other.")
         return changes[()]
     groups: dict[str, dict[Steps, Any]] = {}
     for (first, *rest), new in changes.items():
@@ -206,8 +206,8 @@ def _changed(value: Any, changes: Mapping[Steps, Any], path: str) -> Any:
 def _refuse_inside(value: Any, step: str, path: str) -> NoReturn:
     """Say that there is nothing in a value."""
     if value is None:
-        raise ModelError(f"{path} is not given, so that there is nothing in it to change. Give it as a whole.")
-    raise ModelError(f"{path} = {value!r} holds nothing to change by .{step}. Change it as a whole.")
+        raise ModelError(f"{path} is not given, so nothing inside it can be changed. Give it as a whole.")
+    raise ModelError(f"{path} = {value!r} has no part .{step}. Change it as a whole.")
 
 
 def _in_part(part: Part, groups: Mapping[str, Mapping[Steps, Any]], path: str) -> dict[str, Any]:
@@ -231,9 +231,9 @@ def _place_of(entries: Sequence[Any], step: str, path: str) -> int:
     names = [entry_name(entry) or str(number) for number, entry in enumerate(entries, 1)]
     place = names.index(step) if step in names else int(step) - 1 if step.isdecimal() else -1
     if not 0 <= place < len(entries):
-        known = suggest(step, names) if names else "There is none"
+        known = suggest(step, names) if names else "The list is empty"
         counted = "; entries count from 1" if step.isdecimal() else ""
-        raise ModelError(f"{path}[{step}] is not there{counted}. {_sentence(known)}")
+        raise ModelError(f"{path}[{step}] does not exist{counted}. {_sentence(known)}")
     return place
 
 

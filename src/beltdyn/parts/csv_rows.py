@@ -1,4 +1,4 @@
-"""Rows of CSV files as programs, spreadsheets and loggers write them: encodings, separators, decimal commas, heads."""
+"""Rows of CSV files from programs, spreadsheets and loggers: encodings, separators, decimal commas, headings."""
 
 import codecs
 import csv
@@ -12,10 +12,10 @@ from beltdyn.parts.quantity import is_unit
 from beltdyn.parts.text_file import LONGEST_TABLE, read_bytes
 
 SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab"}
-"""What may stand between cells, and its name."""
+"""Separators of cells, and their names."""
 
 NUMERIC = re.compile(r"\s*[-+]?[.,]?\d")
-"""How a cell begins that holds a number."""
+"""The start of a numeric cell."""
 
 _NUMBER = re.compile(r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?")
 
@@ -29,13 +29,13 @@ class CsvRow(NamedTuple):
     """A line of a file."""
 
     line: int
-    """Its number, from one."""
+    """Its number, counted from 1."""
     cells: list[str]
-    """What stands there; numbers with decimal points."""
+    """The cells; numbers with decimal points."""
 
 
 class CsvRows(NamedTuple):
-    """The lines of a file that are neither empty nor comments."""
+    """The lines of a file without empty lines and comments."""
 
     separator: str
     rows: list[CsvRow]
@@ -63,7 +63,7 @@ def read_rows(path: Path, hint: str = "") -> CsvRows:
     try:
         lines = _decoded(read_bytes(path, LONGEST_TABLE)).splitlines()
     except UnicodeDecodeError as error:
-        raise ValueError("is not a CSV text file. Save it as CSV in UTF-8") from error
+        raise ValueError("is not a text file. Save it as CSV in UTF-8") from error
     except (OSError, ValueError) as error:
         raise ValueError(f"cannot be read: {reason(error)}{hint}") from error
     separator = _separator(lines)
@@ -71,7 +71,7 @@ def read_rows(path: Path, hint: str = "") -> CsvRows:
     try:
         found = [CsvRow(reader.line_num, row) for row in reader if any(map(str.strip, row)) and row[0][:1] != "#"]
     except csv.Error as error:
-        raise ValueError(f"is not CSV in line {reader.line_num}: {error}. Correct this line") from error
+        raise ValueError(f"is not valid CSV in line {reader.line_num}: {error}. Correct this line") from error
     cells = [cell for row in found for cell in row.cells]
     if separator != "," and not any(map(_POINT.fullmatch, cells)):
         found = [CsvRow(line, [_with_point(cell) for cell in row]) for line, row in found]
@@ -79,14 +79,14 @@ def read_rows(path: Path, hint: str = "") -> CsvRows:
 
 
 def without_preamble(rows: list[CsvRow]) -> list[CsvRow]:
-    """Leave out what loggers write above the headings: the first lines that have fewer cells than most lines."""
+    """Drop the preamble of loggers above the headings: first lines with fewer cells than most lines."""
     width = max(Counter(len(row.cells) for row in rows).items(), key=lambda item: (item[1], item[0]), default=(0, 0))[0]
     first = next((place for place, row in enumerate(rows) if len(row.cells) >= width), 0)
     return rows[first:]
 
 
 def row_of_units(cells: list[str]) -> list[str] | None:
-    """The units of a row of units, such as ``s; [rpm]; (N m)``, empty for "-"; None if it is none.
+    """The units of a row such as ``s; [rpm]; (N m)``, empty for "-"; None if it is not a row of units.
 
     One unit that is known makes it one, where no cell is a number but 1: others are refused when they are used.
     """

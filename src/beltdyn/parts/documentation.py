@@ -1,4 +1,4 @@
-"""Docstrings of the parts of a drive, made from their fields: meaning, unit, limits and default of each argument."""
+"""Docstrings of the parts of a drive from their fields: meaning, unit, limits and default of each argument."""
 
 import inspect
 import textwrap

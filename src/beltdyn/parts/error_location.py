@@ -1,4 +1,4 @@
-"""The way from the location of an error to the key that a user wrote."""
+"""The location of an error as the path of the key in the user's data."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -10,7 +10,7 @@ _LONGEST_NAME = 60
 
 
 def shorten(text: object, longest: int = _LONGEST_NAME) -> str:
-    """Write what a user wrote, and only its beginning if it is long."""
+    """Quote a user's value, shortened if it is long."""
     words = str(text)
     return words if len(words) <= longest else f"{words[: longest - 3]}..."
 
@@ -32,7 +32,7 @@ class ErrorLocation:
         self._prefix = "" if getattr(model, "fills_a_file", False) else model.__name__.lower()
 
     def locate(self, location: tuple[int | str, ...]) -> tuple[str, dict[str, Any]]:
-        """Find the path as a user writes it, ``pulley[driven].radius``, and the schema of the key there.
+        """Find the path in the user's notation, ``pulley[driven].radius``, and the schema of its key.
 
         Parameters
         ----------
@@ -48,7 +48,7 @@ class ErrorLocation:
         return path, schema
 
     def in_data(self, location: tuple[int | str, ...]) -> tuple[int | str, ...]:
-        """Find the keys and positions that lead to the same place in the user's data: without kinds."""
+        """Find the keys and positions of the same place in the user's data, without kinds."""
         return self._follow(location)[1]
 
     def _follow(self, location: tuple[int | str, ...]) -> tuple[str, tuple[int | str, ...], dict[str, Any]]:
@@ -74,11 +74,11 @@ class ErrorLocation:
         return path, tuple(steps), schema
 
     def keys(self, location: tuple[int | str, ...]) -> list[str]:
-        """List the keys that are known at a location."""
+        """List the known keys at a location."""
         return list(self.locate(location)[1].get("properties", {}))
 
     def kinds(self, location: tuple[int | str, ...]) -> list[str]:
-        """List the kinds of what may stand at a location."""
+        """List the known kinds at a location."""
         return list(self.locate(location)[1].get("discriminator", {}).get("mapping", {}))
 
     def _option(self, schema: dict[str, Any], step: int | str) -> dict[str, Any]:
@@ -133,7 +133,7 @@ def _item(data: Any, step: int | str) -> Any:
 
 
 def entry_name(data: Any) -> str:
-    """What an entry of a list is called by: its name, or that of the pulley it carries; empty without one."""
+    """The label of a list entry: its name, or that of the pulley it carries; empty without one."""
     for key in ("name", "pulley"):
         name = _item(data, key)
         if isinstance(name, str):

@@ -1,4 +1,4 @@
-"""What makes a drive or its results doubtful, in three sentences: what is wrong, what it spoils, what to do."""
+"""A problem of a drive or its results: what is wrong, what it affects, what to do."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What makes a drive or its results doubtful, each part in whole sentences.
+    """A problem of a drive or its results, each part in whole sentences.
 
     Attributes
     ----------
@@ -42,13 +42,13 @@ class Finding:
     def __post_init__(self) -> None:
         for part in (self.fault, self.spoils, self.remedy):
             if not part.endswith("."):
-                raise ValueError(f"{part!r} is a part of a finding and must be a sentence. End it with a full stop.")
+                raise ValueError(f"{part!r} must be a sentence, as part of a finding. End it with a full stop.")
 
     def __str__(self) -> str:
         return f"{self.fault} {self.spoils} {self.remedy}"
 
 
 def listing(words: Sequence[str]) -> str:
-    """Write words one after the other: "a", "a and b", "a, b and c"."""
+    """Join words: "a", "a and b", "a, b and c"."""
     *others, last = words
     return f"{', '.join(others)} and {last}" if others else last

@@ -27,7 +27,7 @@ _RULES = {
     "bool_parsing": "must be true or false, without quotation marks",
     "string_type": "must be text in quotation marks",
     "string_too_long": "is longer than {max_length} characters",
-    "string_pattern_mismatch": "may hold letters, digits, spaces, dots and dashes, and starts with a letter or digit",
+    "string_pattern_mismatch": "must consist of letters, digits, spaces, dots and dashes, the first a letter or digit",
     "tuple_type": "must be a list [...]",
     "too_short": "needs at least {min_length} entries",
     "too_long": "has more than {max_length} entries",
@@ -36,7 +36,7 @@ _RULES = {
 
 
 class Told(NamedTuple):
-    """An error in words.
+    """An error message with its location.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Told(NamedTuple):
 
 
 def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> str:
-    """Say what is wrong with a drive or a part of it.
+    """Explain the validation errors of a drive or a part of it.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def explain(error: ValidationError, model: type[BaseModel], data: Mapping[str, A
 
 
 def told_apart(error: ValidationError, model: type[BaseModel], data: Mapping[str, Any]) -> list[Told]:
-    """Say what is wrong, each error with its place; arguments as for `explain`.
+    """Explain each error with its location; arguments as for `explain`.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def told_apart(error: ValidationError, model: type[BaseModel], data: Mapping[str
         for detail in kept
     ]
     more = error.error_count() - len(details)
-    return [*told, Told((), f"There are {more} more errors, which are not shown.")] if more > 0 else told
+    return [*told, Told((), f"{more} more errors are not shown.")] if more > 0 else told
 
 
 def _ended(sentence: str) -> str:
@@ -126,7 +126,7 @@ def _sentence(detail: ErrorDetails, locations: ErrorLocation) -> str:
         return _choice_sentence(path, detail)
     if kind in ("union_tag_not_found", "model_attributes_type"):
         kinds = ", ".join(locations.kinds(location))
-        return f'{path} = {value} has no kind. Write {{ kind = "...", ... }} with one of {kinds}'
+        return f'{path} = {value} has no kind. Write {{ kind = "...", ... }} with one of the kinds {kinds}'
     rule = _RULES.get(kind)
     reason = rule.format(**context) if rule else detail["msg"]
     return f"{path} = {value} {reason}. {_remedy(schema)}".strip()
@@ -146,11 +146,11 @@ def _choice_sentence(path: str, detail: ErrorDetails) -> str:
     choices = [choice.strip(" '\"") for choice in expected.replace(" or ", ",").split(",")]
     if detail["type"] == "union_tag_invalid":
         path, given = f"{path}.kind", context["tag"]
-    return f"{path} = {show(given)} is not a choice here. {suggest(str(given), choices)}"
+    return f"{path} = {show(given)} is not a valid choice. {suggest(str(given), choices)}"
 
 
 def apart(first: float, second: float, digits: int = 5) -> tuple[str, str]:
-    """Two numbers, with more digits than these where it takes more to tell them apart."""
+    """Two numbers, with more digits if they would look equal otherwise."""
     for count in range(digits, 17):
         texts = f"{first:.{count}g}", f"{second:.{count}g}"
         if texts[0] != texts[1]:
@@ -159,9 +159,9 @@ def apart(first: float, second: float, digits: int = 5) -> tuple[str, str]:
 
 
 def suggest(given: str, known: list[str]) -> str:
-    """Name what was probably meant, or all that is known."""
+    """Suggest the nearest known name, or list all."""
     near = _nearest(given, known)
-    return f'Did you mean "{near}"?' if near else f"Known here: {', '.join(known)}"
+    return f'Did you mean "{near}"?' if near else f"Choose one of {', '.join(known)}"
 
 
 def _nearest(given: str, known: list[str]) -> str:
@@ -177,13 +177,13 @@ def _remedy(schema: dict[str, Any]) -> str:
 
 
 def reason(error: Exception) -> str:
-    """Say why a file cannot be used, in the words of the operating system; the first one begins no sentence here."""
+    """The reason why a file cannot be used, by the operating system, without a capital."""
     text = getattr(error, "strerror", None) or str(error)
     return text[:1].lower() + text[1:] if text[1:2].islower() else text
 
 
 def show(value: object) -> str:
-    """Write a value as it would stand in a drive file, shortened."""
+    """Format a value as in a drive file, shortened."""
     try:
         text = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
     except (TypeError, ValueError, RecursionError):

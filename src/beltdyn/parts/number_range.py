@@ -1,4 +1,4 @@
-"""Numbers with a unit as a user writes them: one, a range "700..6000 rpm", or a few "700, 1500, 3000 rpm"."""
+"""Numbers with a unit as text: a single one, a range "700..6000 rpm", or a list "700, 1500, 3000 rpm"."""
 
 import re
 from math import isfinite
@@ -74,17 +74,17 @@ def numbers_in(name: str, text: str, unit: str, count: int) -> FloatArray:
     example = "700..6000 rpm" if unit == "rad/s" else f"0.2..1.2 {unit}".rstrip()
     if ranged is not None:
         if not 2 <= count <= _MOST:
-            raise ModelError(f"{count} points of {name} = {text!r}: give from 2 to {_MOST:,}.")
+            raise ModelError(f"{count} points of {name} = {text!r} are not possible. Give 2 to {_MOST:,}.")
         first, last, given = ranged.groups()
         found = np.linspace(_number(name, first, given, unit), _number(name, last, given, unit), count)
     elif listed is not None:
         given = listed[2]
         found = np.array([_number(name, one.strip(), given, unit) for one in listed[1].split(",")])
     else:
-        raise ModelError(f"{name} = {text!r} must be a range such as {example!r}, or numbers with commas between.")
+        raise ModelError(f"{name} = {text!r} must be a range such as {example!r}, or numbers separated by commas.")
     ascending = np.sort(found)
     if np.any(np.diff(ascending) == 0.0):
-        raise ModelError(f"{name} = {text!r} holds the same number twice. Write a range such as {example!r}.")
+        raise ModelError(f"{name} = {text!r} contains the same number twice. Write a range such as {example!r}.")
     return ascending
 
 
@@ -94,7 +94,7 @@ def _number(name: str, number: str, given: str, unit: str) -> float:
         return float(number) * (0.01 if given else 1.0)
     if not given:
         example = "800 rpm" if unit == "rad/s" else f"{float(number):g} {unit}"
-        raise ModelError(f'{name} = {number!r} has no unit. Write it behind the last number, such as "{example}".')
+        raise ModelError(f'{name} = {number!r} has no unit. Write it after the last number, such as "{example}".')
     try:
         return to_si(f"{number} {given}", unit)
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""The base of every part of a drive: immutable, strict about its keys, clear about what is wrong."""
+"""The base class of all parts of a drive: immutable, validated, with clear error messages."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -14,17 +14,17 @@ from beltdyn.parts.messages import explain
 
 
 class Part(BaseModel):
-    """A validated, immutable piece of a drive; its constructor's arguments are the keys of the file."""
+    """A validated, immutable part of a drive; its constructor takes the keys of the file."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, hide_input_in_errors=True, defer_build=True
     )
     fills_a_file: ClassVar[bool] = False
-    """Whether its keys are those of a file, so that paths in messages begin with them."""
+    """Whether paths in messages begin with its keys, as in a file."""
     either: ClassVar[tuple[str, str] | None] = None
-    """Two arguments, of which one determines the other."""
+    """Pairs of arguments that determine each other."""
     in_place_of: ClassVar[Mapping[str, str]] = MappingProxyType({})
-    """Arguments that are turned into another one, by their names."""
+    """Arguments that are converted to another one, by name."""
 
     def __init__(self, **data: Any) -> None:
         try:
@@ -34,12 +34,12 @@ class Part(BaseModel):
 
     @classmethod
     def keys(cls) -> list[str]:
-        """Names of all arguments that the constructor takes."""
+        """Names of all constructor arguments."""
         return [*(field.alias or name for name, field in cls.model_fields.items()), *cls.alternatives()]
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
-        """Arguments that the constructor takes in place of fields, by their names."""
+        """Constructor arguments that replace fields, by name."""
         return {}
 
     @model_validator(mode="before")
@@ -76,7 +76,7 @@ class Part(BaseModel):
         return isinstance(other, Part) and type(self) is type(other) and self.arguments == other.arguments
 
     def value_of(self, key: str) -> Any:
-        """What stands at an argument of the constructor, whether or not it was given so; None where it is open.
+        """The value of a constructor argument, given or derived; None if it is open.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class Part(BaseModel):
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """The constructor's arguments that make this part, without those that are left open."""
+        """The constructor arguments of this part, without open ones."""
         values = {name: getattr(self, name) for name in type(self).model_fields}
         return {
             field.alias or name: values[name]
@@ -96,7 +96,7 @@ class Part(BaseModel):
         }
 
     def replace(self, **changes: Any) -> Self:
-        """Make a copy with some values changed, and validate it.
+        """Make a validated copy with some values changed.
 
         Parameters
         ----------
@@ -122,7 +122,7 @@ class Part(BaseModel):
         return type(self)(**self.merged(changes))
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """The constructor's arguments with some values changed, as for `replace`."""
+        """The constructor arguments with some values changed, as for `replace`."""
         arguments, either = self.arguments, self.either or ()
         for new in (key for key, value in changes.items() if value is not None):
             meant, given = self._meant(new), {self._meant(key) for key in arguments}

@@ -1,4 +1,4 @@
-"""Numbers in SI units, which a user may also write as text with a unit: ``"25 mm"``."""
+"""Numbers in SI units, also as text with a unit: ``"25 mm"``."""
 
 import math
 import re
@@ -18,9 +18,9 @@ _UNIT = re.compile(r"(?:[^\W\d]+(?:(?:\*\*|\^)-?\d(?!\d))?|[*/·() ])+")
 _TOLERANCE = re.compile(r"\s*(?:±|\+/?-)\s*(?P<size>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<percent>%?)\s*")
 _MARKS = re.compile(r"±|\+/?-")
 _MORE_UNITS = "newton_meter = newton * meter = Nm", "newton_millimeter = newton * millimeter = Nmm"
-"""As drive engineers write them; kNm and the like follow."""
+"""Spellings of drive engineers; kNm etc. follow."""
 _TURNS = re.compile(r"(?:U|rev|1) ?/ ?min|min(?:\^|\*\*)?-1|min⁻¹")
-"""Other ways to write rpm, of angular speeds."""
+"""Other spellings of rpm for angular speeds."""
 _LONGEST_TEXT = 60
 _LARGEST = 1e15
 _DUST = 1e-30
@@ -75,23 +75,23 @@ def to_si(text: str, unit: str) -> float:
     if not unit and given == "%":
         if tolerance is not None and tolerance["percent"]:
             raise ValueError(
-                f"is ambiguous, as the tolerance could be a part of the number or of one. Write {number / 100.0:g} and "
+                f"is ambiguous: the tolerance could be relative or in percentage points. Write {number / 100.0:g} and "
                 "the tolerance as a plain number"
             )
         return number / 100.0
     if not unit and tolerance is not None and not given:
         return number
     if not unit:
-        raise ValueError('is a plain number without a unit: leave the quotation marks away, or write a part as "1 %"')
+        raise ValueError('must be a number without a unit. Omit the quotation marks, or write a fraction as "1 %"')
     if not given:
-        raise ValueError(f'has no unit. Write {number:g} (in {unit}), or for example "{number:g} {unit}"')
+        raise ValueError(f'has no unit. Write {number:g} (in {unit}), or with a unit, such as "{number:g} {unit}"')
     if not _UNIT.fullmatch(given):
-        raise ValueError(f'has a unit that cannot be read. Write for example "{number:g} {unit}"')
+        raise ValueError(f'has an unreadable unit. Write for example "{number:g} {unit}"')
     return _convert(number, given, unit)
 
 
 def is_unit(text: str) -> bool:
-    """Tell whether a text is a unit that is known, such as ``"N m"``."""
+    """Whether a text is a known unit, such as ``"N m"``."""
     try:
         known = _TURNS.fullmatch(text) or _UNIT.fullmatch(text)
         return bool(known and len(text) <= _LONGEST_TEXT and _registry().parse_units(text))
@@ -138,14 +138,14 @@ def _without_tolerance(text: str, unit: str) -> tuple[str, re.Match[str] | None]
     rest = "" if match is None else f"{text[: match.start()]} {text[match.end() :]}".strip()
     if match is None or _MARKS.search(rest) or not float(match["size"]) > 0.0:
         raise ValueError(
-            f'has a tolerance that cannot be read. Write for example "{f"12.5 ± 0.1 {unit}".strip()}", or '
+            f'has an unreadable tolerance. Write for example "{f"12.5 ± 0.1 {unit}".strip()}", or '
             f'"{f"12.5 {unit}".strip()} ± 1 %"'
         )
     return rest, match
 
 
 def written_like(value: float, given: object, unit: str, digits: int = 7) -> float | str:
-    """Write a number with the unit that another one is written with.
+    """Format a number in the unit of another one.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def _convert(number: float, given: str, unit: str) -> float:
     if unit == "Hz" and "hertz" not in str(parsed):
         raise ValueError(f'must be a frequency in Hz, not "{given}"')
     if unit == "rad/s" and "hertz" in str(parsed):
-        raise ValueError(f'is ambiguous, as Hz could mean turns or radians. Write "{60 * value:g} rpm" or rad/s')
+        raise ValueError(f'is ambiguous: Hz could mean rev/s or rad/s. Write "{60 * value:g} rpm" or rad/s')
     return value
 
 
@@ -249,11 +249,11 @@ def _read_count(value: object) -> object:
 
 
 _Toleranced = Annotated[str, StringConstraints(pattern=r"±|\+/?-|%")]
-"""A plain number with a tolerance, ``"0.31 ± 0.02"``, or a part, ``"1 %"``."""
+"""A dimensionless number, also with a tolerance, ``"0.31 ± 0.02"``, or in percent, ``"1 %"``."""
 
 
 def quantity(unit: str, smallest: float = 1e-15) -> BeforeValidator:
-    """Let a field take a number in `unit`, or text with any unit of the same dimension.
+    """Annotate a field that takes a number in `unit`, or text with any unit of the same dimension.
 
     Parameters
     ----------
@@ -300,7 +300,7 @@ Ratio = Annotated[float, quantity("")]
 Count = Annotated[int, BeforeValidator(_read_count, json_schema_input_type=int)]
 Flag = Annotated[bool, Strict()]
 Title = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=100, pattern=r"^[^\r\n]+$")]
-"""A line of text that stands above figures."""
+"""A line of text, for titles."""
 Words = Annotated[str, StringConstraints(strip_whitespace=True, max_length=4000)]
 """Text of some lines."""
 Name = Annotated[str, StringConstraints(max_length=60, pattern=r"^\w[\w .-]*$")]

@@ -1,4 +1,4 @@
-"""Points of a table: from a CSV file of two columns, and what they must obey."""
+"""Points of a table, from keys or a CSV file, and their rules."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -11,7 +11,7 @@ from beltdyn.parts.csv_rows import NUMERIC, SEPARATORS, CsvRow, read_rows, row_o
 from beltdyn.parts.error_location import shorten
 
 _MOST_ROWS = 250_000
-"""Lines of the longest table of a drive: they take some seconds."""
+"""Lines of the longest table of a drive, which takes some seconds to read."""
 
 
 def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
@@ -48,7 +48,7 @@ def take_file(data: Any, info: ValidationInfo, first: str, second: str) -> Any:
 
 
 def take_grid(data: Any, info: ValidationInfo, rows: str, columns: str, values: str) -> Any:
-    """Replace the key ``file`` of a table over two quantities by what that CSV file holds.
+    """Replace the key ``file`` of a table over two quantities by the contents of that CSV file.
 
     Its first line has the columns' arguments behind a first cell of any content; each other line has the argument of a
     row, and then its values.
@@ -89,10 +89,10 @@ def names_file(data: Any, keys: Sequence[str]) -> bool:
     """Whether what a user gave for a table names a file; an error if it has one of some keys beside it."""
     if not isinstance(data, Mapping) or "file" not in data:
         if isinstance(data, Mapping) and "units" in data:
-            raise ValueError("units belong to the columns of a file. Write units into the numbers, or give file")
+            raise ValueError("units applies to the columns of a file. Write the units with the numbers, or give file")
         return False
     if any(key in data for key in keys):
-        raise ValueError(f"file excludes {' and '.join(keys)}: keep one of the two forms")
+        raise ValueError(f"file and {' and '.join(keys)} exclude each other. Keep the file or the keys")
     return True
 
 
@@ -123,12 +123,12 @@ def check_points(first: str, arguments: Sequence[float], second: str, values: Se
     Raises
     ------
     ValueError
-        If the columns differ in length, or the first one does not increase.
+        If the columns differ in length, or the first is not ascending.
     """
     if len(arguments) != len(values):
         raise ValueError(
-            f"{first} has {len(arguments)} numbers and {second} has {len(values)}: each {first[:-1]} needs one "
-            f"{second[:-1]}"
+            f"{first} has {len(arguments)} numbers but {second} has {len(values)}. Give one {second[:-1]} for each "
+            f"{first[:-1]}"
         )
     for earlier, later in pairwise(arguments):
         if later <= earlier:
@@ -149,11 +149,11 @@ def describe_file(schema: dict[str, Any], keys: Sequence[str], content: str) -> 
     content : str
         What the file holds.
     """
-    schema["properties"]["file"] = {"type": "string", "description": f"a CSV file of {content}"}
+    schema["properties"]["file"] = {"type": "string", "description": f"the path of a CSV file with {content}"}
     schema["properties"]["units"] = {
         "type": "array",
         "items": {"type": "string"},
-        "description": f"the units in the file of {', '.join(keys)}; by default those of its head, or SI",
+        "description": f"the units of {', '.join(keys)} in the file; by default those of its headings, or SI",
     }
     others = [key for key in schema.pop("required", []) if key not in keys]
     if others:
@@ -162,10 +162,10 @@ def describe_file(schema: dict[str, Any], keys: Sequence[str], content: str) -> 
 
 
 class NumberTable(NamedTuple):
-    """What a CSV file of numbers holds."""
+    """The contents of a CSV file of numbers."""
 
     units: tuple[str, ...]
-    """Those that its head tells of the columns, empty where it tells none."""
+    """Units of the columns by its headings, empty if not given."""
     rows: list[list[float]]
 
 
@@ -201,8 +201,8 @@ def read_table(name: object, base: Path | None, width: int | None) -> NumberTabl
         raise ValueError(f'file = "{shorten(name)}" {error}') from error
     if len(lines) > _MOST_ROWS:
         raise ValueError(
-            f'file = "{shorten(name)}" has {len(lines):,} lines, and {_MOST_ROWS:,} are the limit. Leave points out: '
-            "between them a table is linear"
+            f'file = "{shorten(name)}" has {len(lines):,} lines; the limit is {_MOST_ROWS:,}. Omit points: '
+            "a table is linear between points"
         )
     head: list[CsvRow] = []
     if width is None and lines:
@@ -219,7 +219,7 @@ def read_table(name: object, base: Path | None, width: int | None) -> NumberTabl
             raise ValueError(f'file = "{shorten(name)}", line {line}{fault}. Correct this line')
         rows.append(numbers)
     if not rows:
-        raise ValueError(f'file = "{shorten(name)}" has no numbers. Give one line for each point')
+        raise ValueError(f'file = "{shorten(name)}" has no numbers. Give one line per point')
     return NumberTable(_units(head, len(rows[0])), rows)
 
 
@@ -241,7 +241,7 @@ def _fault(cells: list[str], width: int | None, separator: str, *, show: bool) -
     wrong = [place for place, cell in enumerate(cells, 1) if _numbers([cell], 1) is None]
     if show and wrong and len(cells) == width:
         return f', column {wrong[0]}: "{shorten(cells[wrong[0] - 1], 40)}" is not a number'
-    many = f"two numbers with a {separator} between" if width == 2 else f"{width} numbers with {separator}s between"
+    many = f"two numbers separated by a {separator}" if width == 2 else f"{width} numbers separated by {separator}s"
     said = f'"{shorten(",".join(cells), 40)}" ' if show else ""
     return f": {said}is not {many}"
 

@@ -1,4 +1,4 @@
-"""Texts from files, and TOML from texts, within bounds that keep reading quick and memory small."""
+"""Read text files and parse TOML, with size limits."""
 
 import os
 import re
@@ -23,12 +23,12 @@ _BRACKET = re.compile(r"[\[\]{}]")
 
 
 def as_text(name: str) -> str:
-    """The name of a file as text: bytes of it that are none are shown by a sign of their own."""
+    """The name of a file as text, with a replacement character for undecodable bytes."""
     return name.encode(errors="surrogateescape").decode(errors="replace")
 
 
 def read_text(path: Path, longest: int) -> str:
-    """Read a text in UTF-8.
+    """Read a UTF-8 text file.
 
     Parameters
     ----------
@@ -51,38 +51,38 @@ def read_text(path: Path, longest: int) -> str:
 
 
 def read_bytes(path: Path, longest: int) -> bytes:
-    """Read a file that is not too long.
+    """Read a file up to a limit of size.
 
     Parameters
     ----------
     path : Path
         The file.
     longest : int
-        Most bytes that it may hold.
+        The limit, bytes.
 
     Raises
     ------
     OSError
         If it cannot be read.
     ValueError
-        If it is no regular file, is too long, or its name is impossible.
+        If it is not a regular file, is too long, or its name is invalid.
     """
     with open_file(path) as file:
         data, size = file.read(longest + 1), os.fstat(file.fileno()).st_size
     if len(data) > longest:
-        raise ValueError(f"it holds {max(size, len(data)):,} bytes, and {longest:,} are the limit")
+        raise ValueError(f"it has {max(size, len(data)):,} bytes; the limit is {longest:,}")
     return data
 
 
 def open_file(path: Path) -> BinaryIO:
-    """Open a regular file to read it, and nothing else: a pipe would let the reader wait without end.
+    """Open a regular file for reading; a pipe would block the reader.
 
     Raises
     ------
     OSError
         If it cannot be opened.
     ValueError
-        If it is no regular file, or its name is impossible.
+        If it is not a regular file, or its name is invalid.
     """
     if path.is_dir():  # which some systems do not open
         raise ValueError("is a directory")
@@ -112,15 +112,15 @@ def parse_toml(text: str) -> dict[str, Any]:
         If it is not TOML, is too long, nests too deeply, or holds too long a number.
     """
     if len(text) > LONGEST_TOML:
-        raise ValueError(f"it is longer than {LONGEST_TOML:,} characters. Put long tables into CSV files")
+        raise ValueError(f"it is longer than {LONGEST_TOML:,} characters. Move long tables to CSV files")
     if _depth(text) > _DEEPEST:
-        raise ValueError("it nests too deeply")
+        raise ValueError("it is nested too deeply")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:
         raise
     except (ValueError, RecursionError) as error:
-        raise ValueError("it nests too deeply, or holds too long a number") from error
+        raise ValueError("it is nested too deeply, or has a number with too many digits") from error
 
 
 def _depth(text: str) -> int:

@@ -1,4 +1,4 @@
-"""Edits of a text in TOML, which keeps its comments, its order and its units."""
+"""Edit TOML text and keep its comments, order and units."""
 
 import copy
 import re
@@ -11,11 +11,11 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT, InlineTable, Table
 
 Location = tuple[int | str, ...]
-"""Keys and positions in lists that lead to a value."""
+"""The keys and list positions of a value."""
 
 _GROUP_WITHOUT_ROOM = re.compile(r"^([^#\n].*)\n(\[\[?[a-z_.]+\]\]?)$", re.MULTILINE)
 _GROUPS = ("load", "hub")
-"""Lists of groups inside a group, which are written as `[[pulley.load]]`; others are written in one line."""
+"""Nested lists of groups written as `[[pulley.load]]`; others are written inline."""
 
 
 class Edit(NamedTuple):
@@ -37,7 +37,7 @@ class Edit(NamedTuple):
 
 
 def changed_data(data: dict[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
-    """Give plain data with some edits; those given stay as they are.
+    """Return plain data with some edits; the input is unchanged.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def changed_data(data: dict[str, Any], edits: Sequence[Edit]) -> dict[str, Any]:
 
 
 def changed_text(text: str, edits: Sequence[Edit], data: dict[str, Any]) -> str | None:
-    """Give a text with some edits, as its author wrote the rest.
+    """Return a text with some edits, and the rest as its author wrote it.
 
     Parameters
     ----------

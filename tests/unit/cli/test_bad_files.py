@@ -41,7 +41,7 @@ def test_results_over_the_drive_file(refuse: Refuse, drive_file: Path) -> None:
 
 def test_new_never_overwrites(refuse: Refuse, drive_file: Path) -> None:
     before = drive_file.read_bytes()
-    assert "exists already" in refuse(["new", str(drive_file)])
+    assert "already exists" in refuse(["new", str(drive_file)])
     assert drive_file.read_bytes() == before
 
 

@@ -30,7 +30,7 @@ CASES = (
     # keys
     Case("misspelled key", "density =", "densitty =", ("belt.densitty", "not a known key", '"density"')),
     Case("misspelled group", "[contact]", "[contacts]", ("contacts is not a known key", '"contact"')),
-    Case("unknown key", "friction = 1.2", "friction = 1.2\ncolour = 3", ("contact.colour", "Known here: stiffness")),
+    Case("unknown key", "friction = 1.2", "friction = 1.2\ncolour = 3", ("contact.colour", "Choose one of stiffness")),
     Case("key of another group", "density =", "radius = 1\ndensity =", ("belt.radius is not a known key",)),
     Case(
         "misspelled profile key",
@@ -173,7 +173,7 @@ CASES = (
     Case("unknown unit", BELT, 'length = "1.2 furlogs"', ("belt.length", 'unknown unit "furlogs"', '"1.2 m"')),
     Case("text without unit", BELT, 'length = "1.2727"', ("belt.length", "has no unit", '"1.2727 m"')),
     Case("words", BELT, 'length = "long"', ('belt.length = "long"', "must be a number in m")),
-    Case("unit that computes", BELT, 'length = "1 m**9**9**9"', ("belt.length", "unit that cannot be read")),
+    Case("unit that computes", BELT, 'length = "1 m**9**9**9"', ("belt.length", "has an unreadable unit")),
     Case("decimal comma", BELT, 'length = "1,27 m"', ("belt.length", "1,27 m", "unit")),
     Case("unit of a ratio", "friction = 1.2", 'friction = "1.2 N"', ("contact.friction", "without a unit")),
     Case("speed in hertz", "value = 12.0", 'value = "2 Hz"', ("pulley[driver].speed.value", "ambiguous", '"120 rpm"')),
@@ -275,7 +275,7 @@ CASES = (
         "table of unequal lengths",
         TORQUE,
         'torque = { kind = "table", times = [0, 1], values = [1, 2, 3] }',
-        ("pulley[driven].torque", "times has 2 numbers and values has 3"),
+        ("pulley[driven].torque", "times has 2 numbers but values has 3"),
     ),
     Case(
         "table backwards",
@@ -293,7 +293,7 @@ CASES = (
         "table twice",
         TORQUE,
         'torque = { kind = "table", file = "a.csv", times = [0, 1] }',
-        ("file excludes times and values",),
+        ("file and times and values exclude each other",),
     ),
     Case(
         "missing CSV",
@@ -335,7 +335,7 @@ CASES = (
         "CSV not text",
         TORQUE,
         'torque = { kind = "table", file = "binary.csv" }',
-        ("binary.csv", "not a CSV text file"),
+        ("binary.csv", "is not a text file"),
     ),
     Case("CSV named by a number", TORQUE, 'torque = { kind = "table", file = 3 }', ("file = 3", "path of a CSV file")),
     # geometry
@@ -371,7 +371,7 @@ CASES = (
     Case("not TOML", BELT, "length: 1.2727", ("not valid TOML", "line")),
     Case("key twice", BELT, f"{BELT}\n{BELT}", ("not valid TOML", "line")),
     Case("deep nesting", BELT, f"length = {'[' * 5000}", ("not valid TOML",)),
-    Case("long number", BELT, f"length = {'1' * 5000}", ("not valid TOML", "too long")),
+    Case("long number", BELT, f"length = {'1' * 5000}", ("not valid TOML", "too many digits")),
     Case("group as a number", "[belt]", "contact = 3\n[belt]", ("not valid TOML",)),
 )
 

@@ -40,7 +40,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "amplitude in rpm": (
         "driver",
         'harmonics = [{ order = 2, amplitude = "10 rpm" }]',
-        ("harmonics[1].amplitude", "plain number without a unit", "over the value without harmonics"),
+        ("harmonics[1].amplitude", "must be a number without a unit", "over the value without harmonics"),
     ),
     "misspelled harmonic": ("driver", "harmonics = [{ order = 2, amplitud = 1 }]", ('Did you mean "amplitude"?',)),
     "one harmonic without list": (
@@ -79,14 +79,18 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "uneven table": (
         "driven",
         f"{TABLE}speeds = [0, 1], torques = [0, 1, 2] }}]",
-        ("load[1]: speeds has 2 numbers and torques has 3", "each speed needs one torque"),
+        ("load[1]: speeds has 2 numbers but torques has 3", "Give one torque for each speed"),
     ),
     "table backwards": (
         "driven",
         f"{TABLE}speeds = [1, 0], torques = [0, 1] }}]",
         ("speeds must increase, but 0 follows 1", "Sort the points by speed"),
     ),
-    "table twice": ("driven", f'{TABLE}file = "a.csv", speeds = [0, 1] }}]', ("file excludes speeds and torques",)),
+    "table twice": (
+        "driven",
+        f'{TABLE}file = "a.csv", speeds = [0, 1] }}]',
+        ("file and speeds and torques exclude each other",),
+    ),
     "table of no file": ("driven", f'{TABLE}file = "nix.csv" }}]', ("load[1]", "nix.csv", "no such file")),
     "table without torques": ("driven", f"{TABLE}speeds = [0, 1] }}]", ("load[1].torques is missing",)),
     "motor of all slip": ("driven", MOTOR.replace("0.1", "2"), ("breakdown_slip = 2 must be at most 1", "0 to 1")),
@@ -145,7 +149,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "capacity as schedule": (
         "driven",
         CLUTCH.replace("inertia", 'schedule = { kind = "ramp", start = 0, end = 1, value = "25 N m" }, inertia'),
-        ("hub[1].schedule.value", "plain number without a unit"),
+        ("hub[1].schedule.value", "must be a number without a unit"),
     ),
 }
 

@@ -158,7 +158,7 @@ def test_warnings_are_errors_where_strict(
     simulated(*(done(one) for one in (sure, doubtful, sure)))
     code, _, message = run_main(words(files, "--strict"))
     assert code == 4
-    assert "a warning makes these results doubtful" in message
+    assert "1 warning, which --strict treats as errors" in message
     simulated(*[done(sure)] * 3)
     assert run_main(words(files, "--strict"))[0] == 0
 

@@ -57,7 +57,7 @@ def test_shows_one(run_main: RunMain) -> None:
     words = " ".join(output.split())
     for fact in (
         *("axial_stiffness 7 kN", "mass_per_length 9 g/m", "pitch_offset 1.2 mm from the inside surface"),
-        "diameter = effective diameter; the tension line runs 1.2 mm outside it",
+        "diameter = effective diameter; the tension line is 1.2 mm outside",
         "nominal_length = effective length; the tension line is 7.54 mm longer",
         *(
             "smallest pulley 20 mm of effective diameter",
@@ -75,7 +75,11 @@ def test_shows_one(run_main: RunMain) -> None:
     [
         (
             "SPB",
-            ("14 mm, the pitch or datum width", "diameter = datum diameter; the tension line runs there", "as long"),
+            (
+                "14 mm, the pitch or datum width",
+                "diameter = datum diameter; the tension line is at that diameter",
+                "of that length",
+            ),
         ),
         ("flat-aramid", ("Values of 10 mm width", "diameter = outside diameter", "inside length", 'width = "50 mm"')),
         ("round-85A", ("Values of 6 mm diameter", 'diameter = "8 mm"')),
@@ -100,7 +104,7 @@ def test_shows_ones_own(run_main: RunMain, tmp_path: Path) -> None:
 def test_a_wrong_name_tells_near_ones(run_main: RunMain) -> None:
     code, output, error = run_main(["catalogue", "SPD"])
     assert (code, output) == (2, "")
-    assert error == 'error: profile = "SPD" is not in the catalogue. Near it: SPZ, SPA, SPB, SPC.\n'
+    assert error == 'error: profile = "SPD" is not in the catalogue. Similar names: SPZ, SPA, SPB, SPC.\n'
 
 
 def test_a_bad_file_is_bad_input(run_main: RunMain, tmp_path: Path) -> None:

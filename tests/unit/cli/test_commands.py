@@ -200,8 +200,8 @@ def test_a_simulation_that_cannot_go_on(
     put_in_place_of_simulate(monkeypatch, fail)
     code, output, message = run_main(["run", str(drive_file)])
     assert code == 3
-    assert (f"What was computed is in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
-    assert ("No results are kept." in output) != bool(outputs)
+    assert (f"The results computed so far are in {drive_file.with_suffix('.nc')}" in output) == bool(outputs)
+    assert ("No results were kept." in output) != bool(outputs)
     assert "error: no convergence at t = 0.1 s. Lower simulation.max_step." in message
 
 
@@ -218,7 +218,7 @@ def test_an_interrupted_simulation(
     put_in_place_of_simulate(monkeypatch, interrupted)
     code, output, _ = run_main(["run", str(drive_file), "-o", str(out)])
     assert code == 130
-    assert "Interrupted: what was computed is kept." in output
+    assert "Interrupted. The results computed so far are kept." in output
     assert f"Results: {out}" in output
 
 

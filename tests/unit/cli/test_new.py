@@ -39,7 +39,7 @@ def test_unknown_example_lists_the_names(refuse: Callable[[list[str]], str]) -> 
 def test_an_existing_file_is_kept(tmp_path: Path, refuse: Callable[[list[str]], str]) -> None:
     file = tmp_path / "drive.toml"
     file.write_text("mine", encoding="utf-8")
-    assert "exists already" in refuse(["new", str(file), "--example", "slip_through"])
+    assert "already exists" in refuse(["new", str(file), "--example", "slip_through"])
     assert file.read_text(encoding="utf-8") == "mine"
 
 

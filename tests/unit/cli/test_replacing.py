@@ -58,7 +58,7 @@ def test_several_runs(refuse: Refuse, drive_file: Path, mine: Path) -> None:
 
 
 def test_demo(refuse: Refuse, mine: Path) -> None:
-    assert "fan_direct_start.toml exists already" in refuse(["demo", str(mine.parent)])
+    assert "fan_direct_start.toml already exists" in refuse(["demo", str(mine.parent)])
     assert unharmed(mine.parent)
 
 

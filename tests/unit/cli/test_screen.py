@@ -157,7 +157,7 @@ def test_a_run_that_takes_long_is_told_of_once_and_why(capsys: pytest.CaptureFix
         for time, elapsed in ((0.02, 40.0), (0.06, 120.0), (0.07, 140.0)):
             report(Progress(time, 1.0, 1e-6, 3, elapsed=elapsed, bound="Steps are short."))
     shown = " ".join(capsys.readouterr().err.split())
-    assert shown.count("This run will take about 31 minutes more") == 1
+    assert shown.count("This run will take about 31 minutes more at") == 1
     assert "Steps are short." in shown
 
 
@@ -176,7 +176,7 @@ def test_runs_that_take_long_are_told_of_once(
         for part, now[0] in ((0.0, 0.0), (0.04, 20.0), (0.24, 120.0), (0.28, 140.0)):
             report(BatchProgress(0, 4, {Path("long.nc"): part}))
     shown = " ".join(capsys.readouterr().err.split())
-    assert shown.count("These runs will take about 31 minutes more") == 1
+    assert shown.count("These runs will take about 31 minutes more at") == 1
 
 
 def test_progress_of_many(capsys: pytest.CaptureFixture[str]) -> None:
@@ -222,8 +222,13 @@ def test_run_with_tables(run_main: RunMain, run: Run, drive_file: Path, monkeypa
 @pytest.mark.parametrize(
     ("warnings", "words", "code", "error"),
     [
-        (["the belt is slack."], ["--strict"], 4, "error: a warning makes these results doubtful."),
-        (["the belt is slack.", "it flutters."], ["--strict"], 4, "error: 2 warnings make these results doubtful."),
+        (["the belt is slack."], ["--strict"], 4, "error: 1 warning, which --strict treats as errors."),
+        (
+            ["the belt is slack.", "it flutters."],
+            ["--strict"],
+            4,
+            "error: 2 warnings, which --strict treats as errors.",
+        ),
         (["the belt is slack."], [], 0, ""),
         ([], ["--strict"], 0, ""),
     ],

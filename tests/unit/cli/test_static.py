@@ -42,7 +42,7 @@ def test_no_equilibrium_leaves_no_file(run_main: RunMain, drive_file: Path, driv
     output = drive_file.with_name("out.nc")
     code, shown, message = run_main([command, str(drive_file), "-o", str(output)])
     assert code == 3
-    assert "No results are kept." in shown
+    assert "No results were kept." in shown
     assert "error: no equilibrium." in message
     assert sorted(path.name for path in drive_file.parent.iterdir()) == [drive_file.name]
 

@@ -48,7 +48,7 @@ def test_a_study_without_results_is_an_error(study_file: Path, capsys: pytest.Ca
     study_file.write_text(text.replace("10, 12 mm", "70, 71 mm"), encoding="utf-8")
     assert code_of("study", str(study_file), "-j", "1") == 3
     captured = capsys.readouterr()
-    assert "no point of the study has results" in captured.err
+    assert "all points of the study failed" in captured.err
     assert "points          2 of 2, 2 failed" in captured.out
     assert study_file.with_suffix(".csv").read_text(encoding="utf-8").count("\n") >= 3
 

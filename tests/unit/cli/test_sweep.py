@@ -84,7 +84,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
     assert {path.name for path in folder.iterdir()} == {"speeds.png", "slip.png"}
     files = ["plot", str(result_file), str(other)]
     assert "'energy' shows one result, and there are 2" in refuse([*files, "--figures", "energy"])
-    assert "--animate needs results over time of one run, or modes, and these are 2" in refuse([*files, "--animate"])
+    assert "--animate needs the results of one run, or modes, not 2 results" in refuse([*files, "--animate"])
 
 
 @pytest.mark.parametrize(

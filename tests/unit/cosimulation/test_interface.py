@@ -54,7 +54,7 @@ def test_an_arm_turns_by_an_angle() -> None:
         (["pulley[driver].torque"], None, "'pulley[driver].torque' is not an input of this drive."),
         (None, ["shaft_torqe"], 'is not an output of this drive. Did you mean "shaft_torque"?'),
         (None, ["drive.fmu"], "'drive.fmu' is not an output of this drive. Name the file by -o."),
-        (["zzz"], None, "Known here: pulley[driver].speed, pulley[driven].torque, pulley[driver].center[1], "),
+        (["zzz"], None, "Choose one of pulley[driver].speed, pulley[driven].torque, pulley[driver].center[1], "),
     ],
 )
 def test_wrong_names_are_told(inputs: list[str] | None, outputs: list[str] | None, sentence: str, drive: Drive) -> None:

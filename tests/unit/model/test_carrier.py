@@ -15,7 +15,10 @@ ROTARY = {"kind": "rotary", "pulley": "driven", "pivot": (0.191441, 0.2), "prelo
 @pytest.mark.parametrize(
     ("tensioner", "sentence"),
     [
-        (SLIDING | {"pulley": "none"}, 'tensioner[1].pulley = "none" is not the name of a pulley. Known here: driver,'),
+        (
+            SLIDING | {"pulley": "none"},
+            'tensioner[1].pulley = "none" is not the name of a pulley. Choose one of driver,',
+        ),
         (SLIDING | {"direction": (0, 0)}, "points nowhere: at least one component must differ from zero"),
         (
             SLIDING | {"direction": (-1, 0)},
@@ -32,7 +35,7 @@ ROTARY = {"kind": "rotary", "pulley": "driven", "pivot": (0.191441, 0.2), "prelo
         (SLIDING | {"rate": -1.0}, "must be at least 0"),
         (SLIDING | {"preload": "5 N*m"}, 'must be in units of N, not "N*m"'),
         (ROTARY | {"preload": "5 N"}, 'must be in units of N*m, not "N"'),
-        ({"kind": "spring"}, 'tensioner[1].kind = "spring" is not a choice here'),
+        ({"kind": "spring"}, 'tensioner[1].kind = "spring" is not a valid choice'),
         ({"pulley": "driven"}, "has no kind"),
     ],
 )

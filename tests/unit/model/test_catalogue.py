@@ -175,9 +175,9 @@ def test_names_like_it() -> None:
     entries = read_catalogue()
     assert find_entry(entries, "SPB") is entries["SPB"]
     for wrong, near in (("spb", "SPB"), ("PJ elastic", "PJ-elastic"), ("flat-kevlar", "flat-")):
-        with pytest.raises(LookupError, match=f'"{wrong}" is not in the catalogue. Near it: .*{near}'):
+        with pytest.raises(LookupError, match=f'"{wrong}" is not in the catalogue. Similar names: .*{near}'):
             find_entry(entries, wrong)
-    with pytest.raises(LookupError, match=r"Known are PH, PJ, .*round-92A"):
+    with pytest.raises(LookupError, match=r"Choose one of PH, PJ, .*round-92A"):
         find_entry(entries, "???")
 
 
@@ -193,7 +193,7 @@ def test_ones_own_extends_and_replaces(tmp_path: Path) -> None:
 
 def test_an_entry_is_checked() -> None:
     entry = read_catalogue()["A"]
-    with pytest.raises(ValueError, match=r"entry\.sold_by = \"metres\" is not a choice here"):
+    with pytest.raises(ValueError, match=r"entry\.sold_by = \"metres\" is not a valid choice"):
         Entry(**entry.arguments | {"sold_by": "metres"})
 
 

@@ -47,7 +47,7 @@ def test_every_law_of_the_normal_force_can_be_chosen(law: str) -> None:
         ({"friction": -0.1}, "must be at least 0"),
         ({"stiffness": 0.0}, "must be greater than 0"),
         ({"quadrature_points": 65}, "must be at most 64"),
-        ({"friction_law": "dry"}, "is not a choice here"),
+        ({"friction_law": "dry"}, "is not a valid choice"),
     ],
 )
 def test_what_does_not_belong_together_is_refused(changes: dict[str, Any], sentence: str) -> None:

@@ -33,8 +33,8 @@ def test_the_clock_goes_on_unless_it_is_set() -> None:
 @pytest.mark.parametrize(
     ("start", "message"),
     [
-        ("rest", 'start = "rest" is not a choice here'),
-        (3, "start = 3 is not a choice here"),
+        ("rest", 'start = "rest" is not a valid choice'),
+        (3, "start = 3 is not a valid choice"),
         ({"fil": "run.nc"}, 'start.fil is not a known key. Did you mean "file"?'),
         ({"time": 0.5}, "start.file is missing. Give the result file of the earlier run"),
         ({"file": 3}, "start.file = 3 must be the path of a result file, as text"),

@@ -24,8 +24,11 @@ PLACE = {"name": "one", "center": (0, 0), "radius": 0.1}
         ({"inertia": 1.0, "mass": -1.0}, "pulley.mass = -1.0 must be at least 0. Give the mass of the pulley"),
         ({"inertia": 1.0, "hub": [{"kind": "isolator"}]}, "pulley.hub[1].stiffness is missing. Give the torque over"),
         ({"inertia": 1.0, "hub": [{"stiffness": 1.0}]}, "has no kind"),
-        ({"inertia": 1.0, "hub": [{"kind": "isolater"}]}, 'pulley.hub[1].kind = "isolater" is not a choice here'),
-        ({"inertia": 1.0, "load": [{"linear": 1.0}]}, "with one of angle_speed_table, angle_table, band_brake"),
+        ({"inertia": 1.0, "hub": [{"kind": "isolater"}]}, 'pulley.hub[1].kind = "isolater" is not a valid choice'),
+        (
+            {"inertia": 1.0, "load": [{"linear": 1.0}]},
+            "with one of the kinds angle_speed_table, angle_table, band_brake",
+        ),
         ({"inertia": 1.0, "load": LOAD}, "pulley.load = "),
         (
             {"speed": SPEED, "harmonics": [{"order": 0, "amplitude": 1}]},

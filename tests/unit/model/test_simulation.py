@@ -44,7 +44,7 @@ def test_a_run_that_begins_later_ends_as_much_later() -> None:
         ({"max_step": 1e-15}, "max_step = 1e-15 s asks for 1e+15 time steps at least, and 1,000,000,000 is the limit"),
         ({"rtol": 1.0}, "must be less than 1"),
         ({"spectral_radius": -0.1}, "must be at least 0"),
-        ({"integrator": "euler"}, "is not a choice here"),
+        ({"integrator": "euler"}, "is not a valid choice"),
         (
             {"start_at": 0.5},
             'start_at = 0.5 s does not fit start = "equilibrium", a belt at rest. Set start = "steady"',

@@ -52,7 +52,7 @@ def test_a_study_file(tmp_path: Path) -> None:
     [
         ("[goal]", "[gaol]", 'opt.toml: gaol is not a known key. Did you mean "goal"?'),
         ('result = "hub_load"', 'sense = "minimize"', "opt.toml: goal.result is missing"),
-        ('result = "hub_load"', 'result = "hub_load"\nsense = "least"', 'goal.sense = "least" is not a choice here'),
+        ('result = "hub_load"', 'result = "hub_load"\nsense = "least"', 'goal.sense = "least" is not a valid choice'),
         ("[points]", "[points]\ntable = 'a.csv'", "points: table has its own speeds and loads"),
         ('speed = "700..6000 rpm"', 'pulley = "a"', "points: pulley names whose speed to prescribe"),
         ('speed = "700..6000 rpm"', "count = 1", "points.count = 1 must be at least 2"),

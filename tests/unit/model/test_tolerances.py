@@ -47,5 +47,5 @@ def test_they_go_with_the_text_of_the_drive() -> None:
     "text", ['"81.25 ± mm"', '"81.25 ± 0 mm"', '"81.25 ± 0.1 ± 0.2 mm"', '"81.25 ± -0.1 mm"', '"± 1 mm"']
 )
 def test_what_is_no_tolerance_is_refused(text: str) -> None:
-    with pytest.raises(ModelError, match=r"driver.*(tolerance that cannot be read|must be a number)"):
+    with pytest.raises(ModelError, match=r"driver.*(an unreadable tolerance|must be a number)"):
         loads(with_radius(text))

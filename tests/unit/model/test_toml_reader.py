@@ -217,11 +217,11 @@ def test_numbers_and_words_as_an_engineer_writes_them(given: str, spelled_out: s
         ('speed = "800 foo"', r'speed.value = "800 foo" has an unknown unit "foo"'),
         ('speed = "800"', 'speed.value = "800" has no unit'),
         ("speed = true", "speed = true has no kind"),
-        ('side = "left"', 'side = "left" is not a choice here. Known here: inside, outside'),
-        ('friction = "35"', 'friction = "35" is a plain number without a unit: .* or write a part as "1 %"'),
+        ('side = "left"', 'side = "left" is not a valid choice. Choose one of inside, outside'),
+        ('friction = "35"', 'friction = "35" must be a number without a unit. .* or write a fraction as "1 %"'),
         (
             'friction = "35 % ± 2 %"',
-            "friction = .* is ambiguous, as the tolerance could be a part of the number or of one",
+            "friction = .* is ambiguous: the tolerance could be relative or in percentage points",
         ),
     ],
 )

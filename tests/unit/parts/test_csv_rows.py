@@ -49,7 +49,7 @@ def test_a_comma_in_a_few_lines_is_no_separator(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("data", [b"\x89PNG\r\n\x1a\n\x00\x00", b"\x1f\x8b\x08\x00", b"\xff\xfe0,1", b"0,1\n\x81\n"])
 def test_what_is_no_text_is_refused(tmp_path: Path, data: bytes) -> None:
-    with pytest.raises(ValueError, match="is not a CSV text file"):
+    with pytest.raises(ValueError, match="is not a text file"):
         read_rows(written(tmp_path, data))
 
 
@@ -102,7 +102,7 @@ def test_points_below_any_head(tmp_path: Path, head: str, units: tuple[str, str]
     ("text", "said"),
     [
         ("time;speed\n0,5;1\n1;x\n", 'line 3, column 2: "x" is not a number'),
-        ("time;speed\n0,5;1\n1;2;3\n", 'line 3: "1,2,3" is not two numbers with a semicolon between'),
+        ("time;speed\n0,5;1\n1;2;3\n", 'line 3: "1,2,3" is not two numbers separated by a semicolon'),
         ("0.O;1\n0,5;1\n", "line 1: is not two numbers"),
         ("time;speed\n", "has no numbers"),
     ],

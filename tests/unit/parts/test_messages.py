@@ -49,8 +49,8 @@ def said(**keys: Any) -> list[str]:
         ({"radius": 0.1, "locked": 0.5}, "wheel.locked = 0.5 must be true or false, without quotation marks."),
         ({"radius": 0.1, "hub": 3}, "wheel.hub = 3 must be a list [...]."),
         ({"radius": 0.1, "hub": [3.0]}, "wheel.hub = [3.0] needs at least 2 entries."),
-        ({"radius": 0.1, "material": "stele"}, 'wheel.material = "stele" is not a choice here. Did you mean "steel"?'),
-        ({"radius": 0.1, "material": "x"}, 'wheel.material = "x" is not a choice here. Known here: steel, polymer.'),
+        ({"radius": 0.1, "material": "stele"}, 'wheel.material = "stele" is not a valid choice. Did you mean "steel"?'),
+        ({"radius": 0.1, "material": "x"}, 'wheel.material = "x" is not a valid choice. Choose one of steel, polymer.'),
         ({"radius": 0.1, "tooth": 3}, 'wheel.tooth is not a known key. Did you mean "teeth"?'),
         ({"radius": 1.0}, "wheel has no hub. Give another radius."),
         ({"radius": 2.0}, "wheel: radius and teeth exclude each other. Remove one."),
@@ -76,7 +76,7 @@ def test_a_list_with_a_wrong_entry_is_not_too_short_too() -> None:
 def test_twenty_errors_are_enough() -> None:
     found = said(radius=0.1, **{f"key{number}": 1 for number in range(30)})
     assert len(found) == 21
-    assert found[-1] == "There are 10 more errors, which are not shown."
+    assert found[-1] == "10 more errors are not shown."
 
 
 @pytest.mark.parametrize(

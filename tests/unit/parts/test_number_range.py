@@ -21,11 +21,11 @@ def test_a_list_is_sorted() -> None:
 @pytest.mark.parametrize(
     ("text", "unit", "words"),
     [
-        ("fast", "rad/s", r"speed = 'fast' must be a range such as '700..6000 rpm', or numbers with commas between"),
+        ("fast", "rad/s", r"speed = 'fast' must be a range such as '700..6000 rpm', or numbers separated by commas"),
         ("1..2", "rad/s", "has no unit"),
         ("1..2 m", "rad/s", "must be in units of rad/s"),
-        ("1, 1 rpm", "rad/s", "holds the same number twice"),
-        ("1..1", "", "holds the same number twice"),
+        ("1, 1 rpm", "rad/s", "contains the same number twice"),
+        ("1..1", "", "contains the same number twice"),
     ],
 )
 def test_what_is_no_range(text: str, unit: str, words: str) -> None:
@@ -34,7 +34,7 @@ def test_what_is_no_range(text: str, unit: str, words: str) -> None:
 
 
 def test_a_number_without_its_unit_is_asked_for_it() -> None:
-    with pytest.raises(ModelError, match=r"has no unit\. Write it behind the last number, such as .800 rpm"):
+    with pytest.raises(ModelError, match=r"has no unit\. Write it after the last number, such as .800 rpm"):
         numbers_in("speed", "80", "rad/s", 2)
 
 

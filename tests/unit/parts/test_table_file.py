@@ -44,11 +44,11 @@ def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("0,1\n2;3\n", 'line 2: "2;3" is not two numbers with a comma between. Correct this line'),
+        ("0,1\n2;3\n", 'line 2: "2;3" is not two numbers separated by a comma. Correct this line'),
         ("0,1\n\n# x\n2,3,4\n", 'line 4: "2,3,4" is not two numbers'),
         ("time,torque\n1,T\n0,1\n", "line 2: is not two numbers"),
-        (b"\xff\xfe0,1", "is not a CSV text file. Save it as CSV in UTF-8"),
-        ('0,1\n"' + "x" * 200_000 + '"\n', "is not CSV in line 2"),
+        (b"\xff\xfe0,1", "is not a text file. Save it as CSV in UTF-8"),
+        ('0,1\n"' + "x" * 200_000 + '"\n', "is not valid CSV in line 2"),
     ],
 )
 def test_the_line_that_is_wrong_is_named(write: Any, text: str | bytes, message: str) -> None:
@@ -69,7 +69,7 @@ def test_a_file_takes_the_place_of_both_columns(write: Any) -> None:
     assert taken == {"kind": "table", "times": [0.0, 2.0], "values": [1.0, 3.0]}
     for data in ({"kind": "table", "times": [0, 1]}, "no table"):
         assert take_file(data, info, "times", "values") is data
-    with pytest.raises(ValueError, match="file excludes times and values"):
+    with pytest.raises(ValueError, match="file and times and values exclude each other"):
         take_file({"file": "points.csv", "values": [1]}, info, "times", "values")
 
 
@@ -82,7 +82,7 @@ def test_columns_of_a_file_may_have_units(write: Any) -> None:
     }
     with pytest.raises(ValueError, match="units = deg must be the units of both columns, such as"):
         take_file(table | {"units": "deg"}, info, "angles", "torques")
-    with pytest.raises(ValueError, match="units belong to the columns of a file"):
+    with pytest.raises(ValueError, match="units applies to the columns of a file"):
         take_file({"angles": [0.0], "units": ["deg", "N m"]}, info, "angles", "torques")
 
 
@@ -100,7 +100,7 @@ def test_a_grid_has_the_second_argument_in_its_first_line(write: Any) -> None:
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("x,1,2\n0,1\n", 'line 2: "0,1" is not 3 numbers with commas between'), ("", "has no numbers")],
+    [("x,1,2\n0,1\n", 'line 2: "0,1" is not 3 numbers separated by commas'), ("", "has no numbers")],
 )
 def test_a_grid_with_a_wrong_line(write: Any, text: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
@@ -109,7 +109,7 @@ def test_a_grid_with_a_wrong_line(write: Any, text: str, message: str) -> None:
 
 def test_points_are_a_function() -> None:
     check_points("times", [0.0, 1e-9, 2.0], "values", [1.0, 1.0, 1.0])
-    with pytest.raises(ValueError, match="times has 2 numbers and values has 1: each time needs one value"):
+    with pytest.raises(ValueError, match=r"times has 2 numbers but values has 1\. Give one value for each time"):
         check_points("times", [0.0, 1.0], "values", [1.0])
     for second in (1.0, 0.5):
         with pytest.raises(ValueError, match=f"times must increase, but {second:g} follows 1. Sort the points by time"):

@@ -126,7 +126,7 @@ def test_another_drive_file_is_not_replaced(loaded: Drive, tmp_path: Path) -> No
     ("changes", "said"),
     [
         ({"number": [FREE | {"path": "belt.widht"}]}, r"belt.widht is not a known key. Did you mean \"width\"?"),
-        ({"number": [FREE | {"path": "pulley[idler].radius"}]}, r"pulley\[idler\] is not there"),
+        ({"number": [FREE | {"path": "pulley[idler].radius"}]}, r"pulley\[idler\] does not exist"),
         ({"number": [FREE | {"path": "belt.elements"}]}, "is no number that changes gradually"),
         ({"number": [FREE | {"path": "belt.length"}]}, "is not given in the drive file"),
         ({"number": [FREE | {"largest": "9 m"}]}, "must be in units of N"),

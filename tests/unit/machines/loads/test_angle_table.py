@@ -119,7 +119,11 @@ def test_files(tmp_path: Path) -> None:
         (AngleSpeedTable, GRID | {"speeds": [1.0, 2.0]}, "speeds has 2 numbers and torques has 3"),
         (AngleSpeedTable, GRID | {"speeds": [1.0, 2.0, 2.0]}, "speeds must increase, but 2 follows 2"),
         (AngleSpeedTable, GRID | {"torques": [[1.0, 1.0, 1.0]] * 3}, "angles has 24 numbers and torques has 3"),
-        (AngleTable, {"kind": "angle_table", "file": "x.csv", "angles": [0]}, "file excludes angles and torques"),
+        (
+            AngleTable,
+            {"kind": "angle_table", "file": "x.csv", "angles": [0]},
+            "file and angles and torques exclude each other",
+        ),
     ],
 )
 def test_errors(kind: type[AngleTable], given: dict[str, Any], sentence: str) -> None:

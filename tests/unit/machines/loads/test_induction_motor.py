@@ -134,7 +134,7 @@ def test_it_drives_up_to_the_highest_frequency_of_its_supply() -> None:
         ({"rated_speed": "3100 rpm"}, "Give the speed at the rated power"),
         ({"rated_speed": "1500 rpm"}, "breakdown would come at a slip of 2.91. Correct rated_speed or frequency"),
         ({"breakdown_ratio": 1.0}, "must be greater than 1"),
-        ({"breakdown_ratio": "290 N m"}, "plain number without a unit"),
+        ({"breakdown_ratio": "290 N m"}, "must be a number without a unit"),
         ({"pull_up_ratio": 2.5}, "pull_up_ratio = 2.5 must not be above locked_rotor_ratio = 2.4"),
         ({"limit_ratio": 1.5}, "has limit_ratio but no supply: only an inverter limits the torque. Give supply"),
         (

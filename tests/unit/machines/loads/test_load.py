@@ -29,14 +29,18 @@ MOTOR = {"kind": "motor", "breakdown_torque": "12 N m", "breakdown_slip": 0.2, "
             {"kind": "table", "speeds": [1.0, 1.0], "torques": [1.0, 2.0]},
             "speeds must increase, but 1 follows 1. Sort the points by speed",
         ),
-        (LoadTable, {"kind": "table", "file": "x.csv", "speeds": [0, 1]}, "file excludes speeds and torques"),
+        (
+            LoadTable,
+            {"kind": "table", "file": "x.csv", "speeds": [0, 1]},
+            "file and speeds and torques exclude each other",
+        ),
         (LoadTable, {"kind": "table", "file": "nowhere.csv"}, "cannot be read"),
         (Motor, MOTOR | {"synchronous_speed": 0.0}, "synchronous_speed = 0 leaves the slip undefined"),
         (Motor, MOTOR | {"breakdown_slip": 1.2}, "must be at most 1"),
         (Motor, MOTOR | {"breakdown_torque": 0.0}, "must be greater than 0"),
         (Motor, MOTOR | {"schedule": {"kind": "constant", "value": 1.5}}, "must be at most 1"),
-        (Motor, MOTOR | {"schedule": {"kind": "constant", "value": "1 s"}}, "plain number without a unit"),
-        (Motor, MOTOR | {"schedule": {"kind": "cosine_ramp_published"}}, "is not a choice here"),
+        (Motor, MOTOR | {"schedule": {"kind": "constant", "value": "1 s"}}, "must be a number without a unit"),
+        (Motor, MOTOR | {"schedule": {"kind": "cosine_ramp_published"}}, "is not a valid choice"),
     ],
 )
 def test_errors(kind: type[Load], given: dict[str, Any], sentence: str) -> None:
