@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,35 +17,61 @@ INDEX = ROOT / "docs" / "extending.md"
 PAGES = sorted((ROOT / "docs" / "extending").glob("*.md"))
 
 COSTLY = {"surface", "friction_law", "normal_law", "stretch_law", "element", "analysis", "integrator"}
-"""Pages whose examples compile kernels of their own, half a minute each; those of the others are the same."""
+"""Checks of examples that compile kernels of their own, half a minute each; those of the others are the same."""
 
-BLOCK = re.compile(r"^```\{code-block\} (\w+)\n:caption: ([^\n]+)\n\n(.*?)^```$", re.DOTALL | re.MULTILINE)
-ROW = re.compile(r"^\| .*\(extending/(\w+)\.md\).* \| (\d+) \| (\d+) \|$", re.MULTILINE)
+BLOCK = re.compile(
+    r"^```\{(?:code-block\} diff|literalinclude\} (?P<file>[\w/.]+))\n"
+    r":caption: (?P<caption>[^\n]+)\n(?P<text>.*?)^```$",
+    re.DOTALL | re.MULTILINE,
+)
+CHECK = re.compile(r"\{download\}`check <(code/check_(\w+)\.py)>`")
+ROW = re.compile(r"^\| \[.*?\]\(extending/(\w+\.md#[\w-]+)\) \| (\d+) \| (\d+) \|$", re.MULTILINE)
 
 
 class Block(NamedTuple):
-    """A block of a page: what it is in and under, and its text."""
+    """A new file with its path in the source, or lines that are added to the file of that path."""
 
-    language: str
     caption: str
     text: str
-
-    @property
-    def is_check(self) -> bool:
-        return self.caption == "check"
-
-    @property
-    def is_file(self) -> bool:
-        return self.language != "diff" and not self.is_check
+    source: Path
+    is_file: bool
 
     @property
     def added(self) -> list[str]:
         """Lines that a diff adds."""
-        return [line[1:] for line in self.text.splitlines() if line.startswith("+")] if self.language == "diff" else []
+        return [] if self.is_file else [line[1:] for line in self.text.splitlines() if line.startswith("+")]
 
 
-def blocks(page: Path) -> list[Block]:
-    return [Block(*found) for found in BLOCK.findall(page.read_text(encoding="utf-8"))]
+class Example(NamedTuple):
+    """A section of a page: where it is, what it adds to the source, and its checks by their names."""
+
+    place: str
+    blocks: list[Block]
+    checks: dict[str, Path]
+
+
+def _block(page: Path, found: re.Match[str]) -> Block:
+    if found["file"]:
+        file = page.parent / found["file"]
+        return Block(found["caption"], file.read_text(encoding="utf-8"), file, is_file=True)
+    return Block(found["caption"], found["text"].removeprefix("\n"), page, is_file=False)
+
+
+def _examples(page: Path) -> Iterator[Example]:
+    """Sections of a page with a check; the whole page where it has none below its title."""
+    text = page.read_text(encoding="utf-8")
+    for section in re.split(r"^## ", text, flags=re.MULTILINE)[1:] or [text.removeprefix("# ")]:
+        anchor = section.splitlines()[0].lower().replace(" ", "-")
+        yield Example(
+            f"{page.name}#{anchor}",
+            [_block(page, found) for found in BLOCK.finditer(section)],
+            {name: page.parent / file for file, name in CHECK.findall(section)},
+        )
+
+
+EXAMPLES = [example for page in PAGES for example in _examples(page)]
+CHECKS = {name: file for example in EXAMPLES for name, file in example.checks.items()}
+BLOCKS = [block for example in EXAMPLES for block in example.blocks]
 
 
 def apply(block: Block, tree: Path) -> None:
@@ -77,11 +104,9 @@ def extended(pytestconfig: pytest.Config, tmp_path_factory: pytest.TempPathFacto
     """
     new, extended = tmp_path_factory.mktemp("new"), Path(pytestconfig.cache.mkdir("extended"))
     shutil.copytree(ROOT / "src", new / "src", ignore=shutil.ignore_patterns("__pycache__"))
-    for page in PAGES:
-        for block in blocks(page):
-            if not block.is_check:
-                apply(block, new)
-                shutil.copystat(page, new / block.caption)
+    for block in BLOCKS:
+        apply(block, new)
+        shutil.copystat(block.source, new / block.caption)
     with FileLock(extended / "lock"):
         if contents(new / "src") != contents(extended / "src"):
             shutil.rmtree(extended / "src", ignore_errors=True)
@@ -89,40 +114,44 @@ def extended(pytestconfig: pytest.Config, tmp_path_factory: pytest.TempPathFacto
     return extended
 
 
-def test_every_page_is_listed_with_what_it_touches() -> None:
-    listed = {name: (int(files), int(lines)) for name, files, lines in ROW.findall(INDEX.read_text(encoding="utf-8"))}
+def test_every_example_is_listed_with_what_it_touches() -> None:
+    listed = {place: (int(files), int(lines)) for place, files, lines in ROW.findall(INDEX.read_text(encoding="utf-8"))}
     touched = {
-        page.stem: (sum(block.is_file for block in blocks(page)), sum(len(block.added) for block in blocks(page)))
-        for page in PAGES
+        example.place: (
+            sum(block.is_file for block in example.blocks),
+            sum(len(block.added) for block in example.blocks),
+        )
+        for example in EXAMPLES
     }
     assert listed == touched
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_every_page_has_a_check_that_asserts(page: Path) -> None:
-    checks = [block.text for block in blocks(page) if block.is_check]
-    assert len(checks) == 1
-    assert "\nassert " in checks[0]
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.place)
+def test_every_example_has_a_check_that_asserts(example: Example) -> None:
+    (check,) = example.checks.values()
+    assert "\nassert " in check.read_text(encoding="utf-8")
+
+
+def test_every_file_of_code_is_on_a_page() -> None:
+    files = {file.name for file in (ROOT / "docs" / "extending" / "code").glob("*.py")}
+    shown = {Path(block.caption).name for block in BLOCKS if block.is_file}
+    assert files == shown | {file.name for file in CHECKS.values()}
 
 
 def test_the_code_of_the_pages_keeps_the_rules(extended: Path) -> None:
-    written = sorted({block.caption for page in PAGES for block in blocks(page) if block.caption.endswith(".py")})
+    written = sorted({block.caption for block in BLOCKS if block.caption.endswith(".py")})
     for rules in (["check"], ["format", "--check"]):
         command = ["-m", "ruff", *rules, "--no-respect-gitignore", "--config", str(ROOT / "pyproject.toml"), *written]
         run(command, extended)
 
 
 @pytest.mark.parametrize(
-    "page",
-    [pytest.param(page, marks=[pytest.mark.slow] if page.stem in COSTLY else []) for page in PAGES],
-    ids=lambda page: page.stem,
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in COSTLY else []) for name in CHECKS]
 )
-def test_the_example_works(page: Path, extended: Path, tmp_path: Path) -> None:
-    (check,) = (block.text for block in blocks(page) if block.is_check)
-    (tmp_path / "check.py").write_text(check, encoding="utf-8")
+def test_the_example_works(name: str, extended: Path, tmp_path: Path) -> None:
     kernels = str(extended / "kernels")
     run(
-        ["check.py"],
+        [str(CHECKS[name])],
         tmp_path,
         PYTHONPATH=str(extended / "src"),
         BELTDYN_CACHE_DIR=kernels,
