@@ -322,3 +322,11 @@ def test_the_page_on_figures_names_every_one() -> None:
 def test_the_commands_page_has_every_analysis() -> None:
     text = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
     assert [name for name in ANALYSES if f"| `beltdyn {name} FILE" not in text] == []
+
+
+def test_files_named_by_the_page_on_theory_exist() -> None:
+    text = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| \[\]\(theory/.*$", text, flags=re.MULTILINE)
+    named = [name for row in rows for name in re.findall(r"`([a-z_/]+(?:/|\.py))`", row)]
+    assert len(rows) == 9
+    assert [name for name in named if not (ROOT / "src" / "beltdyn" / name).exists()] == []
