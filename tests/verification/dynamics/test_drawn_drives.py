@@ -15,6 +15,8 @@ from tests.lumped.drawn_drives import SEED, drawn_drive, idler_between
 
 LEAST, MOST = 0.05, 0.95
 """Loads, over those that a drive transmits by the lumped balance."""
+SURE = 0.97
+"""Load that is transmitted for sure, over the same: that of the balance is right within 3 %."""
 
 
 def load_of(seed: int) -> float:
@@ -33,6 +35,27 @@ def test_every_drive_runs_with_the_tensions_of_the_balance(seeds: range, measure
     worst = max(errors, key=lambda seed: errors[seed])
     measured(drives=len(errors), median=float(np.median(list(errors.values()))), worst=errors[worst], seed=worst)
     assert errors[worst] < 0.02
+
+
+@pytest.mark.parametrize("seeds", [range(2000, 2001), pytest.param(range(2001, 2050), marks=pytest.mark.slow)], ids=len)
+def test_a_sweep_of_loads_has_no_hole(seeds: range, measured: Callable[..., None]) -> None:
+    """Each of 40 loads is found from rest, up to where the balance loses its grip, which it knows within 3 %."""
+    loads, missing, last = (np.arange(1, 41) / 40).tolist(), dict[int, list[float]](), dict[int, float]()
+    for seed in seeds:
+        drawn = drawn_drive(seed)
+        found = [load for load in loads if _runs(drawn.under(load))]
+        last[seed] = max(found, default=0.0)
+        missing[seed] = sorted({load for load in loads if load <= max(last[seed], SURE)} - set(found))
+    measured(sweeps=len(last), missing=sum(map(len, missing.values())), least_limit=min(last.values()))
+    assert not any(missing.values()), missing
+
+
+def _runs(drive: Drive) -> bool:
+    try:
+        steady_state(drive)
+    except ConvergenceError:
+        return False
+    return True
 
 
 @pytest.mark.parametrize("seeds", [range(12), pytest.param(range(12, 60), marks=pytest.mark.slow)], ids=len)
