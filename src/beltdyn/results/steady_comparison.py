@@ -5,12 +5,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beltdyn.model import Drive
+from beltdyn.model.simulation import Simulation
+from beltdyn.results.balance import LOSSES, power_balance
+from beltdyn.results.checks.steady import STEADY_LOSSES, STEADY_SLIPS
+from beltdyn.results.cycles import mean_window
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.run import Run
-from beltdyn.results.summary import Summary, summarize
+from beltdyn.results.summary import Summary, means_of, summarize
 
 VALUES, FAILURE = "steady_values", "steady_failure"
 """Attributes of a run: the numbers of steady running in their order, or why there is none."""
+
+_CHANGING = 0.2
+"""Rate of the stored energy over the losses from which on a run has not settled."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +85,60 @@ def steady_values(run: Run) -> list[float]:
         Of `steady_state`, of the same pulleys, spans and tensioners.
     """
     return [one.run for one in _ending(run)]
+
+
+def coarse_settings(drive: Drive) -> list[str]:
+    """Settings of a run by which its losses and slip may differ from those on the mesh, and with the tolerance, chosen.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive as it is given.
+    """
+    settings, default = drive.simulation, Simulation.model_fields["rtol"].default
+    found = []
+    if not drive.frame.stays:
+        given = settings.frame is not None
+        found.append('simulation.frame = "travelling"' if given else drive.frame.reason.removeprefix("since "))
+    if settings.mesh == "uniform":
+        found.append('simulation.mesh = "uniform"')
+    if drive.belt.elements is not None:
+        found.append(f"belt.elements = {drive.belt.elements}")
+    if settings.rtol > default:
+        found.append(f"simulation.rtol = {settings.rtol:g}")
+    return found
+
+
+def ends_steadily(run: Run) -> bool:
+    """Whether a run ends in what steady running may be compared with: a turn of the belt in which nothing changes.
+
+    Parameters
+    ----------
+    run : Run
+        The run, not of steady running itself.
+    """
+    pulleys = run.drive.pulleys
+    if run.outputs == 0 or any(one.harmonics or any(load.orders for load in one.load) for one in pulleys):
+        return False
+    with run.recorded() as recorded:
+        window = mean_window(recorded, run.drive)
+        balance = power_balance(recorded, window)
+    return bool(window.turns and balance.power_in > 0.0 and abs(balance.stored) < _CHANGING * balance.lost)
+
+
+def steady_losses(run: Run) -> dict[str, list[float]]:
+    """Attributes of another run by which `off_steady_running` finds its errors.
+
+    Parameters
+    ----------
+    run : Run
+        Of `steady_state`, of the same pulleys.
+    """
+    means = means_of(run)
+    return {
+        STEADY_LOSSES: [means.balance.losses[cause] for cause in LOSSES.values()],
+        STEADY_SLIPS: [one.slip for one in means.pulleys],
+    }
 
 
 def _ending(run: Run) -> Iterator[Compared]:

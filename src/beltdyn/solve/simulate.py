@@ -7,9 +7,18 @@ from typing import get_args
 from beltdyn.errors import ConvergenceError, ModelError
 from beltdyn.model import Drive, Simulation
 from beltdyn.model.drive import has_functions
+from beltdyn.parts.finding import listing
 from beltdyn.parts.number_range import number_in
 from beltdyn.results import Run, require_room
-from beltdyn.results.steady_comparison import FAILURE, VALUES, steady_values
+from beltdyn.results.checks.steady import COARSE_SETTINGS
+from beltdyn.results.steady_comparison import (
+    FAILURE,
+    VALUES,
+    coarse_settings,
+    ends_steadily,
+    steady_losses,
+    steady_values,
+)
 from beltdyn.solve.beginning import Begin, begin_on, mesh_of, settled
 from beltdyn.solve.checkpoint import Keeper, checkpoint_file, read_checkpoint
 from beltdyn.solve.compilation import compile_kernels
@@ -164,6 +173,9 @@ def _end(recording: Recording, given: Drive, compare_steady: bool) -> None:
     recording.check()
     if compare_steady:
         recording.note(**_steady_running(given))
+    coarse = coarse_settings(given)
+    if coarse and not given.ends and ends_steadily(recording.run()):
+        recording.note(**_steady_losses(given), **{COARSE_SETTINGS: listing(coarse)})
 
 
 def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run:
@@ -201,6 +213,14 @@ def _steady_running(drive: Drive) -> dict[str, object]:
         return {VALUES: steady_values(steady_state(with_instant(drive)))}
     except (ConvergenceError, ModelError) as error:
         return {FAILURE: str(error)}
+
+
+def _steady_losses(drive: Drive) -> dict[str, object]:
+    """Attributes that tell of losses and slip in steady running at the end; none where there is no steady running."""
+    try:
+        return dict(steady_losses(steady_state(with_instant(drive))))
+    except (ConvergenceError, ModelError):
+        return {}
 
 
 def choose_integrator(drive: Drive) -> Integrator:

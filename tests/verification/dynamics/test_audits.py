@@ -57,7 +57,8 @@ def test_contact_damping_that_takes_power() -> None:
 
 @pytest.mark.slow
 def test_load_of_the_wrong_sign() -> None:
+    """Of a load of the right sign nothing is said but what the published mesh and contact damping do."""
     (finding,) = (one for one in simulate(loaded(torque=2.0)).findings if "a load drives" in one.fault)
     assert "the sign of its speed: driven with 2 N m at 114.9 rpm, 24" in finding.fault
-    sound = simulate(loaded())
-    assert not [warning for warning in sound.warnings if "flutter" not in warning and "too few elements" not in warning]
+    sound = simulate(loaded(friction_law="relative_creep", creep_rate_factor=None))
+    assert {one.kind for one in sound.findings} <= {"flutter", "unresolved_by_mesh", "off_steady_running"}

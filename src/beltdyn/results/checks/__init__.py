@@ -24,7 +24,7 @@ from beltdyn.results.checks.flutter import flutter
 from beltdyn.results.checks.mesh import unresolved_by_mesh
 from beltdyn.results.checks.power import artificial_losses, driving_loads, negative_losses
 from beltdyn.results.checks.sliding import ended_by_slip, gross_slip, gross_slip_before, near_gross_slip
-from beltdyn.results.checks.steady import begun_by_means, mean_torques
+from beltdyn.results.checks.steady import begun_by_means, mean_torques, off_steady_running
 from beltdyn.results.checks.tensioners import stopped_tensioners, unstable_tensioners
 from beltdyn.results.recorded import Recorded
 from beltdyn.results.resolution import Resolution
@@ -52,6 +52,7 @@ CHECKS: tuple[Check, ...] = (
     driving_loads,
     mean_torques,
     begun_by_means,
+    off_steady_running,
     negative_losses,
     artificial_losses,
     flutter,

@@ -8,6 +8,7 @@ from beltdyn.model import ERROR_LIMITS, unresolved
 from beltdyn.model.resolution import PRESSURES
 from beltdyn.parts.finding import Finding
 from beltdyn.results.checks.evidence import Evidence
+from beltdyn.results.checks.steady import STEADY_LOSSES
 from beltdyn.results.resolution import found_errors
 
 
@@ -31,6 +32,8 @@ def unresolved_by_mesh(evidence: Evidence) -> Iterator[Finding]:
         )
     if not found:
         errors, needed = evidence.resolution.errors, evidence.resolution.needed
+        if STEADY_LOSSES in evidence.recorded.attrs:
+            errors = {**errors, "slip": math.nan, "losses": math.nan}  # `off_steady_running` knows them
         yield from unresolved(errors, needed, pressures=_given(evidence))
 
 

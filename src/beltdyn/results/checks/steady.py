@@ -1,12 +1,22 @@
-"""Excitation that steady running ignores."""
+"""Excitation that steady running ignores, and errors of losses and slip against it."""
 
 from collections.abc import Iterator
+
+import numpy as np
 
 from beltdyn.machines.loads.load import Load
 from beltdyn.model import Drive
 from beltdyn.parts.finding import Finding, listing
+from beltdyn.results.balance import LOSSES
+from beltdyn.results.checks.creep import LOSS_LIMIT
 from beltdyn.results.checks.evidence import Evidence
 from beltdyn.results.recorded import runs_steadily
+
+STEADY_LOSSES, STEADY_SLIPS, COARSE_SETTINGS = "steady_losses", "steady_slips", "coarse_settings"
+"""Attributes of a run: losses (W, in the order of `LOSSES`) and slips in steady running, and settings that differ."""
+
+_LEAST_SLIP = 1e-4
+"""Largest slip of a drive from which on its errors are told."""
 
 
 def mean_torques(evidence: Evidence) -> Iterator[Finding]:
@@ -21,6 +31,39 @@ def mean_torques(evidence: Evidence) -> Iterator[Finding]:
                 "The vibration it excites is ignored: torques, tensions and speeds oscillate about these values.",
                 "Use `beltdyn response`, or simulate the drive with `beltdyn run`.",
             )
+
+
+def off_steady_running(evidence: Evidence) -> Iterator[Finding]:
+    """Errors of losses and slip by settings of mesh and steps: steady running refines its mesh until it resolves."""
+    attributes = evidence.recorded.attrs
+    found = [*_off_losses(evidence), *_off_slips(evidence)] if STEADY_LOSSES in attributes else []
+    if found:
+        yield Finding(
+            f"against steady running, on a mesh that resolves it, {listing(found)}.",
+            "Losses, efficiency and slip are wrong by as much.",
+            f"Leave out {attributes[COARSE_SETTINGS]}, or take them from `beltdyn steady`.",
+        )
+
+
+def _off_losses(evidence: Evidence) -> Iterator[str]:
+    """Losses, by part, that differ from those of steady running."""
+    losses, steady = evidence.balance.losses, np.asarray(evidence.recorded.attrs[STEADY_LOSSES])
+    off = np.array([losses.get(cause, 0.0) for cause in LOSSES.values()]) - steady
+    parts = dict(zip(LOSSES.values(), (off / steady.sum()).tolist(), strict=True))
+    total = sum(parts.values())
+    if max(map(abs, (total, *parts.values()))) > LOSS_LIMIT:
+        told = (f"{cause} {part:+.1%}" for cause, part in parts.items() if abs(part) > 0.5 * LOSS_LIMIT)
+        yield f"losses are off by {total:+.1%} ({', '.join(told)} of the losses)"
+
+
+def _off_slips(evidence: Evidence) -> Iterator[str]:
+    """The slip that differs most from that of steady running."""
+    steady = np.asarray(evidence.recorded.attrs[STEADY_SLIPS])
+    largest = max(float(np.nanmax(np.abs(steady), initial=0.0)), _LEAST_SLIP)
+    off = np.nan_to_num([one.slip for one in evidence.pulleys] - steady) / largest
+    worst = int(np.argmax(np.abs(off)))
+    if abs(off[worst]) > LOSS_LIMIT:
+        yield f"the slip of {evidence.pulleys[worst].name} by {off[worst]:+.1%} of the largest slip"
 
 
 def begun_by_means(evidence: Evidence) -> Iterator[Finding]:
