@@ -60,7 +60,7 @@ REJECTED = 0.02
 MANY_POINTS = 11
 """Fixed points of an element where there are less than 20 elements.  With 5 the drive does not know its own speed: a
 belt longer by a billionth changes it by 1e-4, since points touch or do not."""
-CLEAR = re.compile(r"the simulation cannot go on at t = .* Try a simulation\.spectral_radius below 1, ")
+CLEAR = re.compile(r"the simulation fails at t = .* Try a simulation\.spectral_radius below 1, ")
 
 
 class Key(NamedTuple):

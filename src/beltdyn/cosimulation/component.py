@@ -1,4 +1,4 @@
-"""A drive as a component of a co-simulation: begun, set, stepped and read by a host, whatever the standard."""
+"""A drive as a component of a co-simulation, independent of the standard."""
 
 from dataclasses import dataclass, field
 from math import nan
@@ -65,11 +65,9 @@ class ComponentState(NamedTuple):
         try:
             found = _PACKING.unpack(data)
         except ModelError as error:
-            raise ModelError(
-                f"the state is damaged ({error}). Give the bytes of a state as they were written."
-            ) from error
+            raise ModelError(f"the state is damaged ({error}). Give the bytes of a state unchanged.") from error
         if not isinstance(found, cls):
-            raise ModelError("the bytes hold no state of a drive. Give those of a state as they were written.")
+            raise ModelError("the bytes are not a state of a drive. Give the bytes of a state unchanged.")
         return found
 
 
@@ -180,21 +178,21 @@ class Component:
         """A step that leaves behind how far it has come if it fails."""
         if self._simulator is None:
             raise ModelError(
-                "the drive has not begun. Initialise the unit before its first step; an error as it was initialised "
-                "says what to change."
+                "the drive is not initialised. Initialise the unit before its first step; if that failed, its "
+                "error message gives the remedy."
             )
         slack = _ROUNDING * abs(size)
         if self._offset is None:
             self._offset = time - self._simulator.time
         if not abs(time - self.time) <= slack:
             raise ModelError(
-                f"a step is to begin at t = {time:g} s, and the drive is at t = {self.time:g} s. Step on from there, "
-                "or set the state of that instant first."
+                f"a step is requested from t = {time:g} s, but the drive is at t = {self.time:g} s. Continue "
+                "from there, or set the state of that instant first."
             )
         if self.stop is not None and time + size > self.stop + slack:
             raise ModelError(
-                f"a step is to end at t = {time + size:g} s, after the stop time {self.stop:g} s. End it there, or "
-                "set a later stop time at the beginning."
+                f"a step would end at t = {time + size:g} s, after the stop time {self.stop:g} s. End it there, "
+                "or set a later stop time at initialisation."
             )
         self._take_inputs(self._simulator)
         self._outputs = {}

@@ -1,4 +1,4 @@
-"""From a drive to a functional mock-up unit, a file that other programs simulate."""
+"""Export of a drive as a functional mock-up unit (FMU)."""
 
 import re
 import sys
@@ -39,7 +39,7 @@ def fmu(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Path:
-    """Write a drive as a functional mock-up unit (FMU), which other programs couple with their models: co-simulation.
+    """Export a drive as a functional mock-up unit (FMU) for co-simulation.
 
     The unit holds the drive as `dumps` writes it, with the tables that its file names, and steps it by a `Simulator`.
     The host needs a Python with beltdyn; see the page on FMUs.
@@ -85,13 +85,13 @@ def fmu(
     path = Path(path)
     builder, module = _maker(fmi)
     if path.suffix != ".fmu":
-        raise ModelError(f"{path} must end in .fmu, by which other programs know such files. Rename it.")
+        raise ModelError(f"{path} must end in .fmu. Rename it.")
     require_replaceable(path, is_marked, overwrite)
     text, settings = dumps(drive), drive.simulation
     if isinstance(settings.start, EarlierRun):
         raise ModelError(
-            f"simulation.start = {settings.start}: a functional mock-up unit goes to other machines, where that file "
-            'is not. Set simulation.start = "equilibrium" or "steady".'
+            f"simulation.start = {settings.start}: a functional mock-up unit runs on other machines, which do "
+            'not have that file. Set simulation.start = "equilibrium" or "steady".'
         )
     interface = Interface(
         title=drive.title,
@@ -118,13 +118,13 @@ def fmu(
 def _maker(fmi: str) -> tuple[Any, str]:
     """What builds units of a version of FMI, and the name of the module that they begin with."""
     if fmi not in _MAKERS:
-        raise ModelError(f"fmi = {fmi!r} is not a version of FMI that can be written. Take 2.0 or 3.0.")
+        raise ModelError(f"fmi = {fmi!r} is not a supported FMI version. Choose 2.0 or 3.0.")
     package, module = _MAKERS[fmi]
     try:
         return import_module(package).FmuBuilder, module
     except ModuleNotFoundError:
         raise ModelError(
-            f'{package} is not installed, which makes FMUs of FMI {fmi}. Install it: pip install "beltdyn[fmu]"'
+            f'{package} is not installed, but is needed for FMI {fmi}. Install it: pip install "beltdyn[fmu]"'
         ) from None
 
 

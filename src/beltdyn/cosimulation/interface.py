@@ -1,4 +1,4 @@
-"""What a host sets and reads of a drive: names, units and meanings, and their choice."""
+"""Inputs and outputs of a drive for a host: names, units and meanings."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -21,7 +21,7 @@ _SPEED_UNIT, _TORQUE_UNIT, _CENTER_UNIT = "rad/s", "N m", "m"
 
 
 class Input(NamedTuple):
-    """What a host sets.
+    """An input of the drive.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Input(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What a host reads.
+    """An output of the drive.
 
     Attributes
     ----------
@@ -74,7 +74,7 @@ class Output(NamedTuple):
 
 
 class Interface(NamedTuple):
-    """All that a host has to know of a drive.
+    """The interface of a drive.
 
     Attributes
     ----------
@@ -209,7 +209,7 @@ def _output(drive: Drive, name: str) -> Output:
     """Unit and meaning of what a simulator gives."""
     family, _, of = name.removesuffix("]").partition("[")
     if family == "hub_load":
-        unit, meaning = "N", "Force of the belt on the pulley, its magnitude"
+        unit, meaning = "N", "Hub load, magnitude"
     else:
         unit, meaning = RECORDED[family].units, RECORDED[family].long_name
     if family == "tensioner_position":

@@ -106,7 +106,7 @@ class DriveSlave:
         """Find the state at the beginning."""
         made = self.component.interface.version
         if made != __version__:
-            self._tell(f"this unit was made by beltdyn {made}, and beltdyn {__version__} runs it.", _WARNING)
+            self._tell(f"this unit was made by beltdyn {made} but runs with beltdyn {__version__}.", _WARNING)
         self._attempt(self.component.begin)
 
     def advance(self, time: float, size: float) -> bool:
@@ -121,7 +121,7 @@ class DriveSlave:
         """
         if self._refused:
             reason, self._refused = self._refused, ""
-            self._tell(f"a step was not made, as something could not be set before it: {reason}", _ERROR)
+            self._tell(f"the step was not made because a variable could not be set before it: {reason}", _ERROR)
             return False
         return self._attempt(self.component.step, time, size)
 
@@ -142,7 +142,7 @@ class DriveSlave:
             one = self.vars.get(reference)
             if one is None or one.setter is None:
                 kind = f"{one.name} is an output" if one else self._unknown(reference)
-                self._refuse(f"{kind}. Set inputs alone: see modelDescription.xml.")
+                self._refuse(f"{kind}. Only inputs can be set: see modelDescription.xml.")
                 return
         for reference, value in zip(references, values, strict=True):
             self.vars[reference].setter(value)
@@ -164,7 +164,7 @@ class DriveSlave:
 
     def _wrong_type(self, reference: int) -> str:
         one = self.vars.get(reference)
-        return f"{one.name} is a real number, and not of another type." if one else self._unknown(reference)
+        return f"{one.name} is a real number, not of another type." if one else self._unknown(reference)
 
     @staticmethod
     def _unknown(reference: int) -> str:

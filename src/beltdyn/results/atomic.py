@@ -1,4 +1,4 @@
-"""Files that are either complete or not there, and take the place of no file but our own."""
+"""Atomic writing of files that replace only files of beltdyn."""
 
 import errno
 import os
@@ -13,7 +13,7 @@ from beltdyn.errors import ModelError
 from beltdyn.results.lock import locked
 
 MARK = "beltdyn"
-"""What pictures and pages say of who made them."""
+"""The generator named in pictures and pages."""
 
 _MARKED = 4096
 """Bytes at the start and at the end of a file among which the mark is sought."""
@@ -26,7 +26,7 @@ _FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 
 @contextmanager
 def atomic_path(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> Iterator[Path]:
-    """Give a temporary path, and move what was written there to `path` when all went well.
+    """Give a temporary path that is moved to `path` on success.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def target_of(path: Path) -> Path:
 
 
 def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: bool = False) -> None:
-    """Make sure that nothing is lost where a file is to be written.
+    """Check that writing a file does not destroy another one.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: 
     Raises
     ------
     ModelError
-        If there is a file that is not ours, or something else than a file.
+        If the path is a file of another program, or not a file.
     """
     try:
         mode = path.stat().st_mode
@@ -130,13 +130,13 @@ def require_replaceable(path: Path, is_ours: Callable[[Path], bool], overwrite: 
         raise ModelError(f"{path} cannot be written (it is a {kind}, not a file). Choose another name.")
     if not overwrite and not is_ours(path):
         raise ModelError(
-            f"{path} is there already, and is not a file that beltdyn wrote for this purpose, or is damaged: it would "
-            "be lost. Choose another name, or replace it with --force (in Python: overwrite=True)."
+            f"{path} already exists and was not written by beltdyn for this purpose, or is damaged; it would be lost. "
+            "Choose another name, or replace it with --force (in Python: overwrite=True)."
         )
 
 
 def stamp(path: Path) -> tuple[int, int] | None:
-    """What tells a file from another one of its name, and from itself before it was written to.
+    """Inode and time of a file, which identify it and its version.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def remove_leftovers(path: Path) -> None:
 
 
 def is_marked(path: Path, mark: str = MARK) -> bool:
-    """Tell whether a file says that beltdyn made it.
+    """Whether a file carries the mark of beltdyn.
 
     Parameters
     ----------
@@ -193,14 +193,14 @@ def is_marked(path: Path, mark: str = MARK) -> bool:
 
 
 def unwritable(path: Path, error: Exception) -> str:
-    """Say why a file cannot be written and what to do about it.
+    """Message for a file that cannot be written, with the remedy.
 
     Parameters
     ----------
     path : Path
         The file.
     error : Exception
-        What the operating system answered.
+        The error of the operating system.
 
     Returns
     -------
@@ -211,11 +211,11 @@ def unwritable(path: Path, error: Exception) -> str:
     if number in _FULL:
         return f"{path} cannot be written ({os.strerror(number)}). Make room, or write to another disk."
     reason = os.strerror(number) if number else str(error)
-    return f"{path} cannot be written ({reason}). Choose a file in a folder that exists and may be written to."
+    return f"{path} cannot be written ({reason}). Choose a file in an existing folder with write permission."
 
 
 def make_folder(folder: Path) -> Path:
-    """Make a folder and its parents unless they exist.
+    """Create a folder and its parents unless they exist.
 
     Parameters
     ----------
@@ -235,5 +235,5 @@ def make_folder(folder: Path) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ModelError(f"the folder {folder} cannot be made ({error.strerror}). Choose another one.") from error
+        raise ModelError(f"the folder {folder} cannot be created ({error.strerror}). Choose another folder.") from error
     return folder

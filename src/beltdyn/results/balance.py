@@ -1,4 +1,4 @@
-"""Where the power of a drive goes, over a part of its run."""
+"""Power balance of a drive over part of a run."""
 
 import math
 from collections.abc import Mapping
@@ -54,17 +54,17 @@ class Balance:
 
     @property
     def power_in(self) -> float:
-        """Sum of what the driving shafts put in."""
+        """Power input of the driving shafts."""
         return sum(power for power in self.pulleys if power > 0.0)
 
     @property
     def power_out(self) -> float:
-        """Sum of what the loads take out."""
+        """Power output to the loads."""
         return -sum(power for power in self.pulleys if power < 0.0)
 
     @property
     def efficiency(self) -> float:
-        """Power out over the sum of power out and lost; NaN when none goes in.
+        """Power output over the sum of power output and losses; NaN without power input.
 
         In steady running this is power out over power in; energy that is being stored or given back is left out.
         """

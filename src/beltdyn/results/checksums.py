@@ -184,8 +184,10 @@ def _verify(path: Path, _stamp: tuple[int, ...]) -> bool:
     if found is None:
         return False
     places = PAGE * np.array([wrong[0], wrong[-1] + 1])
-    more = f"{len(wrong)} pages between its bytes" if wrong[1:] else "the page of its bytes"
-    raise DamageError(f"{more} {places[0]:,} and {min(places[1], found.end):,} are not as they were written")
+    more = f"{len(wrong)} pages between bytes" if wrong[1:] else "the page of bytes"
+    raise DamageError(
+        f"it is damaged: {more} {places[0]:,} to {min(places[1], found.end):,} differ from what was written"
+    )
 
 
 def _is_quiet(path: Path, stamp: tuple[int, ...]) -> bool:

@@ -58,7 +58,7 @@ def build_dataset(layout: Layout, arrays: Mapping[str, NDArray[Any]], attributes
 
 
 def open_dataset(path: Path) -> "xr.Dataset":
-    """Open the result file of a run; values are read when they are used.
+    """Open the result file of a run lazily.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def complete_dataset(path: Path, dataset: "xr.Dataset") -> "xr.Dataset":
 
 
 def read_dataset(path: Path) -> "xr.Dataset":
-    """Open a result file of any kind; values are read when they are used.
+    """Open a result file of any kind lazily.
 
     Parameters
     ----------
@@ -147,12 +147,12 @@ def read_dataset(path: Path) -> "xr.Dataset":
 
 
 def require_intact(path: Path) -> None:
-    """Make sure that the bytes of a result file are those that were written.
+    """Check that a result file is undamaged.
 
     Raises
     ------
     DamageError
-        If they are not, or their checksums are lost.
+        If it is damaged, or its checksums are missing.
     OSError
         If it cannot be read.
     """
@@ -160,25 +160,25 @@ def require_intact(path: Path) -> None:
     with h5py.File(path, "r") as file:  # h5netcdf complains on standard error where HDF5 cannot open a file
         if not verified and is_marked(file):
             raise DamageError(
-                "its checksums are lost: it is damaged at its end, or another program has changed it (a copy that "
-                "xarray writes can be read)"
+                "its checksums are missing: the end of the file is damaged, or another program has modified it (a copy "
+                "written by xarray can be read)"
             )
 
 
 def kind_of(dataset: "xr.Dataset") -> str:
-    """Kind of a result: the name of the analysis. The first files, which are of runs, said none."""
+    """Kind of a result: the name of the analysis. The first files, all of runs, have none."""
     return str(dataset.attrs.get("kind", RUN))
 
 
 def unreadable(path: Path, error: Exception) -> str:
-    """Say that a file cannot be used as a result, and why.
+    """Message for a file that cannot be read as a result.
 
     Parameters
     ----------
     path : Path
         The file.
     error : Exception
-        What its reader said.
+        The error of the reader.
 
     Returns
     -------
@@ -188,49 +188,49 @@ def unreadable(path: Path, error: Exception) -> str:
     reason = " ".join(str(getattr(error, "strerror", None) or error).split())[:_LONGEST_REASON]
     said = f"{path} cannot be read as a result file: {reason or type(error).__name__}."
     if lock_file(target_of(path)).exists():
-        return f"{said} A run is writing it, or was killed meanwhile: try again in a moment."
-    return f"{said} Give a file written by `beltdyn run`; if this is one, it is damaged: run the drive again."
+        return f"{said} A run is writing it, or was killed while doing so: try again in a moment."
+    return f"{said} Give a file written by `beltdyn run`; if it is such a file, it is damaged: run the drive again."
 
 
 def _check_attributes(path: Path, dataset: "xr.Dataset") -> None:
-    """Make sure that a file is a result, and has a format that this version reads. The first files said none."""
+    """Check that a file is a result in a known format; the first files have no format."""
     missing = [name for name in _OURS if name not in dataset.attrs]
     if missing:
         raise ModelError(
-            f"{path} is not a result of beltdyn: it holds no `{missing[0]}`. Give a file written by `beltdyn run`."
+            f"{path} is not a beltdyn result: it has no `{missing[0]}`. Give a file written by `beltdyn run`."
         )
     for name in _OURS:
         if not isinstance(dataset.attrs[name], str):
-            raise ValueError(f"`{name}` is no text")
+            raise ValueError(f"`{name}` is not a text")
     ours, given = ".".join(map(str, FORMAT)), str(dataset.attrs.get("format", "1.0"))
     if int(given.split(".")[0]) > FORMAT[0]:
         raise ModelError(
-            f"{path} has format {given}, written by beltdyn {dataset.attrs.get('beltdyn_version')}: this version reads "
+            f"{path} has format {given}, written by beltdyn {dataset.attrs.get('beltdyn_version')}; this version reads "
             f"formats up to {ours}. Install a newer beltdyn."
         )
 
 
 def _check_names(path: Path, dataset: "xr.Dataset") -> None:
-    """Make sure that a file holds the core of a run; and what it holds, along the same dimensions and of one kind.
+    """Check that a file holds the core variables of a run, with the expected dimensions and types.
 
-    Variables that are not known are left as they are.
+    Unknown variables are left as they are.
     """
     if kind_of(dataset) != RUN:
         raise ModelError(
-            f"{path} is the result of another analysis, {kind_of(dataset)}, and holds no outputs over time. "
+            f"{path} is the result of another analysis ({kind_of(dataset)}) and has no outputs over time. "
             "Open it with `bd.open_result`, or draw it with `beltdyn plot`."
         )
     known = {name: variable for name, variable in (COORDINATES | VARIABLES).items() if name not in DERIVED}
     missing = [name for name in known if _is_needed(known[name], dataset) and name not in dataset.variables]
     if missing:
         raise ModelError(
-            f"{path} is not a whole result: it holds no `{missing[0]}`. Run the drive again; its file is the "
+            f"{path} is incomplete: it has no `{missing[0]}`. Run the drive again; the drive file is stored in the "
             "attribute `drive`."
         )
     for name in known.keys() & dataset.variables.keys():
         variable, dtype = dataset[name], known[name].dtype
         if variable.dims != known[name].dims or (dtype != "str" and variable.dtype.kind != np.dtype(dtype).kind):
-            raise ValueError(f"`{name}` is not what it should be")
+            raise ValueError(f"`{name}` has unexpected dimensions or type")
 
 
 def _is_needed(variable: Variable, dataset: "xr.Dataset") -> bool:
@@ -246,7 +246,7 @@ def _complete(dataset: "xr.Dataset") -> "xr.Dataset":
     result = _with_parts(dataset.isel({name: slice(np.count_nonzero(dataset[name].values <= last)) for name in TIMES}))
     for name in TIMES:
         if not np.all(np.diff(result[name].values) > 0.0):
-            raise ValueError(f"the instants of `{name}` do not grow")
+            raise ValueError(f"the instants of `{name}` do not increase")
     result.set_close(dataset.close)
     return result
 

@@ -45,7 +45,7 @@ FORMATS = MappingProxyType(
 def export(
     result: Result, formats: str | Sequence[str], path: Path | str | None = None, overwrite: bool = False
 ) -> list[Path]:
-    """Write a result in formats of other programs.
+    """Export a result to the formats of other programs.
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ def export(
         "vtk": belt and pulleys over time for ParaView, ``NAME-belt.vtkhdf`` and ``NAME-pulleys.vtkhdf``; "csv", "mat"
         and "parquet": tables, in the folder ``NAME-tables`` or ``NAME.mat``.
     path : Path or str, optional
-        A result file, beside and after which the files are named; by default that of the result.
+        A result file that gives the folder and the base name; by default that of the result.
     overwrite : bool
-        Replace any regular files, and not only those of beltdyn.
+        Replace any regular files, not only those of beltdyn.
 
     Returns
     -------
@@ -67,8 +67,8 @@ def export(
     Raises
     ------
     ModelError
-        If a format is unknown, does not fit the result, or needs a package that is missing; or a file cannot be
-        written, or would replace one that is not ours. Nothing is written then but what was complete before.
+        If a format is unknown, does not fit the result, or needs a missing package; or if a file cannot be written, or
+        would replace a file of another program. Files completed before the error remain.
 
     Examples
     --------
@@ -92,19 +92,19 @@ def _base(result: Result, path: Path | str | None) -> Path:
     if path is not None:
         return Path(path)
     if result.path is None:
-        raise ModelError('this result is in no file to name others after. Give path, such as "drive.nc".')
+        raise ModelError('this result has no file name to derive others from. Give path, such as "drive.nc".')
     return result.path
 
 
 def _require(result: Result, names: Sequence[str]) -> None:
     """Make sure that there are formats, that they are known, and fit the result."""
     if not names:
-        raise ModelError(f"no format is given. Take one or more of {', '.join(FORMATS)}.")
+        raise ModelError(f"no format is given. Choose from {', '.join(FORMATS)}.")
     for name in names:
         if name not in FORMATS:
-            raise ModelError(f"{name!r} is not a format for results. Take one or more of {', '.join(FORMATS)}.")
+            raise ModelError(f"{name!r} is not a result format. Choose from {', '.join(FORMATS)}.")
     if "vtk" in names and not isinstance(result, Run):
         raise ModelError(
-            f"vtk needs results over time, as of `beltdyn run`, and these are of {result.kind}. "
-            "Take tables: csv, mat or parquet."
+            f"vtk needs results over time, such as those of `beltdyn run`; these are of {result.kind}. "
+            "Choose tables: csv, mat or parquet."
         )

@@ -51,8 +51,8 @@ class OutputLock:
                 raise Timeout(str(path))
         except Timeout as error:
             raise ModelError(
-                f"{path} is being written by another run, and both would lose their results. Wait until it has ended, "
-                "or choose another file."
+                f"{path} is being written by another run; both would lose their results. Wait until it has ended, or "
+                "choose another file."
             ) from error
 
     @contextmanager

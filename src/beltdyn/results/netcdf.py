@@ -161,7 +161,7 @@ def copied(source: Path, path: Path, layout: Layout, counts: Mapping[str, int], 
     with h5py.File(source, "r") as file:
         for name, count in counts.items():
             if len(file[name]) < count:
-                raise ValueError(f"it holds {len(file[name])} values of {name}, and {count} were written")
+                raise ValueError(f"it holds {len(file[name])} of {count} values of {name}")
         for first in range(0, max(counts.values(), default=0), _COPIED):
             rows = {time: slice(min(first, count), min(first + _COPIED, count)) for time, count in counts.items()}
             copy.append(path, {name: file[name][rows[one.dims[0]]] for name, one in layout.recorded.items()})

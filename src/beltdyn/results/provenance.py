@@ -1,4 +1,4 @@
-"""Where a result comes from: the drive, the mesh that was used, the versions and the hour."""
+"""Provenance of a result: the drive, the mesh, versions and time."""
 
 import platform
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ STAYING = Frame("staying", "as all analyses about rest or steady running")
 
 
 def provenance(drive_text: str, title: str, kind: str = RUN) -> dict[str, str]:
-    """Global attributes that are known before anything is computed.
+    """Global attributes known before the computation.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def _versions() -> dict[str, str]:
 
 
 def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[str, Any]:
-    """Attributes that tell on which mesh an analysis has found its results, and what of the drive that leaves unused.
+    """Attributes of the mesh of an analysis, and the settings of the drive that it does not use.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def mesh_used(drive: Drive, frame: Frame, elements: int | None = None) -> dict[s
 
 
 def mesh_facts(attributes: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """What a sheet tells of the mesh of a result; nothing of a result that does not know.
+    """The mesh of a result for a sheet; empty if unknown.
 
     Parameters
     ----------
@@ -91,4 +91,4 @@ def mesh_facts(attributes: Mapping[str, Any]) -> list[tuple[str, str]]:
     words = Frame(attributes["mesh_frame"], str(attributes["mesh_frame_reason"])).words
     facts = [("mesh", f"{count}{attributes['mesh_element']} elements, {words}")]
     unused = str(attributes["mesh_unused"])
-    return [*facts, *([("not used", f"{unused}: only a mesh that travels has it")] if unused else [])]
+    return [*facts, *([("not used", f"{unused} (only for a travelling mesh)")] if unused else [])]

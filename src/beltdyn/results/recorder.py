@@ -245,8 +245,8 @@ class FileRecorder:
         """Why the file can no longer be written."""
         if isinstance(error, FileNotFoundError | netcdf.ReplacedError):
             return LostOutputError(
-                f"{self.path} was removed, or another file has taken its place, while it was written: what was "
-                "computed is lost. Run the drive again, and leave the file alone until the run has ended."
+                f"{self.path} was removed or replaced while the run was writing it: the results are lost. "
+                "Run the drive again, and do not touch the file until the run has ended."
             )
         return OutputError(unwritable(self.path, error))
 

@@ -1,4 +1,4 @@
-"""A drive at rest as it is written for a reader: facts, pulleys, spans, tensioners, and what is chosen."""
+"""The sheet of a drive at rest: facts, pulleys, spans, tensioners, and chosen values."""
 
 import math
 
@@ -17,37 +17,37 @@ _PULLEY_HEADINGS = (
     "wrap",
     "effective\nradius mm",
     "speed\nratio",
-    "belt sinks\nin by mm",
+    "penetration\nmm",
     "hub load\nN",
-    "its\ndirection",
+    "hub load\ndirection",
 )
 
 
 _SPAN_HEADINGS = ("", "length\nm", "tension\nN", "first frequency\nHz")
-_TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other balances")
+_TENSIONER_HEADINGS = ("", "position", "spring", "stops", "other equilibria")
 
 _SAME_TENSION = 5e-4
-"""Part of the tension by which bending and soft contact may change it without a word."""
+"""Relative change of tension by bending and soft contact that is not mentioned."""
 _HALF_TURN = 179.95
-"""Degrees from which on a direction is written as 180.0."""
+"""Angle from which a direction is shown as 180.0, degrees."""
 
 
 def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
-    """Give what there is to say of a drive at rest.
+    """Summarise a drive at rest.
 
     Parameters
     ----------
     given : Drive
         The drive of the file.
     drive : Drive
-        With the length, or the take-up, that gives the installed tension.
+        The same drive with the length, or the take-up, that gives the installed tension.
     installation : Installation
-        What static equilibrium gave for it, or estimates.
+        Its static equilibrium, or an estimate.
 
     Returns
     -------
     Sheet
-        Facts of the belt, tables of pulleys, spans and tensioners, and the numbers that are chosen.
+        Facts of the belt, tables of pulleys, spans and tensioners, and the chosen values.
     """
     parts: list[Table | Facts] = [
         Facts(tuple(_facts(given, drive, installation))),
@@ -57,7 +57,7 @@ def rest_sheet(given: Drive, drive: Drive, installation: Installation) -> Sheet:
     if installation.tensioner_positions.size:
         parts.append(Table("Tensioners at rest", _TENSIONER_HEADINGS, tuple(_tensioners(drive, installation))))
     if given.completed.choices:
-        parts.append(Facts(tuple(_choices(given)), "Chosen, since the file leaves it open"))
+        parts.append(Facts(tuple(_choices(given)), "Chosen values (not given in the file)"))
     return Sheet("", tuple(parts))
 
 
@@ -68,20 +68,23 @@ def _facts(given: Drive, drive: Drive, installation: Installation) -> list[tuple
     return [
         *([("drive", drive.name)] if drive.name else []),
         ("tension at rest", f"{installation.tension:.4g} N{_origin(drive, installation, asked_for)}"),
-        ("belt length", f"{length:.5g} m unstretched, {installation.strain:z.3%} longer on its path of {path:.5g} m"),
+        (
+            "belt length",
+            f"{length:.5g} m unstretched, stretched by {installation.strain:z.3%} on its path of {path:.5g} m",
+        ),
         *_as_sold(given, drive),
         *_taken_up(drive),
         ("mesh", f"{drive.elements} {drive.element_kind.name} elements, {drive.frame.words}"),
-        ("length of elements", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
-        *([("not used", f"{', '.join(unused)}: only a mesh that travels has it")] if unused else []),
+        ("element length", f"{1e3 * length / drive.elements:.3g} mm{_in_the_mean(drive)}"),
+        *([("not used", f"{', '.join(unused)} (only for a travelling mesh)")] if unused else []),
         *_lost_in_the_belt(drive),
-        ("results of a run", f"about {describe_size(drive)}"),
+        ("result size", f"about {describe_size(drive)}"),
         *([("computing time", time)] if (time := describe_time(drive)) else []),
     ]
 
 
 def _as_sold(given: Drive, drive: Drive) -> list[tuple[str, str]]:
-    """The length by which the belt is sold, with the force that measures it, and what other diameters would mean."""
+    """The nominal length with its measuring force, and the effect of other diameters."""
     belt, force = drive.belt, drive.belt.measuring_force
     sold = force is not None or belt.nominal_length is not None
     if drive.ends or not sold:
@@ -90,48 +93,48 @@ def _as_sold(given: Drive, drive: Drive) -> list[tuple[str, str]]:
     other = other_diameters(given)
     diameters = [("with pitch diameters", other)] if other else []
     if force is None:
-        return [("nominal length", f"{nominal}, taken as unstretched: no measuring force is known"), *diameters]
-    stretched = f"{belt.measured_stretch - 1.0:.3%} longer than unstretched"
+        return [("nominal length", f"{nominal}, assumed unstretched (no measuring force given)"), *diameters]
+    stretched = f"stretched by {belt.measured_stretch - 1.0:.3%}"
     return [("nominal length", f"{nominal} under {force:.4g} N between two pulleys, {stretched}"), *diameters]
 
 
 def _in_the_mean(drive: Drive) -> str:
-    """Elements that travel with the belt are all of one length."""
-    return ", in the mean" if drive.frame.stays else ""
+    """The elements of a travelling mesh are equally long."""
+    return " on average" if drive.frame.stays else ""
 
 
 def _taken_up(drive: Drive) -> list[tuple[str, str]]:
-    """Where fixed tensioners have put their pulleys: what a user asked for who gave length and tension."""
+    """Pulley centers after the take-up of fixed tensioners."""
     fixed = [tensioner for tensioner in drive.tensioners if tensioner.kind == "fixed"]
     places = [(one.pulley, drive.centers[drive.carried(one)]) for one in fixed]
-    return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m, after its take-up") for name, (x, y) in places]
+    return [(f"center of {name}", f"[{x:.5g}, {y:.5g}] m after take-up") for name, (x, y) in places]
 
 
 def _lost_in_the_belt(drive: Drive) -> list[tuple[str, str]]:
-    """What the loss factors of bending and compression cost, at any speed and load."""
+    """The loss in bending and compression, independent of speed and load."""
     forces = {"bending": bending_resistance(drive), "compression": compression_losses(drive).sum()}
     return [
-        (f"lost in {cause}", f"{force:.3g} N of the pull at the belt, {force:.3g} W for each m/s of its speed")
+        (f"{cause} loss", f"{force:.3g} N of belt pull, {force:.3g} W per m/s of belt speed")
         for cause, force in forces.items()
         if force > 0.0
     ]
 
 
 def _origin(drive: Drive, installation: Installation, asked_for: bool) -> str:
-    asked = ", as asked for" * asked_for
+    asked = " as specified" * asked_for
     if installation.tensioner_positions.size:
-        return f"{asked}, which tensioners set"
+        return f"{asked}, set by tensioners"
     if any(not end.held for end in drive.ends):
-        return ", which the pulled end sets"
+        return ", set by the pulled end"
     gained = installation.tension / installation.laid_tension - 1
     if abs(gained) < _SAME_TENSION:
         return asked
-    change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than the {installation.laid_tension:.4g} N"
-    return f"{asked}: {change} of a limp belt on hard pulleys"
+    change = f"{abs(gained):.1%} {'less' if gained < 0 else 'more'} than {installation.laid_tension:.4g} N"
+    return f"{asked} ({change} without bending stiffness and contact compliance)"
 
 
 def _pulleys(drive: Drive, installation: Installation) -> list[tuple[str, ...]]:
-    """The ratio of speeds is that of a belt that does not creep; a negative one means the other sense."""
+    """Pulley rows; the speed ratio is that without creep, negative for the opposite sense."""
     path, loads = installation.path, installation.hub_loads.tolist()
     return list(
         zip(
@@ -181,15 +184,15 @@ def _tensioners(drive: Drive, installation: Installation) -> list[tuple[str, ...
 
 
 def _choices(drive: Drive) -> list[tuple[str, str]]:
-    """Numbers that the file leaves open, as they are chosen, with their reasons."""
+    """Chosen values with their reasons."""
     return [(choice.key, choice.words) for choice in drive.completed.choices]
 
 
 def _others(drive: Drive, installation: Installation) -> list[str]:
-    """Where tensioners balance the belt too, one text for each spring-loaded tensioner, empty without any."""
+    """Other equilibrium positions, one text for each spring-loaded tensioner, empty if there are none."""
     return [
         ", ".join(
-            f"{tensioner.written(balance.position)} ({'stable' if balance.stable else 'not stable'})"
+            f"{tensioner.written(balance.position)} ({'stable' if balance.stable else 'unstable'})"
             for balance in balances
             if not balance.here
         )

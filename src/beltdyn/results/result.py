@@ -1,4 +1,4 @@
-"""What an analysis gives: one labelled dataset with dimensions of its own, its drive, and its file."""
+"""The result of an analysis: a labelled dataset, its drive, and its file."""
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 
 class Result:
-    """What an analysis gave.
+    """The result of an analysis.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        Labelled variables; its attributes tell ``kind``, ``drive``, ``status`` and ``warnings``.
+        Labelled variables; its attributes include ``kind``, ``drive``, ``status`` and ``warnings``.
     drive : Drive
         The drive that was analysed.
     path : Path or None
-        The file that it was read from, or None for a result in memory.
+        The result file, or None for a result in memory.
 
     Examples
     --------
@@ -52,42 +52,42 @@ class Result:
 
     @property
     def dataset(self) -> "xr.Dataset":
-        """Every variable with its dimensions, units and meaning."""
+        """All variables with their dimensions, units and meaning."""
         assert self._dataset is not None
         return self._dataset
 
     @property
     def stored(self) -> "xr.Dataset":
-        """What a file holds."""
+        """The variables stored in a file."""
         return self.dataset
 
     @property
     def drive_as_given(self) -> str:
-        """The text of the drive file as it was given, before its open numbers were found for the analysis."""
+        """The drive file as given, before the analysis chose its open values."""
         return str(self.dataset.attrs.get("drive_as_given") or self.drive.text)
 
     @property
     def status(self) -> str:
-        """How the analysis ended: "completed"; of a `Run` also "running", "interrupted" or "failed"."""
+        """How the analysis ended: "completed"; for a `Run` also "running", "interrupted" or "failed"."""
         return str(self.dataset.attrs["status"])
 
     @property
     def kind(self) -> str:
-        """Name of the analysis, or "run" where results grow over time; a figure belongs to one kind."""
+        """Name of the analysis, or "run" for results over time; each figure belongs to one kind."""
         return kind_of(self.dataset)
 
     @property
     def warnings(self) -> list[str]:
-        """What makes the results doubtful, and what to do; empty when all is well."""
+        """The warnings: faults and remedies; empty for a sound result."""
         return str(self.dataset.attrs.get("warnings", "")).splitlines()
 
     def save(self, path: Path | str, overwrite: bool = False) -> Path:
-        """Write the result to a file, which `open_result` and `beltdyn plot` read.
+        """Save the result to a file for `open_result` and `beltdyn plot`.
 
         Parameters
         ----------
         path : Path or str
-            The file (NetCDF4); a result of beltdyn that is there is replaced.
+            The file (NetCDF4); an existing beltdyn result is replaced.
         overwrite : bool
             Replace any regular file.
 
@@ -99,7 +99,7 @@ class Result:
         Raises
         ------
         ModelError
-            If the file cannot be written, or would replace one that is no result.
+            If the file cannot be written, or would replace a file that is not a result.
         """
         path = Path(path)
         with atomic_path(path, is_result, overwrite) as temporary:
@@ -114,7 +114,7 @@ def build_result(
     coordinates: Mapping[str, tuple[Variable, ArrayLike]],
     warnings: Sequence[str] = (),
 ) -> Result:
-    """Put the result of an analysis together.
+    """Build the result of an analysis.
 
     Parameters
     ----------
@@ -123,16 +123,16 @@ def build_result(
     drive : Drive
         The drive that was analysed.
     variables : mapping
-        Name -> what a variable is, and its values.
+        Name -> description and values of a variable.
     coordinates : mapping
-        The same of coordinates; one named after its dimension labels that dimension.
+        The same for coordinates; a coordinate named after its dimension labels that dimension.
     warnings : sequence of str
-        What makes the results doubtful, one line each.
+        The warnings, one line each.
 
     Returns
     -------
     Result
-        In memory, with where it comes from among its attributes.
+        In memory, with its provenance among its attributes.
 
     Examples
     --------

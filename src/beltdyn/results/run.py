@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 
 class Run(Result):
-    """What a simulation gave.
+    """The result of a simulation.
 
     Parameters
     ----------
     dataset : xarray.Dataset or None
-        Every recorded variable; None for those of a finished result file, which is opened when they are asked for.
+        All recorded variables; None for a finished result file, which is opened on demand.
     drive : Drive
         The drive that was simulated.
     path : Path or None
@@ -52,24 +52,24 @@ class Run(Result):
 
     @property
     def kind(self) -> str:
-        """The kind of all results over time."""
+        """Kind of all results over time."""
         return RUN
 
     @property
     def dataset(self) -> "xr.Dataset":
-        """Every recorded variable with its units; see `beltdyn.results.VARIABLES`."""
+        """All recorded variables with their units; see `beltdyn.results.VARIABLES`."""
         if self._dataset is None:
             self._dataset = open_dataset(self._file)
         return self._dataset
 
     @property
     def stored(self) -> "xr.Dataset":
-        """What a file holds: variables that are parts of others are added when it is opened."""
+        """The variables stored in a file; parts of others are added when it is opened."""
         return self.dataset.drop_vars(DERIVED, errors="ignore")
 
     @property
     def fields(self) -> "xr.Dataset":
-        """Everything at the instants at which fields along the belt were recorded, with ``time`` for these alone."""
+        """All variables at the instants of outputs along the belt, with ``time`` for these instants only."""
         dataset = self.dataset.drop_dims("filtered_time")
         along_belt = [name for name, variable in dataset.data_vars.items() if "field_time" in variable.dims]
         others = dataset.drop_vars([*along_belt, "field_time"]).sel(time=dataset["field_time"].values)
@@ -77,12 +77,12 @@ class Run(Result):
         return others.assign({name: fields[name] for name in along_belt})
 
     def fields_at(self, time: float | None = None) -> "xr.Dataset":
-        """Everything at one instant at which fields along the belt were recorded.
+        """All variables at one instant of the outputs along the belt.
 
         Parameters
         ----------
         time : float, optional
-            s; the nearest of these instants is taken. The last one by default.
+            s; the nearest of these instants is used. By default the last.
 
         Returns
         -------
@@ -102,7 +102,7 @@ class Run(Result):
 
     @contextmanager
     def recorded(self) -> Iterator[Recorded]:
-        """What was recorded: arrays in memory, or else those of the open file, which are quicker than a dataset's."""
+        """The recorded variables: arrays in memory, or those of the open file, which are faster than a dataset's."""
         if self._dataset is not None:
             yield InMemory(self._dataset)
             return
@@ -113,7 +113,9 @@ class Run(Result):
     def _file(self) -> Path:
         """The result file, if it is still that of this run."""
         if self.path is None or self._stamp is None or stamp(self.path) != self._stamp:
-            raise ModelError(f"{self.path} was changed, replaced or removed since this run wrote it. Run it again.")
+            raise ModelError(
+                f"{self.path} was changed, replaced or removed after this run wrote it. Run the drive again."
+            )
         return self.path
 
     @property
@@ -130,14 +132,14 @@ class Run(Result):
 
     @cached_property
     def findings(self) -> list[Finding]:
-        """What makes the results doubtful, which numbers it spoils, and what to do; empty when all is well."""
+        """The findings: faults, the values they affect, and remedies; empty for a sound run."""
         resolution = self.resolution if self.outputs else None
         with self.recorded() as recorded:
             return find(recorded, self.drive, resolution)
 
     @cached_property
     def warnings(self) -> list[str]:
-        """The findings in words."""
+        """The findings as texts."""
         return [str(finding) for finding in self.findings]
 
     @cached_property
@@ -154,7 +156,7 @@ class Run(Result):
             return estimate_resolution(recorded, self.drive)
 
     def require(self, name: str) -> None:
-        """Make sure that a variable was recorded that is not in every result file.
+        """Check that an optional variable was recorded.
 
         Parameters
         ----------
@@ -168,11 +170,11 @@ class Run(Result):
         """
         if name not in self.dataset:
             raise ModelError(
-                f"this result holds no `{name}`: it was written by another version of beltdyn. Run the drive again."
+                f"this result has no `{name}`: it was written by another version of beltdyn. Run the drive again."
             )
 
     def require_output(self) -> None:
-        """Make sure that there is something to look at.
+        """Check that the run holds an output.
 
         Raises
         ------
@@ -180,11 +182,11 @@ class Run(Result):
             If the run holds no output.
         """
         if self.outputs == 0:
-            raise ModelError("the run ended before its first output: there is nothing to show. Run it again.")
+            raise ModelError("the run ended before its first output: there is nothing to show. Run the drive again.")
 
 
 def open_run(path: Path | str) -> Run:
-    """Open a result file; values are read when they are used.
+    """Open the result file of a run lazily.
 
     Parameters
     ----------
@@ -217,7 +219,7 @@ def _run(path: Path, dataset: "xr.Dataset") -> Run:
     try:
         drive = drive_of(dataset, path)
         if list(dataset["pulley"].values) != [pulley.name for pulley in drive.pulleys]:
-            raise ModelError(unreadable(path, ValueError("its pulleys are not those of its drive")))
+            raise ModelError(unreadable(path, ValueError("its pulleys do not match its drive")))
     except ModelError:
         dataset.close()
         raise
@@ -225,7 +227,7 @@ def _run(path: Path, dataset: "xr.Dataset") -> Run:
 
 
 def open_result(path: Path | str) -> Result:
-    """Open a result file of any kind; values are read when they are used.
+    """Open a result file of any kind lazily.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The sheet of a run: pulleys, spans, power, tensioners and what the solver did, in the words of an engineer."""
+"""The sheet of a run: pulleys, spans, power, tensioners and solver statistics."""
 
 import math
 from collections.abc import Iterable
@@ -19,15 +19,15 @@ _OF_PARTS = ("rad/s", "N", "N/m")
 
 _LARGEST_MARGIN = 100.0
 _LEAST_SHARE = 0.01
-"""Part of the power put in from which a shaft is named."""
+"""Share of the power input from which a shaft is named."""
 _NOTHING = 1e-9
-"""Watts that are rounding."""
+"""Power below which it is rounding, W."""
 _KILOWATTS = 1e4
-"""Power, W, from which on powers are written in kW."""
+"""Power from which powers are shown in kW, W."""
 
 
 def run_sheet(run: Run) -> Sheet:
-    """Sum up a run in tables and facts: what an engineer wants to know of it first.
+    """Summarise a run in tables and facts.
 
     Parameters
     ----------
@@ -37,15 +37,15 @@ def run_sheet(run: Run) -> Sheet:
     Returns
     -------
     Sheet
-        Of a run without outputs it says so.
+        For a run without outputs, a sentence that says so.
     """
     if run.outputs == 0:
-        return Sheet("Nothing was computed before the run ended.", ())
+        return Sheet("The run ended before its first output.", ())
     summary = summarize(run)
     over = _window(run, summary)
     spans = Table(
         f"Spans{over}",
-        ("", "tension N", "least N", "largest N", "belt speed m/s"),
+        ("", "tension\nN", "min\nN", "max\nN", "belt speed\nm/s"),
         tuple(_spans(summary)),
     )
     facts = Facts((*_power(summary), *_tensioners(summary), *_run_up(run), *_mesh_used(run), *_solver(summary)))
@@ -53,12 +53,12 @@ def run_sheet(run: Run) -> Sheet:
 
 
 def _run_up(run: Run) -> list[tuple[str, str]]:
-    """What goes before a run-up, and what does not change in it."""
+    """The settling before a run-up, and the quantities held constant in it."""
     with run.recorded() as recorded:
         said, left = recorded.attrs, attribute(recorded, "settling_left", math.nan)
         time, held = attribute(recorded, "settling_time", 0.0), str(said.get("held", ""))
-    part = "an unknown part" if math.isnan(left) else f"{left:.1%}"
-    before = f"{time:.3g} s at the first speed, not recorded: {part} of the tensions is left of the start"
+    part = "a transient of unknown size" if math.isnan(left) else f"a transient of {left:.1%} of the tensions"
+    before = f"{time:.3g} s at the first speed, not recorded; {part} remains"
     return [*([("settling", before)] if time else []), *([("held constant", held)] if held else [])]
 
 
@@ -72,7 +72,17 @@ def _pulleys(title: str, summary: Summary) -> Table:
     """The table of pulleys; powers in kW where they are large."""
     pulleys = summary.pulleys
     unit, watts = ("kW", 1e3) if max(abs(one.power) for one in pulleys) >= _KILOWATTS else ("W", 1.0)
-    headings = ("", "rpm", "rad/s", "torque\nN m", f"power\n{unit}", "slip", "elastic", "wrap", "sliding", "margin")
+    headings = (
+        "",
+        "rpm",
+        "rad/s",
+        "torque\nN m",
+        f"power\n{unit}",
+        "slip",
+        "elastic\ncreep",
+        "wrap\nangle",
+        "sliding\narc",
+    )
     columns = (
         (one.name for one in pulleys),
         aligned([RPM * one.speed for one in pulleys], 5),
@@ -86,11 +96,11 @@ def _pulleys(title: str, summary: Summary) -> Table:
         (_margin(one.margin) for one in pulleys),
         aligned([one.hub_load for one in pulleys]),
     )
-    return Table(title, (*headings, "hub load\nN"), tuple(zip(*columns, strict=True)))
+    return Table(title, (*headings, "capstan\nmargin", "hub load\nN"), tuple(zip(*columns, strict=True)))
 
 
 def _window(run: Run, summary: Summary) -> str:
-    """From when to when means are taken, and of how many turns of the belt; steady running does not change in time."""
+    """The averaging window and its belt turns; none in steady running."""
     with run.recorded() as recorded:
         if runs_steadily(recorded):
             return " (steady running)"
@@ -101,21 +111,21 @@ def _window(run: Run, summary: Summary) -> str:
 
 
 def _share(part: float) -> str:
-    """A part of the first rim's speed; none where that stands still."""
+    """A share of the first rim's speed; a dash where that stands still."""
     return "–" if math.isnan(part) else f"{part:z.3%}"
 
 
 def _margin(margin: float) -> str:
-    """The capstan margin; without load there is none."""
+    """The capstan margin; a dash without load."""
     if math.isnan(margin):
         return "–"
     return f"{margin:.3g}" if margin < _LARGEST_MARGIN else f"> {_LARGEST_MARGIN:.0f}"
 
 
 def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:
-    """Tensions with as many decimals in all columns.
+    """Span rows, with the same number of decimals in all tension columns.
 
-    A span has no tension and no speed while the belt has left one of its pulleys, of which a warning tells.
+    A span has no tension or speed while the belt has left one of its pulleys; a warning says so.
     """
     spans = summary.spans
     tensions = iter(aligned([tension for one in spans for tension in (one.tension, one.lowest, one.highest)]))
@@ -125,7 +135,7 @@ def _spans(summary: Summary) -> Iterable[tuple[str, ...]]:
 
 
 def _watts(power: float, digits: int = 4) -> str:
-    """A power in W or kW with so many digits, or those before the point where they are more."""
+    """A power in W or kW with the given significant digits, but at least to the unit."""
     if abs(power) < _NOTHING:
         return "0 W"
     value, unit = (power / 1e3, "kW") if abs(power) >= _KILOWATTS else (power, "W")
@@ -133,47 +143,47 @@ def _watts(power: float, digits: int = 4) -> str:
 
 
 def _power(summary: Summary) -> list[tuple[str, str]]:
-    """Efficiency and losses by cause, where power goes in."""
+    """Power, efficiency and losses by cause, if there is power input."""
     balance = summary.balance
     if not balance.power_in > 0.0:
         return []
     losses = ", ".join(f"{cause} {_watts(power, 3)}" for cause, power in balance.losses.items() if power != 0.0)
-    efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none, nothing is taken out"
+    efficiency = f"{balance.efficiency:.2%}" if balance.power_out > 0.0 else "none (no power output)"
     flows = f"{_watts(balance.power_in)} in{_givers(summary)}, {_watts(balance.power_out)} out"
     return [
-        ("power", f"{flows}, {_watts(balance.stored, 3)} being stored" if summary.steps else flows),
+        ("power", f"{flows}, {_watts(balance.stored, 3)} stored" if summary.steps else flows),
         ("efficiency", efficiency),
         ("losses", f"{_watts(balance.lost, 3)}: {losses}" if losses else "none"),
     ]
 
 
 def _givers(summary: Summary) -> str:
-    """Which shafts put power in, where they are several."""
+    """The shafts that put power in, if several."""
     givers = [pulley for pulley in summary.pulleys if pulley.power > _LEAST_SHARE * summary.balance.power_in]
     parts = ", ".join(f"{pulley.name} {_watts(pulley.power)}" for pulley in givers)
     return f" ({parts})" if len(givers) > 1 else ""
 
 
 def _tensioners(summary: Summary) -> list[tuple[str, str]]:
-    """Where tensioners stand, and how far they move while they do."""
+    """Tensioner positions and their range."""
     facts = []
     for one in summary.tensioners:
         size, unit = (math.degrees, "°") if one.rotary else (lambda value: 1e3 * value, " mm")
         place, lowest, highest = (f"{size(value):z.4g}{unit}" for value in (one.position, one.lowest, one.highest))
-        travel = f", from {lowest} to {highest}" if one.highest > one.lowest else ""
-        facts.append((f"tensioner of {one.name}", f"at {place}{travel}"))
+        travel = f" (range {lowest} to {highest})" if one.highest > one.lowest else ""
+        facts.append((f"tensioner of {one.name}", f"{place}{travel}"))
     return facts
 
 
 def _solver(summary: Summary) -> list[tuple[str, str]]:
-    """What the solver did: of steady running, which takes no steps, the mesh and the time; at rest the time."""
-    steps = f"{summary.steps}, and {summary.rejected_steps} tried in vain"
+    """Solver statistics: mesh errors, energy balance, steps and computing time; fewer without time steps."""
+    steps = f"{summary.steps} accepted, {summary.rejected_steps} rejected"
     facts = [
-        ("errors of mesh", _mesh(summary.resolution)),
-        ("energy balance", f"closes within {abs(summary.energy_closure):.1e} of the energy put in"),
+        ("mesh errors", _mesh(summary.resolution)),
+        ("energy balance", f"closes within {abs(summary.energy_closure):.1e} of the energy input"),
         ("time steps", f"{steps}; {summary.outputs} outputs"),
     ]
-    prepared = f", and {summary.compile_time:.3g} s to prepare" if summary.steps else ""
+    prepared = f", plus {summary.compile_time:.3g} s of preparation" if summary.steps else ""
     took = f"{summary.wall_time:.3g} s{_pace(summary)}{prepared}"
     known = not math.isnan(summary.wall_time)
     moves = not math.isnan(summary.resolution.errors["slip"])
@@ -181,16 +191,16 @@ def _solver(summary: Summary) -> list[tuple[str, str]]:
 
 
 def _pace(summary: Summary) -> str:
-    """Computing time for a simulated second; none of what is not simulated over time."""
+    """Computing time per simulated second; empty without time steps."""
     pace = summary.computing_time_per_second
-    return "" if math.isnan(pace) or not summary.steps else f", {pace:.3g} s for each simulated second"
+    return "" if math.isnan(pace) or not summary.steps else f" ({pace:.3g} s per simulated second)"
 
 
 def _mesh(resolution: Resolution) -> str:
-    """The estimated errors of the mesh, of which some may not be known; without slip they are those at rest."""
+    """The estimated mesh errors that are known; without slip they are those at rest."""
     known = {name: error for name, error in resolution.errors.items() if not math.isnan(error)}
     errors = ", ".join(f"{name} {error:.1%}" if error < 1.0 else f"{name} > 100%" for name, error in known.items())
-    return f"{errors}{', at rest' * ('slip' not in known)}" if errors else "not known"
+    return f"{errors}{', at rest' * ('slip' not in known)}" if errors else "unknown"
 
 
 def _steady_running(run: Run) -> tuple[Table | Facts, ...]:

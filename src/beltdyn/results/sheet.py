@@ -1,4 +1,4 @@
-"""What is written of a result for a reader: tables and facts, as the screen, notebooks and reports show them."""
+"""Sheets of results: the tables and facts that the screen, notebooks and reports show."""
 
 import re
 from collections.abc import Sequence
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 _DIGITS = 5
 _FIRST_PART = re.compile("[,:]")
 _AMONG_WARNINGS = frozenset({"failure"})
-"""Variables of long texts, of which warnings tell."""
+"""Variables of long texts, which warnings quote."""
 
 
 def sheet(result: Result) -> Sheet:
-    """Give the sheet of a result: the summary of a run; of others single numbers, and a table for what has names.
+    """Give the sheet of a result: the summary of a run, or the values and tables of another analysis.
 
     Parameters
     ----------

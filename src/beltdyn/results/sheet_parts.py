@@ -1,4 +1,4 @@
-"""Parts of a sheet, which is what is written of a result for a reader."""
+"""Parts of a sheet."""
 
 import re
 from typing import NamedTuple
@@ -29,7 +29,7 @@ class Table(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """Names and what they are.
+    """Names and their values.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class Facts(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """What is written of a result.
+    """The tables and facts of a result.
 
     Attributes
     ----------

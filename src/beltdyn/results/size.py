@@ -1,4 +1,4 @@
-"""How large the results of a drive will be, known before anything is computed."""
+"""Expected size of the results of a drive."""
 
 import shutil
 from math import ceil, prod
@@ -27,7 +27,7 @@ def chunk_rows(row: tuple[int, ...], dtype: str) -> int:
 
 
 def expected_bytes(drive: Drive) -> int:
-    """Give the size of the results of a whole run.
+    """Give the expected size of the results of a run.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def expected_bytes(drive: Drive) -> int:
 
 
 def describe_size(drive: Drive) -> str:
-    """Say in words how much will be recorded, and how often.
+    """Describe the number, interval and size of outputs.
 
     Parameters
     ----------
@@ -58,13 +58,13 @@ def describe_size(drive: Drive) -> str:
     """
     instants = drive.simulation.instants
     return (
-        f"{_in_words(expected_bytes(drive))}: {instants.count} outputs, every {instants.interval:.4g} s; "
-        f"along the belt {instants.fields}, every {instants.stride * instants.interval:.4g} s"
+        f"{_in_words(expected_bytes(drive))}: {instants.count} outputs every {instants.interval:.4g} s, "
+        f"{instants.fields} along the belt every {instants.stride * instants.interval:.4g} s"
     )
 
 
 def require_room(drive: Drive, path: Path | None) -> None:
-    """Make sure that the results of a run have room on the disk, or in memory.
+    """Check that the results of a run fit on the disk or in memory.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def require_room(drive: Drive, path: Path | None) -> None:
     Raises
     ------
     ModelError
-        If they do not fit, with what would make them smaller.
+        If they do not fit, with ways to reduce them.
     """
     expected = expected_bytes(drive)
     if path is None:
@@ -91,8 +91,8 @@ def require_room(drive: Drive, path: Path | None) -> None:
     if needed > free:
         settings = drive.simulation
         raise ModelError(
-            f"the results need {_in_words(needed)} of {place}, where {_in_words(free)} are free: "
-            f"{describe_size(drive)}. {remedy}, lengthen simulation.output_interval = {settings.output_interval:g} s "
+            f"the results need {_in_words(needed)} of {place}, but only {_in_words(free)} are free: "
+            f"{describe_size(drive)}. {remedy}, increase simulation.output_interval = {settings.output_interval:g} s "
             "or simulation.field_interval, or simulate a shorter time."
         )
 

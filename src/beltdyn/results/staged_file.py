@@ -216,7 +216,7 @@ def _require_same(checksums: Checksums, place: int, data: bytes) -> None:
     for first in range(place, min(place + len(data), checksums.end), PAGE):
         last = min(first + PAGE, checksums.end)
         if not checksums.match(first // PAGE, data[first - place : last - place]):
-            raise OSError(f"its bytes {first:,} to {last:,} are not as they were written")
+            raise OSError(f"it is damaged: bytes {first:,} to {last:,} differ from what was written")
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""What a run ended in, beside the steady running under the same speeds and loads."""
+"""Comparison of the end of a run with steady running under the same speeds and loads."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from beltdyn.results.run import Run
 from beltdyn.results.summary import Summary, means_of, summarize
 
 VALUES, FAILURE = "steady_values", "steady_failure"
-"""Attributes of a run: the numbers of steady running in their order, or why there is none."""
+"""Attributes of a run: the values in steady running in their order, or why there are none."""
 
 _CHANGING = 0.2
 """Rate of the stored energy over the losses from which on a run has not settled."""
@@ -23,12 +23,12 @@ _CHANGING = 0.2
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """A number of a run and of steady running.
+    """A value at the end of a run and in steady running.
 
     Attributes
     ----------
     quantity : str
-        "speed", "slip", "hub load", "contact force" (the largest normal force on a metre of belt), "tension" or
+        "speed", "slip", "hub load", "contact force" (the largest normal force per metre of belt), "tension" or
         "position" of a tensioner.
     name : str
         Name of the pulley, of the span, or of the tensioner's pulley.
@@ -64,7 +64,7 @@ def steady_comparison(run: Run) -> tuple[Compared, ...]:
     Returns
     -------
     tuple of Compared
-        Nothing where the run was not to be compared, or there is no steady running.
+        Empty if no comparison was asked for, or no steady running was found.
 
     Examples
     --------
@@ -77,12 +77,12 @@ def steady_comparison(run: Run) -> tuple[Compared, ...]:
 
 
 def steady_values(run: Run) -> list[float]:
-    """The numbers of steady running that `steady_comparison` finds in the attribute `VALUES` of another run.
+    """The values in steady running that `steady_comparison` reads from the attribute `VALUES` of another run.
 
     Parameters
     ----------
     run : Run
-        Of `steady_state`, of the same pulleys, spans and tensioners.
+        The result of `steady_state`, with the same pulleys, spans and tensioners.
     """
     return [one.run for one in _ending(run)]
 
@@ -142,7 +142,7 @@ def steady_losses(run: Run) -> dict[str, list[float]]:
 
 
 def _ending(run: Run) -> Iterator[Compared]:
-    """Numbers of the end of a run."""
+    """The compared values at the end of a run."""
     summary = summarize(run)
     with run.recorded() as recorded:
         forces = _largest_contact_forces(recorded, summary)
@@ -159,7 +159,7 @@ def _ending(run: Run) -> Iterator[Compared]:
 
 
 def _largest_contact_forces(recorded: Recorded, summary: Summary) -> list[float]:
-    """Largest normal force on a metre of belt on each pulley, N/m: a mean as the others."""
+    """Largest normal force per metre of belt on each pulley, averaged over time, N/m."""
     times = np.asarray(recorded["field_time"])
     rows = slice(int(np.searchsorted(times, min(summary.start, times[-1]))), None)
     force, touched = np.asarray(recorded["normal_force"])[rows], np.asarray(recorded["contact_pulley"])[rows]

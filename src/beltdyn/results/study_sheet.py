@@ -1,4 +1,4 @@
-"""The sheet of a study: how many points there are, and between which values results lie."""
+"""The sheet of a study: number of points, and range of each input and result."""
 
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,7 @@ def study_sheet(result: Result) -> Sheet:
     Parameters
     ----------
     result : Result
-        Of `study`.
+        The result of `study`.
 
     Returns
     -------
@@ -33,10 +33,10 @@ def study_sheet(result: Result) -> Sheet:
     dataset = result.dataset
     names = str(dataset.attrs["results"]).splitlines()
     numbers = [_row(dataset[path]) for path in str(dataset.attrs["numbers"]).splitlines()]
-    tables = [Table("", ("number", "", "least", "largest"), tuple(numbers))]
+    tables = [Table("", ("number", "", "min", "max"), tuple(numbers))]
     if names:
         rows = tuple(_result_row(dataset[name]) for name in names[:_MOST])
-        tables.append(Table("", ("result", "", "least", "at point", "mean", "largest", "at point"), rows))
+        tables.append(Table("", ("result", "", "min", "at point", "mean", "max", "at point"), rows))
     return Sheet(str(dataset.attrs["title"]), (Facts(tuple(_facts(dataset, names))), *tables))
 
 
@@ -47,14 +47,14 @@ def _facts(dataset: "xr.Dataset", names: list[str]) -> list[tuple[str, str]]:
     if done < dataset.sizes["point"] and not failed:
         facts = [("points", f"{done} of {dataset.sizes['point']}")]
     if done:
-        facts.append(("computing time", f"{np.nansum(seconds):.3g} s, {np.nanmean(seconds):.3g} s a point"))
+        facts.append(("computing time", f"{np.nansum(seconds):.3g} s, {np.nanmean(seconds):.3g} s per point"))
     if len(names) > _MOST:
-        facts.append(("results", f"{len(names)}, of which {_MOST} are shown"))
+        facts.append(("results", f"{len(names)}, {_MOST} shown"))
     return facts
 
 
 def _row(values: "xr.DataArray") -> tuple[str, ...]:
-    """A number that varies: between which values."""
+    """An input and its range."""
     if values.dtype.kind not in "fi":
         words = list(dict.fromkeys(map(str, values.values)))
         return str(values.name), "", ", ".join(words[:3]), f"{len(words)} values" if len(words) > 3 else ""
@@ -63,7 +63,7 @@ def _row(values: "xr.DataArray") -> tuple[str, ...]:
 
 
 def _result_row(values: "xr.DataArray") -> tuple[str, ...]:
-    """A result: its least and largest value and where they are, and its mean."""
+    """A result: its mean, and its extremes with their points."""
     known = np.flatnonzero(np.isfinite(values.values))
     if not known.size:
         return str(values.name), "", "", "", "", "", ""

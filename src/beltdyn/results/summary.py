@@ -1,4 +1,4 @@
-"""The numbers that sum up a run."""
+"""Summary of a run."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -27,18 +27,18 @@ class Means(NamedTuple):
     """Means over the end of a run."""
 
     pulleys: tuple[PulleySummary, ...]
-    """One for each pulley."""
+    """Means of the pulleys."""
     spans: tuple[SpanSummary, ...]
-    """One for each span."""
+    """Means of the spans."""
     tensioners: tuple[TensionerSummary, ...]
-    """One for each tensioner that moves."""
+    """Means of the moving tensioners."""
     balance: Balance
     """Mean powers of shafts and losses by cause."""
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """The numbers that sum up a run.
+    """Summary of a run.
 
     Means are taken over whole turns of the belt and whole periods of what repeats; see `cycles.mean_window`.
 
@@ -102,12 +102,12 @@ class Summary:
 
     @property
     def computing_time_per_second(self) -> float:
-        """Time taken for each simulated second, s; NaN at rest, and when the run's end was not recorded."""
+        """Computing time per simulated second, s; NaN at rest, or if the end of the run was not recorded."""
         return self.wall_time / self.end if self.end > 0.0 else np.nan
 
 
 def summarize(run: Run) -> Summary:
-    """Sum up a run; results of other analyses have dimensions of their own.
+    """Summarise a run.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def summarize(run: Run) -> Summary:
     Raises
     ------
     ModelError
-        If the run holds no output, or the result is no run.
+        If the run holds no output, or the result is not a run.
 
     Examples
     --------
@@ -130,14 +130,14 @@ def summarize(run: Run) -> Summary:
     'driven'
     """
     if not isinstance(run, Run):
-        raise ModelError(f"a summary needs results over time, and these are of {run.kind}. Look at their dataset.")
+        raise ModelError(f"a summary needs results over time; these are of {run.kind}. Use result.dataset.")
     run.require_output()
     with run.recorded() as recorded:
         return _summarize(run, recorded)
 
 
 def means_of(run: Run) -> Means:
-    """Means over the end of a run, without what makes them doubtful.
+    """Means over the averaging window of a run, without findings.
 
     Parameters
     ----------

@@ -161,7 +161,7 @@ def require_parquet(folder: Path, overwrite: bool = False) -> None:
         import pyarrow  # noqa: F401
     except ImportError:
         raise ModelError(
-            f"tables in {folder} cannot be written as Parquet: this needs pyarrow. "
+            f"tables in {folder} cannot be written as Parquet because pyarrow is not installed. "
             "Install it: pip install 'beltdyn[parquet]', or write CSV or MAT."
         ) from None
     for name in NAMES:

@@ -1,4 +1,4 @@
-"""Many simulations side by side on all cores, each into its own file."""
+"""Parallel simulations on all cores, each into its own file."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -28,7 +28,7 @@ def simulate_all(
     overwrite: bool = False,
     finish: Callable[[Run], None] | None = None,
 ) -> dict[Path, Ending]:
-    """Simulate drives side by side, each by one thread of a process of its own, as `analyse_all` does.
+    """Simulate several drives in parallel, each in its own process; see `analyse_all`.
 
     Kernels are compiled first, once, unless they are on the disk already.  A simulation that fails leaves the others
     alone.  Ctrl-C ends those on their way, which keep what they computed.  Processes do not run the caller's script
@@ -64,7 +64,7 @@ def analyse_all(
     finish: Callable[[Run], None] | None = None,
     **options: Any,
 ) -> dict[Path, Ending]:
-    """Analyse drives side by side, each by one thread of a process of its own.
+    """Analyse several drives in parallel, each in its own process.
 
     Parameters
     ----------
@@ -90,8 +90,8 @@ def analyse_all(
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}
     for file, drive in files.items():
-        rule = f"{file.name} is computed by another process, which a function of Python does not reach"
-        refuse_functions(_drive_of(drive), rule, "call `simulate` or another analysis for this drive by itself.")
+        rule = f"{file.name} runs in another process, which a Python function cannot be passed to"
+        refuse_functions(_drive_of(drive), rule, "Call `simulate` or another analysis for this drive alone.")
     waiting, work = _longest_first(files), Work(analysis, options, overwrite, finish)
     stop = SPAWN.Event()
 
@@ -160,5 +160,7 @@ def _run_pool(
 def _ending(future: Future[Ending]) -> Ending:
     error = future.exception()
     if isinstance(error, BrokenProcessPool):
-        return Ending("failed", "its process or one beside it was killed, as when memory runs out. Run fewer at once.")
+        return Ending(
+            "failed", "its process or another one was killed, possibly because memory ran out. Run fewer at once."
+        )
     return future.result()

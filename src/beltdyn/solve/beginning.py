@@ -1,4 +1,4 @@
-"""Where a run begins: at rest, laid, in steady running, or in the state of an earlier run."""
+"""Initial state of a run: at rest, laid, in steady running, or from an earlier run."""
 
 from collections.abc import Callable
 
@@ -39,7 +39,7 @@ def settled(drive: Drive, integrator: Integrator) -> tuple[Drive, Frame]:
     """
     begun = with_instant(drive)
     if begun.simulation.frame != drive.simulation.frame:
-        return begun, begun.frame._replace(reason="as in the run in which it begins")
+        return begun, begun.frame._replace(reason="as in the run it continues")
     if drive.simulation.frame is None and drive.frame.stays and not isinstance(integrator, GeneralizedAlpha):
         moved = begun.replace(simulation=begun.simulation.replace(frame="travelling"))
         return moved, moved.frame._replace(reason=f"since the integrator is {integrator.name}")
@@ -73,8 +73,8 @@ def mesh_of(drive: Drive, integrator: Integrator, progress: Report | None = None
     staying = drive.frame.stays
     if staying and not isinstance(integrator, GeneralizedAlpha):
         raise ModelError(
-            f'the integrator "{integrator.name}" does not fit simulation.frame = "staying", whose flow it does not '
-            'know. Leave the integrator out, or set simulation.frame = "travelling".'
+            f'the integrator "{integrator.name}" does not support simulation.frame = "staying". Omit the '
+            'integrator, or set simulation.frame = "travelling".'
         )
     if settings.start == "steady":
         require_steady_start(drive)

@@ -1,4 +1,4 @@
-"""An analysis: numbers of a drive with which its results are nearest to measured ones, and how well these tell them."""
+"""Calibration: fit parameters of a drive to measured results, with confidence intervals."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
@@ -30,18 +30,20 @@ _CORRELATED = 0.99
 
 _NUMBER, _MEASURED = ("number",), ("measured",)
 _VARIABLES = {
-    "residual_deviation": Variable((), "1", "Deviation of residuals, over that of measurements or relative"),
+    "residual_deviation": Variable(
+        (), "1", "Standard deviation of residuals, over that of the measurements or relative"
+    ),
     "start": Variable(_NUMBER, VARIOUS, "Start"),
     "fitted": Variable(_NUMBER, VARIOUS, "Fitted"),
     "standard_error": Variable(_NUMBER, VARIOUS, "Standard error"),
-    "lower": Variable(_NUMBER, VARIOUS, "Lower end of the interval"),
-    "upper": Variable(_NUMBER, VARIOUS, "Upper end of the interval"),
+    "lower": Variable(_NUMBER, VARIOUS, "Lower confidence limit"),
+    "upper": Variable(_NUMBER, VARIOUS, "Upper confidence limit"),
     "number_unit": Variable(_NUMBER, "1", "Unit", "str"),
     "correlation": Variable(("number", "other_number"), "1", "Correlation of errors"),
     "measured_value": Variable(_MEASURED, VARIOUS, "Measured"),
     "start_value": Variable(_MEASURED, VARIOUS, "Start"),
     "fitted_value": Variable(_MEASURED, VARIOUS, "Fitted"),
-    "residual": Variable(_MEASURED, "1", "Residual, over the deviation or relative"),
+    "residual": Variable(_MEASURED, "1", "Residual, over the standard deviation or relative"),
     "measured_unit": Variable(_MEASURED, "1", "Unit", "str"),
 }
 _COORDINATES = {
@@ -61,7 +63,7 @@ def calibrate(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    r"""Fit numbers of a drive to measured results, with confidence intervals.
+    r"""Fit parameters of a drive to measured results, with confidence intervals.
 
     A study names the numbers and tables of measurements: results of steady running or at rest, such as slip over
     torque, frequencies of spans, or the place of a tensioner over the tension. Numbers are those of least squares, and
@@ -193,43 +195,46 @@ def _result(drive: Drive, numbers: Sequence[Free], fitting: Residuals, found: Fi
 
 
 def _warnings(numbers: Sequence[Free], fitting: Residuals, found: Fit) -> Iterator[str]:
-    """What makes the fit doubtful."""
+    """Warnings about the fit."""
     from scipy import stats
 
     if found.interrupted:
         yield (
-            "the search was interrupted: the numbers are those that it had come to, for which intervals do not hold. "
-            "Run it again for those that fit best."
+            "the search was interrupted: the values are those of the last iteration, and the intervals do not "
+            "hold. Run it again to find the best fit."
         )
     yield from dict.fromkeys(failure for series in fitting.series for failure in series.designs.failed)
     paths = [one.path for one in numbers]
     if not found.told:
         untold = [paths[number] for number in found.untold]
         fault = (
-            f"the measurements do not tell {untold[0]}: no measured result changes with it"
+            f"the measurements cannot identify {untold[0]}: no measured result depends on it"
             if len(untold) == 1
-            else f"the measurements do not tell {', '.join(untold)} apart: they change the same results in the same way"
+            else f"the measurements cannot identify {', '.join(untold)} separately: they affect the same "
+            "results in the same way"
         )
-        yield f"{fault}. Fit fewer numbers, or measure something else."
+        yield f"{fault}. Fit fewer parameters, or measure another quantity."
     wide = [path for path, error in zip(paths, found.errors, strict=True) if 1.0 < 2.0 * found.reach * error < np.inf]
     if wide:
         yield (
-            f"{', '.join(wide)}: the interval is wider than the bounds, so that the measurements hardly tell it. "
-            "Measure more, or something that changes with it."
+            f"{', '.join(wide)}: the confidence interval is wider than the bounds, so the measurements barely "
+            "identify it. Measure more, or a quantity that depends on it."
         )
     for one, other in zip(*np.nonzero(np.triu(np.abs(found.correlation) > _CORRELATED, 1)), strict=True):
         yield (
-            f"errors of {paths[one]} and {paths[other]} are correlated by {found.correlation[one, other]:.3f}: the "
-            "measurements tell little more than what both together do. Measure something else that one of them changes."
+            f"errors of {paths[one]} and {paths[other]} are correlated by {found.correlation[one, other]:.3f}: "
+            "the measurements identify little more than their combined effect. Measure a quantity that depends "
+            "on only one of them."
         )
     at_bounds = [one.path for one, part in zip(numbers, found.numbers, strict=True) if min(part, 1.0 - part) < 1e-6]
     if at_bounds:
-        yield f"{', '.join(at_bounds)}: the fit is at a bound, where intervals do not hold. Widen it."
+        yield f"{', '.join(at_bounds)}: the fit is at a bound, where confidence intervals do not hold. Widen the bound."
     left = found.residuals.size - len(numbers)
     if fitting.known and left > 0:
         squares = float(found.residuals @ found.residuals)
         if stats.chi2.sf(squares, left) < _UNLIKELY:
             yield (
-                f"residuals are {found.spread:.2g} times as large as their deviations say: the drive does not describe "
-                "the measurements, or they are less certain."
+                f"residuals are {found.spread:.2g} times as large as the standard deviations of the "
+                "measurements: the model does not describe the measurements, or they are less accurate than "
+                "stated."
             )

@@ -1,4 +1,4 @@
-"""An analysis: modes about steady running over speed, and the critical speeds at which orders excite them."""
+"""Campbell diagram: modes about steady running over speed, and critical speeds."""
 
 from pathlib import Path
 
@@ -36,7 +36,7 @@ def campbell(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Find the modes of a drive over speed, and the critical speeds at which orders excite them: a Campbell diagram.
+    """Compute a Campbell diagram: the modes of a drive over speed, and the critical speeds at which orders excite them.
 
     Modes are those of `modes`, about steady running. They are followed from speed to speed by their shapes. Loads are
     those of the drive file at one instant; those over speed follow the speed. A speed without steady running is marked,
@@ -59,7 +59,7 @@ def campbell(
         Orders of the pulley's rotation that excite, such as "1, 2, 4". By default the harmonics of speeds and loads in
         the drive file, the turns of all pulleys, and that of the belt.
     dry_tensioners
-        "sliding" for tensioners whose dry friction is left out, as in large vibrations, or "stuck" for those that it
+        "sliding" for tensioners without dry friction, as in large vibrations, or "stuck" for those that it
         holds, as in small ones.
     at
         At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
@@ -94,9 +94,9 @@ def campbell(
     ('speed', 'mode')
     """
     if count < 1:
-        raise ModelError(f"count = {count} modes are none. Give 1 or more.")
+        raise ModelError(f"count = {count} must be 1 or more.")
     if dry_tensioners not in (SLIDING, STUCK):
-        raise ModelError(f'dry_tensioners = {dry_tensioners!r} is neither "{SLIDING}" nor "{STUCK}". Give one of them.')
+        raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
     held = held_at(averaged(drive), at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     name, sense = held.pulleys[number].name, sense_of(held, number)
@@ -104,7 +104,7 @@ def campbell(
     speeds = numbers_in("speed", speed, "rad/s", points)
     if speeds[0] < 0.0:
         raise ModelError(
-            f"speed = {speed!r} must not be below zero: speeds are positive in the sense in which the pulley turns."
+            f"speed = {speed!r} must not be negative: speeds are positive in the pulley's sense of rotation."
         )
     axes: Axes = {"speed": (Variable(("speed",), "rad/s", f"Speed of {name}"), speeds)}
     with OperatingPoints("campbell", held, axes, output, progress, overwrite, names=_KEPT) as table:

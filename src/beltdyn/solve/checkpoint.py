@@ -1,4 +1,4 @@
-"""Checkpoints of a run: all that its next step depends on, in a file beside the results, for going on after a kill.
+"""Checkpoints of a run: its complete state in a file beside the results, for resuming it.
 
 A checkpoint is read by the version that wrote it, on the same kernels: a line that tells of that, and behind it what
 `packing` makes of records, arrays and the text of the drive, with a checksum.
@@ -65,7 +65,7 @@ _RECORDING = (*(Observer, FrictionWork, WorkSoFar, MaterialWork, EnergyAccount, 
 
 
 class CheckpointWarning(UserWarning):
-    """A checkpoint could not be written; the run goes on."""
+    """A checkpoint could not be written; the run continues."""
 
 
 @dataclass(frozen=True)
@@ -133,10 +133,10 @@ class Keeper:
             if self._warned:
                 return
             self._warned = True
-            since = "the checkpoint before it" if is_checkpoint(path) else "its beginning"
+            since = "the previous checkpoint" if is_checkpoint(path) else "its beginning"
             warnings.warn(
-                f"the run goes on without this checkpoint: {error} Results are not touched; but if the run is "
-                f"interrupted or killed now, it goes on from {since}. A checkpoint is tried again every "
+                f"the run continues without this checkpoint: {error} Results are not affected, but if the run "
+                f"is interrupted or killed now, it will resume from {since}. Another checkpoint is attempted every "
                 f"{self._every:g} s.",
                 CheckpointWarning,
                 stacklevel=4,
@@ -193,25 +193,25 @@ def read_checkpoint(path: Path) -> Checkpoint:
         with open_file(path) as file:
             head, content = file.readline(_LONGEST_HEAD), file.read()
     except ValueError as error:
-        raise ModelError(f"{path} is no checkpoint of a run: {error}. Run the drive again.") from error
+        raise ModelError(f"{path} is not a checkpoint of a run: {error}. Run the drive again.") from error
     except OSError as error:
         raise ModelError(
-            f"there is no checkpoint {path} to go on from: the run is complete, ended before the first one, or is a "
-            "run-up, which writes none. Run the drive again, or begin another run where this one ended, by "
-            "simulation.start = { file = ... }."
+            f"the checkpoint {path} does not exist: the run is complete, ended before its first checkpoint, or "
+            "is a run-up, which writes no checkpoints. Run the drive again, or start another run where this "
+            f"one ended with simulation.start = {{ file = ... }}."
         ) from error
     made_by = head.decode(errors="replace").removeprefix(_HEAD).strip()
     if made_by != _made_by():
         raise ModelError(
-            f"{path} was not written by this version of beltdyn ({version('beltdyn')}), which goes on with its own "
-            "runs alone. Install the version that began the run, or run the drive again."
+            f"{path} was written by another version than this one ({version('beltdyn')}), and a run can only be "
+            "resumed by the same version. Install the version that started the run, or run the drive again."
         )
     try:
         point = _PACKING.unpack(content)
     except ModelError as error:
         raise ModelError(f"{path} is damaged ({error}). Run the drive again.") from error
     if not isinstance(point, Checkpoint):
-        raise ModelError(f"{path} is no checkpoint of a run. Run the drive again.")
+        raise ModelError(f"{path} is not a checkpoint of a run. Run the drive again.")
     return point
 
 

@@ -1,4 +1,4 @@
-"""Compile the kernels of a simulation before its clock starts: once on a machine, then they come from the disk.
+"""Compilation of the kernels of a simulation: once per machine, then loaded from disk.
 
 What solves the equations of motion takes more than half of the compilation; where nothing is on the disk yet and there
 is a second core, a second process does that part.

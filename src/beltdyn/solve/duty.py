@@ -1,4 +1,4 @@
-"""An analysis: the operating points of a duty table, and means weighted by their durations."""
+"""Duty cycle: operating points of a duty table, and means weighted by duration."""
 
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -46,7 +46,7 @@ def duty(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    r"""Find the operating points of a duty table, with means weighted by their durations.
+    r"""Compute the operating points of a duty table, with means weighted by duration.
 
     The table is a CSV file with a line of headings: "duration [s]", "NAME speed [rpm]" and "NAME torque [N m]" of
     pulleys, and "load", the factor on all torques and loads of the drive file but those of motors. Each line below is
@@ -120,7 +120,7 @@ def read_duty(path: Path) -> list[Column]:
     columns = [_column(one) for one in read_headed("table", path)]
     durations = [one.values for one in columns if one.what == "duration"]
     if len(durations) != 1 or min(durations[0]) < 0.0 or not sum(durations[0]) > 0.0:
-        raise ModelError(f'{path} needs one column "duration [s]" of numbers of zero or more, not all zero.')
+        raise ModelError(f'{path} needs one column "duration [s]" of non-negative numbers, not all zero.')
     return columns
 
 
@@ -129,8 +129,8 @@ def _column(given: HeadedColumn) -> Column:
     pulley, _, what = given.what.rpartition(" ")
     if what not in UNITS or bool(pulley) != (what in ("speed", "torque")):
         raise ModelError(
-            f'{given.path}: the heading "{given.what}" is none of "duration [s]", "load", "NAME speed [rpm]" and '
-            '"NAME torque [N m]". Correct it.'
+            f'{given.path}: the heading "{given.what}" must be "duration [s]", "load", "NAME speed [rpm]" or '
+            '"NAME torque [N m]".'
         )
     return Column(what, pulley.strip(), given.values(UNITS[what]))
 
@@ -154,7 +154,7 @@ def at_row(held: Drive, columns: list[Column], row: int) -> Drive:
     """
     loads = [one.values[row] for one in columns if one.what == "load"]
     if loads and loads[0] < 0.0:
-        raise ModelError(f"row {row + 1}: load = {loads[0]:g} is below zero, with which loads would drive.")
+        raise ModelError(f"row {row + 1}: load = {loads[0]:g} is negative, with which loads would drive.")
     changed = with_load(held, loads[0] if loads else 1.0)
     for one in columns:
         if one.pulley:
@@ -177,9 +177,9 @@ def _mean_of(
 ) -> Iterator[tuple[str, tuple[Variable, ArrayLike]]]:
     """Name and values of each mean."""
     put_in, taken = (np.average(arrays[name][found], axis=0, weights=weights) for name in ("power_in", "power_out"))
-    yield "mean_power_in", (Variable((), "W", "Mean power in"), put_in)
-    yield "mean_power_out", (Variable((), "W", "Mean power out"), taken)
-    yield "mean_efficiency", (Variable((), "1", "Energy out over energy in"), taken / put_in if put_in else np.nan)
+    yield "mean_power_in", (Variable((), "W", "Mean power input"), put_in)
+    yield "mean_power_out", (Variable((), "W", "Mean power output"), taken)
+    yield "mean_efficiency", (Variable((), "1", "Energy efficiency"), taken / put_in if put_in else np.nan)
     for name in _MEANS:
         if name in arrays:
             one = VARIABLES[name]

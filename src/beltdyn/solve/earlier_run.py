@@ -1,4 +1,4 @@
-"""The state of a run over time at an instant at which its belt was recorded, and runs that begin in it."""
+"""Runs that start from a recorded state of an earlier run."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -59,9 +59,9 @@ def instant_of(run: Run, at: float | str | None, name: str = "at") -> float:
     if not abs(nearest - wanted) <= _SAME * step:
         every = f", every {step:.6g} s," if times.size > 1 else ""
         raise ModelError(
-            f"{name} = {wanted:g} s is no instant at which this run has recorded its belt: it has from {times[0]:.6g} "
-            f"to {times[-1]:.6g} s{every} the nearest at {nearest:.8g} s. Give that one, or run the drive again with "
-            "another simulation.field_interval."
+            f"{name} = {wanted:g} s is not an output along the belt of this run: it has outputs from "
+            f"{times[0]:.6g} to {times[-1]:.6g} s{every} the nearest at {nearest:.8g} s. Use that one, or run "
+            "the drive again with another simulation.field_interval."
         )
     return nearest
 
@@ -164,15 +164,15 @@ def _opened(start: EarlierRun) -> Iterator[Run]:
     if is_checkpoint(Path(start.file)):
         results = Path(start.file).with_suffix(".nc")
         raise ModelError(
-            f"simulation.start: {start.file} is a checkpoint, with which its run alone goes on: beltdyn run --resume "
-            f"{results}. To begin another run in a state of that one, name its result file, {results}."
+            f"simulation.start: {start.file} is a checkpoint, which can only resume its own run: beltdyn run --resume "
+            f"{results}. To start another run from a state of that one, give its result file, {results}."
         )
     try:
         run = open_run(Path(start.file))
         try:
             if runs_steadily(run.dataset):
                 raise ModelError(
-                    f'{start.file} holds steady running, and no run over time. Set start = "steady", which finds it.'
+                    f'{start.file} holds steady running, not a run over time. Set start = "steady", which computes it.'
                 )
             yield run
         finally:
@@ -195,9 +195,9 @@ def _as_installed(drive: Drive, run: Run) -> Drive:
     if found is not None and _difference(_fixed(drive), _fixed(run.drive)) is not None:
         path, mine, theirs = found
         raise ModelError(
-            f"{path} is {mine} in this drive, and {theirs} in that of {run.path}. The belt, its contact, its mesh and "
-            "frame, tensioners and the places of pulleys must be the same; speeds, torques, loads, inertia and the "
-            "friction of pulleys may differ. Make it the same, or begin the run otherwise."
+            f"{path} is {mine} in this drive but {theirs} in that of {run.path}. Belt, contact, mesh, frame, "
+            "tensioners and pulley positions must be the same; speeds, torques, loads, inertia and pulley "
+            "friction may differ. Make it the same, or choose another simulation.start."
         )
     installed = run.drive
     return drive.replace(belt=installed.belt, contact=installed.contact, tensioner=installed.tensioners)
@@ -243,12 +243,12 @@ def _require_same_mesh(system: System, run: Run) -> None:
     theirs, mine = run.dataset["node_coordinate"].values, point_coordinates(system)
     if mine.shape != theirs.shape or not np.allclose(mine, theirs, rtol=0.0, atol=1e-9 * float(theirs[-1])):
         raise ModelError(
-            f"this drive has {mine.size} nodes, and that of {run.path} has {theirs.size}, or they stand elsewhere. "
-            f"Give belt.elements = {run.drive.elements} in both."
+            f"this drive has {mine.size} nodes, but that of {run.path} has {theirs.size}, or at other "
+            f"positions. Set belt.elements = {run.drive.elements} in both."
         )
     if system.bodies.size != run.dataset.sizes["body"]:
         raise ModelError(
-            f"this drive has {system.bodies.size} bodies and controllers beside the belt, and that of {run.path} has "
-            f"{run.dataset.sizes['body']}: {', '.join(run.dataset['body'].values)}. Loads with controllers, as servo "
-            "motors, must be the same."
+            f"this drive has {system.bodies.size} bodies and controllers beside the belt, but that of "
+            f"{run.path} has {run.dataset.sizes['body']}: {', '.join(run.dataset['body'].values)}. Loads with "
+            "controllers, such as servo motors, must be the same."
         )

@@ -1,4 +1,4 @@
-"""An analysis: the static equilibrium of a drive at rest."""
+"""Static equilibrium of a drive at rest."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,7 +19,7 @@ from beltdyn.system.state import State
 
 
 def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress: Report | None = None) -> StaticResult:
-    """Find the static equilibrium of a drive at rest, with pulleys that do not turn.
+    """Compute the static equilibrium of a drive at rest.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ def _refined(drive: Drive, tolerance: float, progress: Report | None) -> StaticR
     require_tolerance(tolerance)
     if drive.ends:
         raise ModelError(
-            "force_tolerance does not fit an open belt, whose mesh is one of equal elements. Leave it out, and give "
-            "more belt.elements."
+            "force_tolerance does not apply to an open belt, whose elements are equally long. Omit it, and "
+            "increase belt.elements."
         )
     unstable = bring_to_rest(drive, progress).unstable
     rest, errors = refine_at_rest(stand(bring_to_stand(drive).drive), tolerance)

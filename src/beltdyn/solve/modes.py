@@ -1,4 +1,4 @@
-"""An analysis: the modes of a drive, with frequency, damping and shape, about rest, steady running or a run's state."""
+"""Modes of a drive about rest, steady running or a state of a run: frequency, damping and shape."""
 
 from beltdyn.errors import ModelError
 from beltdyn.model import Drive
@@ -30,7 +30,7 @@ def modes(
     force_tolerance: float | None = None,
     progress: Report | None = None,
 ) -> Result:
-    """Find the modes of a drive: frequency, damping ratio, and what swings.
+    """Compute the modes of a drive: frequency, damping ratio and shape.
 
     Vibrations are small, about a state that stays: at rest with a belt that sticks to its pulleys, or in steady
     running, where the belt moves, creeps and slides as it does there. A pulley of prescribed speed does not swing.
@@ -87,7 +87,7 @@ def modes(
     given = drive.drive_as_given if isinstance(drive, Run) else drive.text
     if isinstance(drive, Run):
         if about != STEADY:
-            raise ModelError("about does not go with a run in place of the drive, which is the state. Leave it out.")
+            raise ModelError("about cannot be given with a run, which is itself the state. Omit about.")
         about, drive = drive, drive.drive
     _require_sense(about, speed, pulley, at, count)
     if isinstance(about, Run) and not runs_steadily(about.dataset):
@@ -110,28 +110,29 @@ def modes(
 def _require_sense(about: str | Run, speed: str | None, pulley: str | None, at: float | str | None, count: int) -> None:
     """Make sure that the options make sense."""
     if count < 1:
-        raise ModelError(f"count = {count} modes are none. Give 1 or more.")
+        raise ModelError(f"count = {count} must be 1 or more.")
     if count > MOST_SWINGING:
-        raise ModelError(f"count = {count} is more than the {MOST_SWINGING} modes that are found. Give fewer.")
+        raise ModelError(f"count = {count} exceeds the limit of {MOST_SWINGING} modes. Give fewer.")
     if not isinstance(about, Run) and about not in (REST, STEADY):
         raise ModelError(
-            f'about = {about!r} is no state. Give "{REST}", "{STEADY}", or what `steady_state` or `simulate` has '
-            "returned."
+            f'about = {about!r} is not a state. Give "{REST}", "{STEADY}", or a result of `steady_state` or `simulate`.'
         )
     if isinstance(about, Run) and not runs_steadily(about.dataset):
         if speed is not None or pulley is not None:
-            raise ModelError("speed and pulley do not go with a run over time, which has its speeds. Leave them out.")
+            raise ModelError(
+                "speed and pulley cannot be given with a run over time, which has its own speeds. Omit them."
+            )
     elif about != STEADY and any(one is not None for one in (speed, pulley, at)):
-        raise ModelError(f'speed, pulley and at go with about = "{STEADY}" alone. Leave them out.')
+        raise ModelError(f'speed, pulley and at require about = "{STEADY}". Omit them.')
     if pulley is not None and speed is None:
-        raise ModelError(f"pulley = {pulley!r} names whose speed to prescribe, and there is no speed. Give speed.")
+        raise ModelError(f"pulley = {pulley!r} needs a speed to prescribe. Give speed.")
 
 
 def _at_speed(drive: Drive, speed: str, pulley: str | None, at: float | str | None) -> Drive:
     """The drive with a pulley at a speed."""
     values = numbers_in("speed", speed, "rad/s", 2)
     if values.size > 1:
-        raise ModelError(f'speed = {speed!r} must be one speed, such as "800 rpm".')
+        raise ModelError(f'speed = {speed!r} must be a single speed, such as "800 rpm".')
     held = held_at(drive, at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     return at_speed(held, number, sense_of(held, number) * float(values[0]))

@@ -1,4 +1,4 @@
-"""An analysis: operating points over speed, over load, or over both."""
+"""Operating map: operating points over speed, load, or both."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -27,7 +27,7 @@ def operating_map(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Find operating points over speed, over load, or over both: tensions, slip, hub loads, efficiency.
+    """Compute operating points over speed, load, or both: tensions, slip, hub loads, efficiency.
 
     Each point is steady running, as `steady_state` finds it, and begins at the point before. Loads are those of the
     drive file at one instant; those over speed follow the speed. A point that has no steady running is marked, and the
@@ -80,7 +80,7 @@ def operating_map(
     ('speed',)
     """
     if speed is None and load is None:
-        raise ModelError('a map is over speed, load or both. Give speed = "700..6000 rpm", or load = "0.2..1.2".')
+        raise ModelError('a map needs speed, load or both. Give speed = "700..6000 rpm", or load = "0.2..1.2".')
     held = held_at(drive, at)
     number = driver_of(held) if pulley is None else held.number_of(pulley)
     name = held.pulleys[number].name
@@ -135,6 +135,6 @@ def load_factors(load: str, count: int) -> FloatArray:
     factors = numbers_in("load", load, "", count)
     if factors[0] < 0.0:
         raise ModelError(
-            f"load = {load!r} holds a factor below zero, with which loads would drive. Begin at zero or above."
+            f"load = {load!r} contains a negative factor, with which loads would drive. Start at zero or above."
         )
     return factors

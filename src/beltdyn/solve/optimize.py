@@ -1,4 +1,4 @@
-"""An analysis: numbers of a drive such that a result becomes as small, or as large, as can be, within limits."""
+"""Optimisation: parameters of a drive that minimise or maximise a result within limits."""
 
 from pathlib import Path
 
@@ -25,7 +25,7 @@ def optimize(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Find the numbers of a drive with which a result is as small, or as large, as can be, within limits.
+    """Minimise or maximise a result over parameters of a drive, within limits.
 
     A study names the numbers that may change with their bounds, the operating points, the goal, and what must be kept:
     limits of results, distances of modes from orders, clearances. Every design is a drive in steady running at all
@@ -78,7 +78,7 @@ def optimize(
     True
     """
     if most < 2:
-        raise ModelError(f"most = {most} designs are too few. Give 2 or more.")
+        raise ModelError(f"most = {most} must be 2 or more designs.")
     given = study if isinstance(study, OptimizationStudy) else read_study(study, OptimizationStudy)
     base = Path() if isinstance(study, OptimizationStudy) else Path(study).parent
     numbers, there = tuple(free_number(drive, one) for one in given.numbers), held(drive, given.points)
@@ -94,7 +94,7 @@ def optimize(
     designs = Designs(drive, numbers, points, given.points, aims.watched, force_tolerance, tell)
     start = designs.find({one.path: one.start for one in numbers})
     if start.failure:
-        raise ConvergenceError(f"the search starts from the drive as it is given, which does not run. {start.failure}")
+        raise ConvergenceError(f"the search starts from the given drive, which does not run. {start.failure}")
     history.note(start)
     descent = Descent(designs, aims, most, history.note)
     with history:

@@ -1,4 +1,4 @@
-"""How far a simulation has come."""
+"""Progress of a simulation."""
 
 import math
 from collections import deque
@@ -26,7 +26,7 @@ Phase = Literal[
 
 @dataclass(frozen=True)
 class Progress:
-    """Where a simulation stands.
+    """Progress of a simulation.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ class Progress:
 
     @property
     def remaining(self) -> float:
-        """Computing time that is left if it goes on as of late, s; NaN in the first twentieth."""
+        """Estimated remaining computing time, s; NaN in the first twentieth."""
         if not self.time >= FORECAST * self.duration:
             return math.nan
         pace = self.pace
@@ -104,7 +104,7 @@ Report = Callable[[Progress], None]
 
 @dataclass(frozen=True, slots=True)
 class BatchProgress:
-    """Where many simulations stand.
+    """Progress of several simulations.
 
     Attributes
     ----------

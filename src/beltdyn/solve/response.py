@@ -1,4 +1,4 @@
-"""An analysis: linear response of steady running to the harmonics of speeds and loads, over speed."""
+"""Forced response: linear response of steady running to harmonics of speeds and loads, over speed."""
 
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,7 @@ def response(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Find the vibrations that the harmonics of speeds and loads excite, over speed: order cuts, by linear response.
+    """Compute the forced response to harmonics of speeds and loads over speed (order cuts) by linear analysis.
 
     Vibrations are small, about steady running at each speed, and have the frequencies of their orders. Loads are those
     of the drive file at one instant; those over speed follow the speed. A speed without steady running is marked, and
@@ -100,14 +100,14 @@ def response(
     ('speed', 'excitation', 'span')
     """
     if dry_tensioners not in (SLIDING, STUCK):
-        raise ModelError(f'dry_tensioners = {dry_tensioners!r} is neither "{SLIDING}" nor "{STUCK}". Give one of them.')
+        raise ModelError(f'dry_tensioners = {dry_tensioners!r} must be "{SLIDING}" or "{STUCK}".')
     given, exciting = held_at(averaged(drive), at), at_instant(drive, at)
     number = driver_of(given) if pulley is None else given.number_of(pulley)
     name, sense = given.pulleys[number].name, sense_of(given, number)
     speeds = numbers_in("speed", speed, "rad/s", points)
     if speeds[0] < 0.0:
         raise ModelError(
-            f"speed = {speed!r} must not be below zero: speeds are positive in the sense in which the pulley turns."
+            f"speed = {speed!r} must not be negative: speeds are positive in the pulley's sense of rotation."
         )
     answers = Answers(exciting, number, speeds)
     place, beside = Place(speeds, number, answers.excitations, labels_of(given)), dict[str, Any]()

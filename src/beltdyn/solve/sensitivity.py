@@ -1,4 +1,4 @@
-"""An analysis: how steady running, or the drive at rest, and its modes change with the numbers of the drive file.
+"""Sensitivity of results in steady running or at rest to each parameter of the drive file.
 
 Each number is changed a little up and down, and the state follows on the same mesh by the tangent of the state at hand,
 which is factorised once: the first step is that of the implicit function theorem, du = -(dF/du)^-1 dF, with dF the
@@ -47,7 +47,7 @@ def sensitivity(
     sobol: int = 0,
     progress: Report | None = None,
 ) -> Result:
-    """Find how results of steady running, or at rest, change with the numbers of the drive file.
+    """Compute the sensitivity of results in steady running, or at rest, to each parameter of the drive file.
 
     Effects are those of 1 % more of a number, and of 1 mm more of a coordinate of a center or pivot. An installed
     tension that the file asks for is kept: the length of the belt follows, or the take-up where that is given.
@@ -102,14 +102,14 @@ def sensitivity(
     ('result', 'number')
     """
     if about not in _USUAL:
-        raise ModelError(f'about = {about!r} is no state. Give "{STEADY}" or "{REST}".')
+        raise ModelError(f'about = {about!r} must be "{STEADY}" or "{REST}".')
     given = at_instant(drive, at)
     require_points(sobol)
     tolerances = {path: size for path, size in tolerances_of(drive).items() if _stands(given, path)}
     if sobol and not tolerances:
         raise ModelError(
-            f"sobol = {sobol} scatters numbers within tolerances, and the drive file has none. Write for example "
-            'width = "12.5 ± 0.1 mm".'
+            f'sobol = {sobol} samples tolerances, but the drive file has none. Write for example width = "12.5 '
+            '± 0.1 mm".'
         )
     chosen, wanted = (
         chosen_numbers(given, numbers, tolerances),
@@ -152,7 +152,7 @@ def sensitivity(
             tell=tell,
         )
         if failures:
-            warnings.append(f"{len(failures)} of {sobol} points do not run. The last one: {failures[-1]}")
+            warnings.append(f"{len(failures)} of {sobol} points failed. The last one: {failures[-1]}")
             result = _result(drive, values, chosen, derivatives, warnings)
     return with_spread(result, tolerances, points)
 
@@ -170,7 +170,7 @@ def _values(state: FoundState, names: Sequence[str]) -> dict[str, float]:
     values = {name: state.value(name) for name in names}
     found = {name: value for name, value in values.items() if np.isfinite(value)}
     if not found:
-        raise ModelError(f"{', '.join(names)} has no value in this state of the drive. Ask for another result.")
+        raise ModelError(f"{', '.join(names)} has no value in this state of the drive. Choose another result.")
     return found
 
 
@@ -179,8 +179,8 @@ def _warnings(state: FoundState, names: Sequence[str]) -> list[str]:
     found, shared = list(state.run.warnings) if isinstance(state, Running) else [], state.shared_modes(names)
     if shared:
         found.append(
-            f"{', '.join(shared)}: other modes have the same frequency, and mix with it freely. Derivatives are those "
-            "of their mean."
+            f"{', '.join(shared)}: other modes have the same frequency, so their shapes are not unique. "
+            "Derivatives are those of their mean."
         )
     return found
 
@@ -213,10 +213,10 @@ def _result(
     variables: dict[str, tuple[Variable, ArrayLike]] = {
         "value": (Variable(("result",), "1", "Value, in the unit of the result"), found),
         "derivative": (
-            Variable(both, "1", "Derivative of the result by the number, in SI units"),
+            Variable(both, "1", "Derivative of the result with respect to the parameter, in SI units"),
             derivatives[:, order],
         ),
-        "effect": (Variable(both, "1", "Change of the result with 1 % or 1 mm more"), effects[:, order]),
+        "effect": (Variable(both, "1", "Change of the result per 1 % or 1 mm"), effects[:, order]),
     }
     for name, changes in zip(values, relative[:, order], strict=True):
         variables[f"relative_{name}"] = Variable(("number",), "%", name), changes

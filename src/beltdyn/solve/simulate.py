@@ -1,4 +1,4 @@
-"""An analysis: from a drive to a run over time. Start, integrate, observe, record."""
+"""Simulation of a drive over time."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -95,7 +95,7 @@ def simulate(
     """
     every = number_in("checkpoint", checkpoint, "s")
     if not every > 0.0:
-        raise ModelError(f"checkpoint = {every:g} s must be above zero. Raise it, or leave it away.")
+        raise ModelError(f"checkpoint = {every:g} s must be above zero. Increase it, or omit it.")
     if resume:
         return _resume(drive, output, progress, every)
     return record_run(drive, output, progress, overwrite, integrator, compare_steady=compare_steady, checkpoint=every)
@@ -181,23 +181,23 @@ def _end(recording: Recording, given: Drive, compare_steady: bool) -> None:
 def _resume(drive: Drive, output: Path | str | None, progress: Report | None, checkpoint: float) -> Run:
     """Go on with a run from its checkpoint."""
     if output is None:
-        raise ModelError("a run goes on in its result file, and none is named. Name it as output.")
+        raise ModelError("resume continues a run in its result file, but none is given. Give it as output.")
     path = Path(output)
     if drive.simulation.integrator != GeneralizedAlpha.name or has_functions(drive):
         why = (
-            'has a load of kind "function", which no file holds'
+            'has a load of kind "function", which cannot be stored in a file'
             if has_functions(drive)
-            else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not kept'
+            else f'has simulation.integrator = "{drive.simulation.integrator}", whose state is not stored'
         )
         raise ModelError(
-            f"this drive {why}: its runs write no checkpoints, and cannot be resumed. Begin another run where this one "
-            f'ended, by simulation.start = {{ file = "{path}" }}, or run it again.'
+            f"this drive {why}, so its runs write no checkpoints and cannot be resumed. Start another run where "
+            f'this one ended with simulation.start = {{ file = "{path}" }}, or run it again.'
         )
     point = read_checkpoint(checkpoint_file(path))
     if drive not in (point.drive, point.recording["_drive"]):
         raise ModelError(
-            f"{checkpoint_file(path)} is of another drive than the one that is given. Give that with which the run "
-            "began, or run this one anew, without resume."
+            f"{checkpoint_file(path)} belongs to another drive than the given one. Give the drive file with "
+            "which the run started, or run this one from the beginning, without resume."
         )
     with Recording.resumed(point.recording, path, progress) as recording:
         compile_kernels(point.integration.task.system, point.integration.task.start)

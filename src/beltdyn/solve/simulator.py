@@ -1,4 +1,4 @@
-"""A drive that is simulated step by step, with inputs set and outputs read between: for control, coupling, teaching."""
+"""Step-by-step simulation with inputs and outputs, for control and co-simulation."""
 
 from collections.abc import Sequence
 from copy import deepcopy
@@ -92,7 +92,7 @@ class Simulator:
         integrator = choose_integrator(drive)
         if not isinstance(integrator, GeneralizedAlpha):
             raise ModelError(
-                f'a simulator steps by generalized_alpha, not by "{integrator.name}". Leave simulation.integrator out.'
+                f'a simulator supports only generalized_alpha, not "{integrator.name}". Omit simulation.integrator.'
             )
         begin = begin_on(mesh_of(settled(drive, integrator)[0], integrator, progress), integrator, progress)
         self.drive = begin.drive
@@ -109,7 +109,7 @@ class Simulator:
         return float(self._integration.state.clock.time)
 
     def set_speed(self, pulley: str, speed: float | str) -> None:
-        """Let the speed of a pulley change linearly over the next step, and stay so.
+        """Prescribe the speed of a pulley: linear over the next step, then constant.
 
         Parameters
         ----------
@@ -125,11 +125,11 @@ class Simulator:
         """
         number = self.drive.number_of(pulley)
         if not self._pulleys[number].prescribed:
-            raise ModelError(f"pulley = {pulley!r} turns freely: it has no speed that could be set. Set its torque.")
+            raise ModelError(f"pulley = {pulley!r} turns freely, so its speed cannot be set. Set its torque.")
         self._wanted[number] = number_in("speed", speed, "rad/s")
 
     def set_torque(self, pulley: str, torque: float | str) -> None:
-        """Let a torque act on a pulley from now on, beside its loads, in place of the one of the drive file.
+        """Apply a torque to a pulley from now on, in place of the one of the drive file and in addition to its loads.
 
         Parameters
         ----------
@@ -145,11 +145,11 @@ class Simulator:
         """
         number = self.drive.number_of(pulley)
         if self._pulleys[number].prescribed:
-            raise ModelError(f"pulley = {pulley!r} has a prescribed speed, whatever its torque. Set its speed.")
+            raise ModelError(f"pulley = {pulley!r} has a prescribed speed, so its torque cannot be set. Set its speed.")
         self._wanted[number] = number_in("torque", torque, "N*m")
 
     def set_center(self, pulley: str, center: Sequence[float | str]) -> None:
-        """Let the center of a pulley move on a straight line over the next step, and stay there.
+        """Move the center of a pulley along a straight line over the next step, then hold it.
 
         What moves it does work against the force of the belt on the pulley, which is in ``driver_work`` of the outputs.
         On the mesh that stays the mesh does not follow: its fine parts stay at the ends of the arcs of the beginning.
@@ -173,7 +173,7 @@ class Simulator:
                 "of other pulleys, or give it a fixed tensioner in the drive file."
             )
         if isinstance(center, str) or len(center) != _PLANE:
-            raise ModelError(f"center = {center!r} must be two lengths, [x, y]. Give both.")
+            raise ModelError(f"center = {center!r} must be two lengths, [x, y].")
         x, y = (number_in("center", one, "m") for one in center)
         self._centers[number] = x, y
 
@@ -194,7 +194,7 @@ class Simulator:
         return pulley_center(self._integration.system, number, self._integration.state.position)
 
     def step(self, until: float) -> None:
-        """Simulate up to an instant.
+        """Simulate to an instant.
 
         Parameters
         ----------
@@ -209,7 +209,7 @@ class Simulator:
             If the simulation cannot go on.
         """
         if not (isfinite(until) and until > self.time):
-            raise ModelError(f"until = {until:g} s is not after the present time, {self.time:g} s. Give a later one.")
+            raise ModelError(f"until = {until:g} s is not after the current time, {self.time:g} s. Give a later one.")
         if self._wanted:
             self._take_inputs(until)
         if self._centers or self._moves:
@@ -259,7 +259,7 @@ class Simulator:
         self._centers.clear()
 
     def outputs(self) -> dict[str, float]:
-        """Outputs at the present time by their names, in SI units.
+        """Outputs at the current time by name, in SI units.
 
         Returns
         -------
@@ -292,13 +292,13 @@ class Simulator:
         return dict(zip(output_names(self.drive), map(float, np.concatenate(rows)), strict=True))
 
     def save(self) -> SimulatorState:
-        """Keep where it is, to which `restore` goes back; inputs that wait for the next step are not kept."""
+        """Save the state for `restore`; inputs set for the next step are not saved."""
         system = self._integration.system
         changed = deepcopy({name: getattr(system, name) for name in _CHANGED})
         return SimulatorState(deepcopy(self._integration.state), changed, self._pulleys, self._anew, self._moves)
 
     def restore(self, saved: SimulatorState) -> None:
-        """Go back to where it was; what follows is the same to the last bit.
+        """Restore a saved state; the continuation is bitwise identical.
 
         Parameters
         ----------
@@ -317,7 +317,7 @@ class Simulator:
             {name: getattr(now.system, name) for name in _CHANGED}
         )
         if not fits or any(vector.shape[-1] != size for vector in _vectors(saved.integrator)):
-            raise ModelError("the state is of another drive. Give one of this drive.")
+            raise ModelError("the state belongs to another drive. Give a state of this drive.")
         self._integration.exchange(system, deepcopy(saved.integrator))
         self._pulleys, self._anew, self._moves = saved.pulleys, saved.anew, saved.moves
         self._wanted.clear()

@@ -1,4 +1,4 @@
-"""An analysis: the steady running of a drive, on a mesh that stays while the belt flows through it."""
+"""Steady running of a drive on a staying mesh."""
 
 import time
 from collections.abc import Mapping
@@ -39,7 +39,7 @@ def steady_state(
     start: Run | None = None,
     progress: Report | None = None,
 ) -> Run:
-    """Find the steady running of a drive, without a simulation over time.
+    """Compute the steady running of a drive without a simulation over time.
 
     Speeds, torques and schedules are taken at one instant and held; harmonics of speeds are left out, and loads that
     change with the angles of shafts are taken by their means. The mesh is one of its own, graded towards the ends of
@@ -202,7 +202,7 @@ def require_found(found: Beside | None) -> Beside:
         If it was not.
     """
     if found is None:
-        raise ConvergenceError("Newton's method does not follow so large a change.")
+        raise ConvergenceError("Newton's method does not converge for so large a change.")
     return found
 
 
@@ -225,7 +225,7 @@ class _Found(NamedTuple):
 
 
 def _from_rest(drive: Drive, instant: float, force_tolerance: float, elements: int | None, *, bands: bool) -> _Found:
-    """Find steady running from the belt at rest, on a finer mesh where that on a coarse one leads to no other."""
+    """Find steady running from rest, retrying from a finer mesh if the search fails."""
     rest, begun = bring_to_stand(drive, elements), time.perf_counter()
 
     def rule(standing: Standing) -> MeshRule:
@@ -300,21 +300,19 @@ def require_steady(drive: Drive) -> None:
         If not.
     """
     if drive.ends:
-        raise ModelError(
-            "an open belt has no steady running: its ends do not run around. Simulate it with `beltdyn run`."
-        )
+        raise ModelError("an open belt has no steady running. Simulate it with `beltdyn run`.")
     shaped = [pulley.name for pulley in drive.pulleys if pulley.surface and pulley.surface.kind != "circle"]
     if shaped:
         raise ModelError(
-            f"{', '.join(shaped)} is no smooth circle, so that nothing is steady around it. Simulate the drive with "
-            "`beltdyn run`, or remove `surface`."
+            f"{', '.join(shaped)} is not a smooth circle, so there is no steady running. Simulate the drive "
+            "with `beltdyn run`, or remove `surface`."
         )
     other = [(pulley.name, load.kind) for pulley in drive.pulleys for load in pulley.load if not load.has_mean]
     if other:
         raise ModelError(
-            f'{other[0][0]} has a load of kind "{other[0][1]}", of which no mean over the angle is known, '
-            "as steady running needs it. Give its mean as a table over the speed, the set speed of a controlled motor "
-            "as `speed`, or simulate the drive with `beltdyn run`."
+            f'{other[0][0]} has a load of kind "{other[0][1]}", whose mean over the shaft angle is unknown; '
+            "steady running needs it. Give the mean as a table over speed, or the set speed of a controlled "
+            "motor as `speed`, or simulate the drive with `beltdyn run`."
         )
 
 
@@ -343,14 +341,14 @@ def require_tolerance(force_tolerance: float) -> None:
         If not.
     """
     if not 0.0 < force_tolerance < 1.0:
-        raise ModelError(f"force_tolerance = {force_tolerance:g} must lie between 0 and 1, such as 0.01 for 1 %.")
+        raise ModelError(f"force_tolerance = {force_tolerance:g} must be between 0 and 1, such as 0.01 for 1 %.")
 
 
 def _require_sense(force_tolerance: float, elements: int | None) -> None:
     """Make sure that the options make sense."""
     require_tolerance(force_tolerance)
     if elements is not None and elements < 3:
-        raise ModelError(f"elements = {elements} must be 3 or more. Leave it out for a graded mesh.")
+        raise ModelError(f"elements = {elements} must be 3 or more. Omit it for a graded mesh.")
 
 
 def _running(system: System, state: State, duration: float) -> Chunk:

@@ -1,4 +1,4 @@
-"""A study: any analysis of a drive at many points, at which numbers of its file differ."""
+"""Parameter studies: any analysis for many variants of a drive."""
 
 import time
 from collections.abc import Mapping
@@ -40,7 +40,7 @@ def study(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Analyse a drive at many points, at which numbers of its file differ, on all cores or on a cluster.
+    """Analyse many variants of a drive, on all cores or on a cluster.
 
     A point that fails is marked with its reason, and the others go on.  Results are written as points finish; a study
     that was interrupted or killed goes on where it was when it is started again with the same file.  So does one to
@@ -102,8 +102,8 @@ def study(
     work = PointWork(drive, analysis, options, given.results, _folder(given, path))
     workers = workers_of(jobs, scheduler)
     if not isinstance(workers, ThisProcess):
-        refuse_functions(drive, "points are computed by other processes, which a function of Python does not reach",
-                         "Compute them in this one, by jobs = 1.")  # fmt: skip
+        refuse_functions(drive, "points are computed by other processes, which a Python function cannot be passed to",
+                         "Compute them in this process with jobs = 1.")  # fmt: skip
     with StudyTable(given, drive, plan, path, overwrite, retry) as table:
         waiting = np.flatnonzero(~table.done).tolist()
         teller = _Teller(table, progress, workers)
@@ -120,7 +120,7 @@ def _read(file: Path | str) -> ParameterStudy:
 
 def _drive_of(study: ParameterStudy, base: Path) -> Drive:
     if study.drive is None:
-        raise ModelError('the study names no drive. Write drive = "drive.toml", by its path from the study file.')
+        raise ModelError('the study names no drive. Write drive = "drive.toml", relative to the study file.')
     return load(base / study.drive)
 
 
@@ -130,8 +130,8 @@ def _options(analysis: Analysis, given: Mapping[str, Any], base: Path) -> dict[s
     known = {name: one for name, one in parameters.items() if name not in _OWN}
     for name in given:
         if name not in known:
-            told = suggest(name, list(known)) if known else "It has none"
-            raise ModelError(f'options: {name} is no option of "{analysis.name}". {told}.'.replace("?.", "?"))
+            told = suggest(name, list(known)) if known else "It has no options"
+            raise ModelError(f'options: {name} is not an option of "{analysis.name}". {told}.'.replace("?.", "?"))
     missing = [name for name, one in known.items() if one.default is one.empty and name not in given]
     if missing:
         raise ModelError(f'options: "{analysis.name}" needs {missing[0]}. Write it in [options].')
@@ -146,7 +146,7 @@ def _folder(study: ParameterStudy, output: Path | None) -> Path | None:
     if not study.keep_files:
         return None
     if output is None:
-        raise ModelError("keep_files = true needs a result file, beside which theirs are kept. Name an output.")
+        raise ModelError("keep_files = true needs a result file, beside which the files are kept. Give an output.")
     return make_folder(output.with_name(f"{output.stem}-points")).resolve()
 
 

@@ -1,4 +1,4 @@
-"""An analysis: a run-up, in which the speed of a pulley rises linearly."""
+"""Run-up: a simulation in which the speed of a pulley rises linearly."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -34,7 +34,7 @@ def sweep(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Run:
-    """Run a drive up through a range of speeds, for waterfall and order plots.
+    """Simulate a run-up through a range of speeds, for waterfall and order plots.
 
     The speed of one pulley rises linearly in place of what the drive says; its harmonics stay. Whatever else changes
     over time, as schedules of loads, keeps its final value, and a motor runs in delta; a function of Python is given
@@ -90,7 +90,7 @@ def sweep(
     steady, held = without_schedules(drive)
     raised = run_up(steady, pulley, start, end, length)
     if not longest > 0.0:
-        raise ModelError(f"settling = {longest:g} s must be above zero. Raise it, or leave it away.")
+        raise ModelError(f"settling = {longest:g} s must be above zero. Increase it, or omit it.")
     number = drive.number_of(pulley)
     return record_run(
         raised,
@@ -140,7 +140,7 @@ def without_schedules(drive: Drive, at: float = _LATE) -> tuple[Drive, list[str]
                 name = f"{one.name}.load[{number}]"
                 held.append(f"{name} without {key}" if value is None else f"{name}.{key} = {value.value:.4g}")
             if isinstance(load, FunctionLoad):
-                held.append(f"{one.name}.load[{number}] not, a function that is given the time of the run-up")
+                held.append(f"{one.name}.load[{number}] not held (a function of time)")
     pulleys = [
         constant(
             one,
@@ -181,12 +181,12 @@ def run_up(drive: Drive, pulley: str, start: float, end: float, duration: float)
     if not drive.pulleys[number].prescribed:
         driven = [one.name for one in drive.pulleys if one.prescribed]
         choice = f"Choose one of {', '.join(driven)}." if driven else "Give it a speed in the drive file."
-        raise ModelError(f"pulley = {pulley!r} turns freely: a sweep prescribes its speed. {choice}")
+        raise ModelError(f"pulley = {pulley!r} turns freely, but a sweep needs a prescribed speed. {choice}")
     if not duration > 0.0:
-        raise ModelError(f"duration = {duration:g} s must be above zero. Raise it.")
+        raise ModelError(f"duration = {duration:g} s must be above zero. Increase it.")
     if start * end < 0.0 or start == end:
         raise ModelError(
-            f"from {start:g} to {end:g} rad/s is no run-up: the speeds must differ and have one sign. Change one."
+            f"from {start:g} to {end:g} rad/s is not a run-up: the speeds must differ and have the same sign."
         )
     speed = {"kind": "table", "times": [0.0, duration], "values": [start, end]}
     pulleys = list(drive.pulleys)

@@ -1,4 +1,4 @@
-"""An analysis: where a tensioner stands, and which tension it gives, with belts of all lengths between its stops."""
+"""Tensioner sheet: position, tension and hub load of a tensioner for belts of all lengths."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -50,14 +50,14 @@ def _of_both(units: str, meaning: str) -> _Column:
 
 COLUMNS = {
     "belt_length": _of_both("m", "Belt length"),
-    "position": _Column(("m", "Place, from the center given"), ("rad", "Arm, from the center given")),
-    "from_free": _Column(("m", "Yielded, from where the spring is free"), ("rad", "Wound up, from the free arm")),
+    "position": _Column(("m", "Position, from the given center"), ("rad", "Arm angle, from the given center")),
+    "from_free": _Column(("m", "Deflection, from the free spring"), ("rad", "Deflection, from the free arm")),
     "spring_load": _Column(("N", "Spring force"), ("N m", "Spring torque")),
-    "leverage": _Column(("1", "Path per travel"), ("m", "Path per rad")),
+    "leverage": _Column(("1", "Take-up rate, path per travel"), ("m", "Take-up rate, path per rad")),
     "wrap_angle": _of_both("rad", "Wrap angle"),
     "tension": _of_both("N", "Tension"),
-    "tension_after_tensioning": _of_both("N", "After tensioning: tension as dry friction lets it fall"),
-    "tension_after_yielding": _of_both("N", "After yielding: tension as dry friction lets it rise"),
+    "tension_after_tensioning": _of_both("N", "After tensioning: lower tension limit of dry friction"),
+    "tension_after_yielding": _of_both("N", "After yielding: upper tension limit of dry friction"),
     "hub_load": _of_both("N", "Hub load"),
     "hub_direction": _of_both("rad", "Direction, of the hub load"),
     "slack": _of_both("m", "Slack, at the lower stop"),
@@ -73,7 +73,7 @@ def tensioner_sheet(
     wear: str = "1 %",
     progress: Report | None = None,
 ) -> Result:
-    """Find where a tensioner stands with belts of different lengths, and its tensions and hub loads: a tensioner sheet.
+    """Compute a tensioner sheet: position, tension and hub load of a tensioner for belts of different lengths.
 
     The belt is at rest, in equilibrium. The nominal belt is that of the drive file; the longest and the shortest belt
     differ from it by the tolerance, and the worn belt is the longest one, lengthened by wear. At a stop the sheet tells
@@ -102,7 +102,7 @@ def tensioner_sheet(
     ModelError
         If no tensioner moves or there are several and none is named, or tolerance or wear is no length.
     ConvergenceError
-        If the nominal belt comes to no rest.
+        If no static equilibrium of the nominal belt is found.
 
     Examples
     --------
@@ -244,8 +244,8 @@ class _Sheet:
         tensions = [row["tension"] for state, row in self._rows.items() if state in _BELTS and "tension" in row]
         spread = (max(tensions) - min(tensions)) / self._rows[_NOMINAL]["tension"]
         more: Axes = {
-            "failure": (Variable(_STATE, "1", "Why there is no such state", "str"), self._reasons(states)),
-            "tension_spread": (Variable((), "1", "Spread of tension over all belts"), spread),
+            "failure": (Variable(_STATE, "1", "Why this state does not exist", "str"), self._reasons(states)),
+            "tension_spread": (Variable((), "1", "Tension range over all belts"), spread),
         }
         names = {"state": (Variable(_STATE, "1", "State", "str"), states)}
         result = build_result("tensioner", self._drive, {**variables, **more}, names, list(self._warnings()))
@@ -264,14 +264,14 @@ class _Sheet:
             row = self._rows[state]
             if not lower <= row.get("position", lower) <= upper:
                 yield (
-                    f"the {state} brings the tensioner of {self._tensioner.pulley} against its stop, to "
-                    f"{written(row['position'])}, and the spring no longer sets the tension, {row['tension']:.4g} N. "
-                    "Change the length of the belt, the tolerance, or the stops."
+                    f"the {state} moves the tensioner of {self._tensioner.pulley} to its stop at "
+                    f"{written(row['position'])}, where the spring no longer sets the tension "
+                    f"({row['tension']:.4g} N). Change the belt length, the tolerance, or the stops."
                 )
             if row.get("slack", 0.0) < 0.0:
                 yield (
-                    f"the {state} is {-1e3 * row['slack']:.3g} mm too short to be laid on with the tensioner of "
-                    f"{self._tensioner.pulley} at its lower stop. Lower that stop, or lengthen the belt."
+                    f"the {state} is {-1e3 * row['slack']:.3g} mm too short to be fitted with the tensioner of "
+                    f"{self._tensioner.pulley} at its lower stop. Lower that stop, or use a longer belt."
                 )
 
 
@@ -292,15 +292,14 @@ def _number_of(drive: Drive, pulley: str | None) -> int:
     names = [one.pulley for one in drive.moving_tensioners]
     if not names:
         raise ModelError(
-            "no tensioner moves, so that there is no sheet of one. Give a [[tensioner]] with a spring, or look at "
-            "tensions with `beltdyn check`."
+            "the drive has no moving tensioner. Add a [[tensioner]] with a spring, or use `beltdyn check` for tensions."
         )
     if pulley is None and names[1:]:
         raise ModelError(
-            f"a tensioner sheet is of one tensioner, and those of {', '.join(names)} move. Name one as pulley."
+            f"a tensioner sheet describes one tensioner; those of {', '.join(names)} move. Choose one with pulley."
         )
     if pulley is not None and pulley not in names:
-        raise ModelError(f"pulley = {pulley!r} has no tensioner that moves. Choose from: {', '.join(names)}.")
+        raise ModelError(f"pulley = {pulley!r} has no moving tensioner. Choose from: {', '.join(names)}.")
     return names.index(pulley) if pulley is not None else 0
 
 
@@ -317,8 +316,8 @@ def _length(name: str, text: str, nominal: float) -> float:
         found = nominal * float(whole[:-1]) / 100.0 if whole.endswith("%") else to_si(whole, "m")
     except ValueError as error:
         raise ModelError(
-            f'{name} = {text!r} {reason(error)}. Give a length or a part, as "6 mm" or "0.5 %".'
+            f'{name} = {text!r} {reason(error)}. Give a length or a share, such as "6 mm" or "0.5 %".'
         ) from error
     if not 0.0 <= found < nominal:
-        raise ModelError(f"{name} = {text!r} must be zero or more, and less than the belt's length of {nominal:.4g} m.")
+        raise ModelError(f"{name} = {text!r} must be non-negative and less than the belt length of {nominal:.4g} m.")
     return found

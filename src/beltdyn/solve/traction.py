@@ -1,4 +1,4 @@
-"""An analysis: slip of one pulley over the torque that it takes, past gross slip."""
+"""Traction curve: slip of one pulley over its torque, beyond gross slip."""
 
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -49,8 +49,8 @@ _VARIABLES = {
     "elastic": Variable(("slip",), "1", "Elastic creep"),
     "added": Variable(("slip",), "1", "Added by bending and the friction law"),
     "slid": Variable(("slip",), "1", "Sliding of whole arcs"),
-    "sliding_share": Variable(("slip",), "1", "Part of the arc that slides"),
-    "capstan_torque": Variable(("slip",), "N m", "Limit by Euler's formula"),
+    "sliding_share": Variable(("slip",), "1", "Sliding share of the arc"),
+    "capstan_torque": Variable(("slip",), "N m", "Capstan limit (Euler)"),
     "limit_torque": Variable((), "N m", "Largest torque"),
 }
 
@@ -67,7 +67,7 @@ def traction(
     progress: Report | None = None,
     overwrite: bool = False,
 ) -> Result:
-    """Find the traction curve of a pulley: its slip over the torque that it takes, past gross slip.
+    """Compute the traction curve of a pulley: its slip over its torque, beyond gross slip.
 
     The slip of the rim against the driver's is prescribed, and the torque follows. Beyond gross slip it stays as it is.
     Where the driver would slide on its whole arc at once, the speed of the belt would be open: its friction is raised
@@ -121,7 +121,8 @@ def traction(
     number = _loaded(held, driver) if pulley is None else held.number_of(pulley)
     if number == driver:
         raise ModelError(
-            f"pulley = {held.pulleys[number].name!r} drives, and slip is against it. Choose a driven pulley."
+            f"pulley = {held.pulleys[number].name!r} is the driver, which is the reference of slip. Choose a driven "
+            "pulley."
         )
     held = held.replace(pulley=[*held.pulleys[driver:], *held.pulleys[:driver]])  # slip is against the first
     number = (number - driver) % len(held.pulleys)
@@ -173,7 +174,7 @@ def _loaded(drive: Drive, driver: int) -> int:
     found = taking if taking or others[1:] else others
     if len(found) != 1:
         names = ", ".join(drive.pulleys[number].name for number in found or others)
-        raise ModelError(f"a traction curve is of one pulley, and there are {names}. Name one as pulley.")
+        raise ModelError(f"a traction curve describes one pulley; there are {names}. Choose one with pulley.")
     return found[0]
 
 
@@ -198,7 +199,7 @@ def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, poi
         If there is no steady running with any slip.
     """
     if points < _FEWEST:
-        raise ModelError(f"points = {points} must be {_FEWEST} or more: give more, or slips of your own.")
+        raise ModelError(f"points = {points} must be {_FEWEST} or more. Give more, or a list of slips.")
     creeping, sliding, run = 0.0, _LAST, None
     while sliding - creeping > _NEAR * sliding:
         part = min(_FURTHER * creeping or _FIRST, 0.5 * (creeping + sliding))
@@ -206,7 +207,7 @@ def _past_gross_slip(slipping: Callable[[float, float], Drive], number: int, poi
             found = steady_state(slipping(part, _FIRMER), force_tolerance=_ROUGHLY, start=run)
         except Exception as error:
             if part < _LEAST:
-                raise ConvergenceError(f"no steady running with any slip: {cause_of(error)}") from error
+                raise ConvergenceError(f"no steady running found at any slip: {cause_of(error)}") from error
             sliding = part
             continue
         if max(_sliding(found, number)) > _ALL:

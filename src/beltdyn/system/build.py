@@ -127,16 +127,17 @@ def belt_system(
         turns, or the lengths do not make the belt.
     """
     if pulleys and contact is None:
-        raise ModelError("contact is missing: a belt on pulleys needs its constants. Give a Contact.")
+        raise ModelError("contact is missing: a belt on pulleys needs it. Give a Contact.")
     if not belt.element_kind.has_ends and closure != "shared_node":
         raise ModelError(
-            f'closure = "{closure}" does not fit belt.discretization = "{belt.discretization}": nothing would move the '
-            'last point of an open belt. Choose closure = "shared_node", or discretization = "ancf".'
+            f'closure = "{closure}" does not apply to belt.discretization = "{belt.discretization}", which '
+            'would leave the last point of an open belt fixed. Choose closure = "shared_node", or '
+            'discretization = "ancf".'
         )
     if moments and belt.element_kind.turned < 0:
         raise ModelError(
-            f'moments do not fit belt.discretization = "{belt.discretization}", whose nodes have nothing that turns. '
-            'Leave them out, or choose discretization = "ancf".'
+            f'moments do not apply to belt.discretization = "{belt.discretization}", whose nodes have no '
+            'rotation. Omit them, or choose discretization = "ancf".'
         )
     mesh = discretize(belt, lengths)
     _attach(mesh.mass, masses)

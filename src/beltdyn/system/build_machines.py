@@ -190,7 +190,7 @@ def _tensioners(
     """Rows of `TENSIONER` of those that move."""
     moving = _moving(pulleys, tensioners)
     if moving and path is None:
-        raise ModelError("the path is missing: a tensioner needs it, to know which way the belt gets longer.")
+        raise ModelError("the path is missing: a tensioner needs it for its direction of take-up.")
     carriers = carriers_of(tensioners, [pulley.name for pulley in pulleys], path) if path else []
     table = records(TENSIONER, pulley=[carrier.pulley for carrier in carriers])
     for number, (carrier, mass) in enumerate(zip(carriers, carried_masses(pulleys, tensioners), strict=True)):

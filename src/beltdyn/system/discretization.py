@@ -57,9 +57,9 @@ def discretize(belt: Belt, lengths: FloatArray | None = None) -> Discretization:
     )
     if length.size != belt.given_elements or length.min() <= 0.0 or not np.isclose(length.sum(), whole, rtol=1e-9):
         raise ModelError(
-            f"{length.size} elements, the shortest {length.min():g} m long and {length.sum():.10g} m in all, do not "
-            f"make a belt with belt.elements = {belt.given_elements} and belt.length = {whole:.10g} m. "
-            "Give each element a positive length, so that they add up to that of the belt."
+            f"{length.size} elements, the shortest {length.min():g} m long and {length.sum():.10g} m in "
+            f"total, do not match belt.elements = {belt.given_elements} and belt.length = {whole:.10g} "
+            "m. Give each element a positive length, with the belt length as their sum."
         )
     return Discretization(
         element=kind.element(section, _elastic_points(belt)),

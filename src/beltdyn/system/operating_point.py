@@ -57,8 +57,8 @@ def operating_point(system: System, radii: FloatArray, prescribed: BoolArray) ->
             speed = sense * brentq(pull, _SPEEDS[k], _SPEEDS[k + 1])
             return speed, int(np.argmax(sense * _pulls(system, radii, speed)))
     raise ModelError(
-        "the drive has no operating point: at no speed do its motors and loads balance. Give a pulley a speed, a motor "
-        "that is stronger than the loads at rest, or a load that grows with the speed."
+        "the drive has no operating point: its motors and loads balance at no speed. Prescribe a speed, use a "
+        "motor stronger than the loads at rest, or a load that grows with speed."
     )
 
 

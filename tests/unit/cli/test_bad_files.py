@@ -46,11 +46,11 @@ def test_new_never_overwrites(refuse: Refuse, drive_file: Path) -> None:
 
 
 def test_new_where_nothing_can_be_written(refuse: Refuse, drive_file: Path) -> None:
-    assert "drive.toml cannot be made (File exists)" in refuse(["new", str(drive_file / "other.toml")])
+    assert "drive.toml cannot be created (File exists)" in refuse(["new", str(drive_file / "other.toml")])
 
 
 def test_demo_where_nothing_can_be_written(refuse: Refuse, drive_file: Path) -> None:
-    assert "cannot be made" in refuse(["demo", str(drive_file)])
+    assert "cannot be created" in refuse(["demo", str(drive_file)])
 
 
 def test_plot_of_no_result(refuse: Refuse, drive_file: Path) -> None:

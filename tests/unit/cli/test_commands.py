@@ -91,7 +91,7 @@ def test_check_of_a_belt_of_given_tension(run_main: RunMain, drive_file: Path, d
     drive_file.write_text(drive_text.replace("length = 1.2727 ", 'installed_tension = "250 N" '), encoding="utf-8")
     code, output, _ = run_main(["check", str(drive_file)])
     assert code == 0
-    assert "250 N, as asked for: " in output
+    assert "250 N as specified (" in output
     assert "mm shorter for 250 N than on hard pulleys" in output
 
 
@@ -115,7 +115,7 @@ def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path,
     installation = bring_to_rest(load(drive_file)).installation
     for part in (
         *("cw", "-2.7083", "driver to idler", "-0.02 m to 0.02 m"),
-        f"{installation.tension:.4g} N, which tensioners set",
+        f"{installation.tension:.4g} N, set by tensioners",
         f" {installation.span_frequencies[0]:.2f}\n",
         f" {hypot(*installation.hub_loads[1]):.2f} ",
         f"{installation.tensioner_positions[0]:.4g} m",
@@ -153,8 +153,8 @@ def test_check_tells_where_a_take_up_puts_its_pulley(run_main: RunMain, drive_fi
     assert code == 0
     x, y = bring_to_rest(load(drive_file)).drive.centers[1]
     assert x > 0.1920
-    assert f"center of driven [{x:.5g}, {y:.5g}] m, after its take-up" in " ".join(output.split())
-    assert "tension at rest 50 N, as asked for" in " ".join(output.split())
+    assert f"center of driven [{x:.5g}, {y:.5g}] m after take-up" in " ".join(output.split())
+    assert "tension at rest 50 N as specified" in " ".join(output.split())
 
 
 def test_the_drive_that_new_writes_has_no_warnings(run_main: RunMain, tmp_path: Path) -> None:
@@ -243,4 +243,4 @@ def test_a_run_goes_on_by_its_result_file(drive_file: Path, run_main: RunMain) -
     assert open_run(path).outputs == 11
     code, _, error = run_main(["run", "--resume", str(path)])
     assert code == 2
-    assert "there is no checkpoint" in error
+    assert ".checkpoint does not exist" in error

@@ -37,9 +37,9 @@ def test_what_is_written_is_named(run_main: RunMain, result_file: Path) -> None:
         (["mine.vtkhdf", "--vtk"], "mine.vtkhdf"),
         (
             ["drive.nc", "--mat", "--vtk", "-o", "theirs"],
-            "drive-belt.vtkhdf is there already, and is not",
+            "drive-belt.vtkhdf already exists and was not",
         ),
-        (["drive.nc", "--vtk", "-o", "drive.nc"], "the folder drive.nc cannot be made"),
+        (["drive.nc", "--vtk", "-o", "drive.nc"], "the folder drive.nc cannot be created"),
     ],
 )
 def test_message(

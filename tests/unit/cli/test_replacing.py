@@ -41,10 +41,10 @@ def test_runs_sweeps_and_layouts(refuse: Refuse, drive_file: Path, mine: Path) -
     drive = str(drive_file)
     speeds = ["--pulley", "driver", "--from", "10", "--to", "20"]
     for words in (["run", drive, "-o", str(mine)], ["sweep", drive, *speeds, "-o", str(mine)]):
-        assert "mine.csv is there already, and is not a file that beltdyn wrote" in refuse(words)
-    assert "pulleys.csv is there already" in refuse(["run", drive, "--csv"])
+        assert "mine.csv already exists and was not written by beltdyn" in refuse(words)
+    assert "pulleys.csv already exists" in refuse(["run", drive, "--csv"])
     slip = str(mine.with_name("figures") / "slip.png")
-    assert "slip.png is there already" in refuse(["check", drive, "--figure", slip])
+    assert "slip.png already exists" in refuse(["check", drive, "--figure", slip])
     assert unharmed(mine.parent)
     assert sorted(path.name for path in mine.parent.glob(".*")) == []
 
@@ -53,7 +53,7 @@ def test_several_runs(refuse: Refuse, drive_file: Path, mine: Path) -> None:
     other = drive_file.with_name("other.toml")
     other.write_text(demo_text(), encoding="utf-8")
     drive_file.with_suffix(".nc").write_text(MINE, encoding="utf-8")
-    assert f"{drive_file.stem}.nc is there already" in refuse(["run", str(drive_file), str(other)])
+    assert f"{drive_file.stem}.nc already exists" in refuse(["run", str(drive_file), str(other)])
     assert unharmed(mine.parent)
 
 

@@ -41,8 +41,8 @@ def test_a_report_stands_beside_its_result(run_main: RunMain, result_file: Path)
         (["report", "missing.nc"], "missing.nc"),
         (["report", "drive.toml"], "drive.toml"),
         (["report", "drive.nc", "-o", "."], "is a folder, not a file"),
-        (["report", "drive.nc", "-o", "drive.nc"], "is there already, and is not a file that beltdyn wrote for this"),
-        (["report", "drive.nc", "-o", "missing/page.html"], "Choose a file in a folder that exists"),
+        (["report", "drive.nc", "-o", "drive.nc"], "already exists and was not written by beltdyn for this"),
+        (["report", "drive.nc", "-o", "missing/page.html"], "Choose a file in an existing folder"),
         (["report", "drive.nc", "missing.nc"], "missing.nc"),
     ],
 )

@@ -34,7 +34,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "time steps 1200, and 14 tried in vain; 101 outputs",
     ):
         assert part in output
-    assert "computing time 0.5 s, 0.5 s for each simulated second, and 2.5 s to prepare" in output
+    assert "computing time 0.5 s (0.5 s per simulated second), plus 2.5 s of preparation" in output
 
 
 def test_the_name_of_a_drive_stands_above(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
@@ -50,7 +50,7 @@ def test_tensioners_stand_in_degrees_or_millimetres(
     monkeypatch.setattr("beltdyn.results.run_sheet.summarize", lambda _: summary)
     show_result(run)
     output = " ".join(capsys.readouterr().out.split())
-    assert "tensioner of idler at 11.46°, from 5.73° to 17.19° tensioner of driven at 2 mm errors of mesh" in output
+    assert "tensioner of idler 11.46° (range 5.73° to 17.19°) tensioner of driven 2 mm mesh errors" in output
 
 
 def test_summary_of_a_static_equilibrium(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
@@ -86,7 +86,7 @@ def test_a_slip_that_rounds_to_zero_has_no_sign(
 
 def test_no_load_no_efficiency(make_run: Callable[..., Run], capsys: pytest.CaptureFixture[str]) -> None:
     show_result(make_run(shaft_torque=np.tile([1.0, 0.0], (101, 1))))
-    assert "none, nothing is taken out" in capsys.readouterr().out
+    assert "none (no power output)" in capsys.readouterr().out
 
 
 def test_several_shafts_that_put_power_in_are_named(

@@ -41,13 +41,16 @@ def test_a_sweep_takes_quantities_and_names_its_file(
     ("changes", "message"),
     [
         ({"--pulley": "idler"}, "pulley = 'idler' is not in this drive. Its pulleys are: driver, driven."),
-        ({"--pulley": "driven"}, "pulley = 'driven' turns freely: a sweep prescribes its speed. Choose one of driver."),
+        (
+            {"--pulley": "driven"},
+            "pulley = 'driven' turns freely, but a sweep needs a prescribed speed. Choose one of driver.",
+        ),
         ({"--from": "700 mm"}, "from = '700 mm' must be in units of rad/s, not \"mm\"."),
         ({"--to": "fast"}, "to = 'fast' must be a number in rad/s."),
         ({"--from": "nan"}, "from = nan must be a finite number."),
         ({"--duration": "0"}, "duration = 0 s must be above zero"),
-        ({"--to": "-600"}, "no run-up: the speeds must differ and have one sign"),
-        ({"--to": "700 rpm"}, "no run-up: the speeds must differ and have one sign"),
+        ({"--to": "-600"}, "not a run-up: the speeds must differ and have the same sign"),
+        ({"--to": "700 rpm"}, "not a run-up: the speeds must differ and have the same sign"),
     ],
 )
 def test_bad_sweeps(refuse: Refuse, drive_file: Path, changes: dict[str, str], message: str) -> None:

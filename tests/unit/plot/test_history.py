@@ -31,7 +31,7 @@ def test_energy(run: Run, ax: Axes) -> None:
     plot.energy(run, ax)
     assert ax.get_ylabel() == "Energy [J]"
     assert ax.get_title(loc="left") + ax.get_title() == "Closure error up to 1.0e-04 of the energy put in"
-    assert {str(line.get_label()) for line in ax.lines} >= {"Kinetic energy", "Work of the drivers", "Loss in friction"}
+    assert {str(line.get_label()) for line in ax.lines} >= {"Kinetic energy", "Work of the drivers", "Friction loss"}
 
 
 def test_single_output_is_a_point(make_run: Callable[..., Run], ax: Axes) -> None:

@@ -19,7 +19,7 @@ def test_a_figure_of_ours_is_replaced_and_another_one_is_not(tmp_path: Path, suf
     foreign = tmp_path / f"photo{suffix}"
     Figure().savefig(foreign)
     before = foreign.read_bytes()
-    with pytest.raises(ModelError, match="is there already, and is not a file that beltdyn wrote"):
+    with pytest.raises(ModelError, match="already exists and was not written by beltdyn"):
         save(Figure(), foreign)
     assert foreign.read_bytes() == before
     assert is_marked(save(Figure(), foreign, overwrite=True))

@@ -38,7 +38,7 @@ def test_only_results_are_replaced(
     path = tmp_path / "mine"
     make(path)
     before = path.read_bytes()
-    with pytest.raises(ModelError, match=r"mine is there already, and is not a file that beltdyn wrote.*--force"):
+    with pytest.raises(ModelError, match=r"mine already exists and was not written by beltdyn.*--force"):
         FileRecorder(path, layout, attributes)
     assert path.read_bytes() == before
     for overwrite in (True, False):  # a result now
@@ -75,7 +75,7 @@ def test_links_are_followed(tmp_path: Path, layout: Layout, attributes: Any, mak
         assert link.is_symlink()
         assert open_run(target).status == "completed"
     make_text(target)
-    with pytest.raises(ModelError, match="not a file that beltdyn wrote"):
+    with pytest.raises(ModelError, match="not written by beltdyn"):
         FileRecorder(link, layout, attributes)
     assert link.is_symlink()
     make_text(target)

@@ -73,7 +73,7 @@ def test_damage_is_told_by_its_place(path: Path, place: int) -> None:
     data[place] ^= 128
     path.write_bytes(data)
     first = place // PAGE * PAGE
-    with pytest.raises(DamageError, match=f"{first:,} and {min(first + PAGE, len(CONTENT)):,} are not as"):
+    with pytest.raises(DamageError, match=f"{first:,} to {min(first + PAGE, len(CONTENT)):,} differ from"):
         verify(path)
 
 

@@ -106,7 +106,7 @@ def test_more_than_is_known_is_kept(change: Callable[..., Path]) -> None:
 
 @pytest.mark.parametrize("name", ["span_tension", "node_coordinate", "kinetic_energy"])
 def test_a_file_without_a_part_of_the_core_is_refused(change: Callable[..., Path], name: str) -> None:
-    with pytest.raises(ModelError, match=rf"is not a whole result: it holds no `{name}`\. Run the drive again"):
+    with pytest.raises(ModelError, match=rf"is incomplete: it has no `{name}`\. Run the drive again"):
         open_run(change(lambda file: take(file, name)))
 
 
@@ -133,5 +133,5 @@ def test_instants_that_do_not_grow_are_damage(change: Callable[..., Path], name:
     def repeat(file: h5py.File) -> None:
         file[name][3] = file[name][2]
 
-    with pytest.raises(ModelError, match=f"the instants of `{name}` do not grow"):
+    with pytest.raises(ModelError, match=f"the instants of `{name}` do not increase"):
         open_run(change(repeat))

@@ -28,13 +28,13 @@ def test_files_are_named_after_the_result(result_file: Path) -> None:
 
 
 def test_a_result_in_memory_needs_a_name(run: Run, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="in no file"):
+    with pytest.raises(ModelError, match="has no file name"):
         export(run, "mat")
     assert export(run, "mat", tmp_path / "mine.nc") == [tmp_path / "mine.mat"]
 
 
 def test_formats_that_are_none_are_refused(run: Run, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match=r"'xlsx' is not a format for results\. Take one or more of vtk, csv, mat, pa"):
+    with pytest.raises(ModelError, match=r"'xlsx' is not a result format\. Choose from vtk, csv, mat, pa"):
         export(run, ["csv", "xlsx"], tmp_path / "drive.nc")
     with pytest.raises(ModelError, match="no format is given"):
         export(run, [], tmp_path / "drive.nc")
@@ -55,7 +55,9 @@ def test_nothing_is_written_where_one_format_cannot_be(
 
 def test_a_drive_at_rest_has_tables_and_no_picture_over_time(drive: Drive, tmp_path: Path) -> None:
     rest: Result = equilibrium(drive)
-    with pytest.raises(ModelError, match="vtk needs results over time, as of `beltdyn run`, and these are of static"):
+    with pytest.raises(
+        ModelError, match="vtk needs results over time, such as those of `beltdyn run`; these are of static"
+    ):
         export(rest, ["mat", "vtk"], tmp_path / "rest.nc")
     assert list(tmp_path.iterdir()) == []
     assert len(export(rest, ["mat", "parquet"], tmp_path / "rest.nc")) > 2

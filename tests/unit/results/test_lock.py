@@ -109,7 +109,7 @@ def test_a_file_that_is_read_amid_a_write_says_so(
     recorder.append(make_chunk(np.arange(3.0)))
     whole = recorder.path.read_bytes()
     recorder.path.write_bytes(whole[:100])
-    with pytest.raises(ModelError, match="A run is writing it, or was killed meanwhile: try again"):
+    with pytest.raises(ModelError, match="A run is writing it, or was killed while doing so: try again"):
         open_run(recorder.path)
     recorder.path.write_bytes(whole)
     recorder.close("completed", {})
@@ -128,8 +128,8 @@ def test_rows_never_go_into_another_file(
     other.close("completed", {})
     other.path.replace(recorder.path)
     before = recorder.path.read_bytes()
-    with pytest.raises(LostOutputError, match=r"another file has taken its place.*what was computed is lost"):
+    with pytest.raises(LostOutputError, match=r"was removed or replaced.*the results are lost"):
         recorder.append(make_chunk(np.arange(3.0)))
-    with pytest.raises(LostOutputError, match=r"another file has taken its place.*what was computed is lost"):
+    with pytest.raises(LostOutputError, match=r"was removed or replaced.*the results are lost"):
         recorder.close("completed", {})
     assert recorder.path.read_bytes() == before

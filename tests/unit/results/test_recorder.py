@@ -146,7 +146,7 @@ def test_a_file_that_came_meanwhile_stays(
 ) -> None:
     recorder = FileRecorder(tmp_path / "result.nc", layout, attributes)
     recorder.path.write_text("mine", encoding="utf-8")
-    with pytest.raises(OutputError, match="is there already, and is not a file that beltdyn wrote"):
+    with pytest.raises(OutputError, match="already exists and was not written by beltdyn"):
         recorder.append(make_chunk(TIME))
     recorder.close("failed", {})
     assert recorder.path.read_text(encoding="utf-8") == "mine"

@@ -54,7 +54,7 @@ def test_a_file_is_replaced_only_if_it_is_a_result(grip: Result, tmp_path: Path)
 
 
 def test_it_is_no_run(grip: Result, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match=r"is the result of another analysis, grip"):
+    with pytest.raises(ModelError, match=r"is the result of another analysis \(grip\)"):
         open_run(grip.save(tmp_path / "grip.nc"))
 
 

@@ -56,7 +56,7 @@ def test_a_run_of_a_file_reads_it_when_it_is_asked_for(
         assert dataset.sizes["time"] == 11
     replaced = record(11)
     record(12)
-    with pytest.raises(ModelError, match="changed, replaced or removed since"):
+    with pytest.raises(ModelError, match="changed, replaced or removed after"):
         _ = replaced.dataset
 
 
@@ -76,7 +76,7 @@ def test_file_that_is_no_netcdf_is_a_model_error(tmp_path: Path, content: bytes)
 def test_other_netcdf_is_a_model_error(tmp_path: Path) -> None:
     path = tmp_path / "other.nc"
     xr.Dataset({"a": ("b", [1.0])}).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(ModelError, match="not a result of beltdyn"):
+    with pytest.raises(ModelError, match="not a beltdyn result"):
         open_run(path)
 
 

@@ -52,7 +52,7 @@ def test_seldom_fields_save_most_of_the_room(lasting: Lasting) -> None:
 @pytest.mark.parametrize(("duration", "outputs"), [(1.0, 1001), (10.0, 10001)])
 def test_in_words(lasting: Lasting, duration: float, outputs: int) -> None:
     said = describe_size(lasting(duration, field_interval=0.01))
-    assert f"MB: {outputs} outputs, every 0.001 s; along the belt {1 + 100 * int(duration)}, every 0.01 s" in said
+    assert f"MB: {outputs} outputs every 0.001 s, {1 + 100 * int(duration)} along the belt every 0.01 s" in said
 
 
 @pytest.mark.parametrize(("free", "fits"), [(1.001, True), (0.999, False)])

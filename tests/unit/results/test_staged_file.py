@@ -131,9 +131,9 @@ def test_damage_below_a_change_is_not_sealed(tmp_path: Path) -> None:
     data = bytearray(path.read_bytes())
     data[100] ^= 1
     path.write_bytes(data)
-    with StagedFile(path) as staged, pytest.raises(OSError, match=r"bytes 0 to 4,096 are not as they were written"):
+    with StagedFile(path) as staged, pytest.raises(OSError, match=r"bytes 0 to 4,096 differ from what was written"):
         staged.write(memoryview(b"new"))
-    with pytest.raises(DamageError, match=r"the page of its bytes 0 and 4,096"):
+    with pytest.raises(DamageError, match=r"the page of bytes 0 to 4,096"):
         verify(path)
 
 

@@ -82,5 +82,5 @@ def test_nothing_is_said_where_nothing_was_asked_for(
 def test_a_drive_without_steady_running_is_refused_at_once(drive: Drive) -> None:
     driver, driven = drive.pulleys
     shaped = drive.replace(pulley=[driver, driven.replace(surface={"kind": "eccentric", "eccentricity": 1e-4})])
-    with pytest.raises(ModelError, match="driven is no smooth circle"):
+    with pytest.raises(ModelError, match="driven is not a smooth circle"):
         bd.simulate(shaped, compare_steady=True)

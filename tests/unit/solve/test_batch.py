@@ -92,7 +92,7 @@ def test_side_by_side_as_one_by_one(change: Change, failing: Drive, tmp_path: Pa
             assert told_of is not None
             assert told_of.spans == summarize(run).spans
     failed, unwritable = endings[files["fails"]], endings[files["folder"]]
-    assert "cannot go on at t = 0.002" in failed.error
+    assert "fails at t = 0.002" in failed.error
     assert failed.summary is not None
     assert failed.summary.end == pytest.approx(2e-3)
     assert "folder.nc cannot be written" in unwritable.error

@@ -45,5 +45,5 @@ def test_other_integrators_know_no_flow(drive: Drive) -> None:
     staying = drive.with_({"simulation.frame": "staying", "simulation.start": "equilibrium"})
     method = choose_integrator(drive.with_({"simulation.integrator": "bdf"}))
     assert not isinstance(method, GeneralizedAlpha)
-    with pytest.raises(ModelError, match=r'does not fit simulation\.frame = "staying"'):
+    with pytest.raises(ModelError, match=r'does not support simulation\.frame = "staying"'):
         mesh_of(staying, method)

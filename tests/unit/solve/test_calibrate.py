@@ -126,10 +126,10 @@ def test_what_measurements_do_not_tell(drive: Drive, slips: FloatArray, tmp_path
 @pytest.mark.parametrize(
     ("columns", "said"),
     [
-        ([[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]], "do not tell b: no measured result changes with it"),
-        ([[1.0, 2.0, 3.0], [2.0, 4.0, 6.0]], "do not tell a, b apart: they change the same results"),
+        ([[1.0, 2.0, 3.0], [0.0, 0.0, 0.0]], "cannot identify b: no measured result depends on it"),
+        ([[1.0, 2.0, 3.0], [2.0, 4.0, 6.0]], "cannot identify a, b separately: they affect the same results"),
         ([[100.0, 200.0, 300.0], [100.0, 200.0, 301.0]], "errors of a and b are correlated by -1.000"),
-        ([[100.0, 0.0, 0.0], [0.0, 0.1, 0.0]], "b: the interval is wider than the bounds"),
+        ([[100.0, 0.0, 0.0], [0.0, 0.1, 0.0]], "b: the confidence interval is wider than the bounds"),
     ],
 )
 def test_numbers_that_are_not_told_are_named(columns: list[list[float]], said: str) -> None:
@@ -158,17 +158,20 @@ def test_intervals_hold_the_true_numbers_as_often_as_they_say(drive: Drive, slip
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("driven torque [N m]\n-3\n", "holds no result"),
+        ("driven torque [N m]\n-3\n", "has no column of results"),
         ("pulley_slip[driven], wind\n1, 2\n", 'the heading "wind" is neither a result'),
         ("pulley_slip[driven]\nmuch\n", 'line 2: "much"'),
         ("hub_load[driven] [m]\n3\n", "must be in units of N"),
         ("idler torque [N m], pulley_slip[driven]\n3, 1\n", "pulley = 'idler' is not in this drive"),
         ("hub_load[driven], ± pulley_slip[driven]\n3, 1\n", 'needs a column "pulley_slip'),
-        ("hub_load[driven], pulley_slip[driven], ± pulley_slip[driven]\n3, 1, 1\n", "gives no deviation of hub_load"),
+        (
+            "hub_load[driven], pulley_slip[driven], ± pulley_slip[driven]\n3, 1, 1\n",
+            "has no standard deviation of hub_load",
+        ),
         ("belt.youngs_modulus [MPa], pulley_slip[driven]\n1000, 0.1\n", "which is to be fitted"),
         ("pulley_slip[driven]\n\n", "has no rows"),
         ("pulley_slip[driven], load\n,1\n", "pulley_slip[driven] was not measured in any row"),
-        ("load, pulley_slip[driven]\n1\n", "line 2: 1 cells, and there are 2 headings"),
+        ("load, pulley_slip[driven]\n1\n", "line 2: 1 cells but 2 headings"),
     ],
 )
 def test_wrong_tables_are_told(drive: Drive, tmp_path: Path, text: str, said: str) -> None:

@@ -111,7 +111,7 @@ def test_a_speed_that_fails_is_marked_and_others_stay(loaded: Drive) -> None:
         ({"count": 0}, "count = 0 modes are none"),
         ({"dry_tensioners": "dry"}, "dry_tensioners = 'dry' is neither"),
         ({"orders": "first"}, "orders = 'first' must be"),
-        ({"speed": "-1..100 rpm"}, "must not be below zero"),
+        ({"speed": "-1..100 rpm"}, "must not be negative"),
         ({"speed": "fast"}, "speed = 'fast' must be a range"),
         ({"pulley": "dirver"}, "driver"),
     ],

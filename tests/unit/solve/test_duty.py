@@ -57,7 +57,7 @@ def test_means(table: Path) -> None:
         ("duration [s]\n-1\n", 'needs one column "duration'),
         ("duration [s], wind\n1, 2\n", 'the heading "wind" is none of'),
         ("duration [s], speed [rpm]\n1, 2\n", "is none of"),
-        ("duration [s], load\n1\n", "line 2: 1 cells, and there are 2 headings"),
+        ("duration [s], load\n1\n", "line 2: 1 cells but 2 headings"),
         ("duration [s], load\n1, many\n", 'line 2: "many"'),
         ("duration [s], driver speed [m]\n1, 2\n", "must be in units of rad/s"),
     ],

@@ -70,7 +70,7 @@ def test_figures_of_one_instant_show_it(rest: StaticResult, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("use", "message"),
     [
-        (summarize, "a summary needs results over time, and these are of static"),
+        (summarize, "a summary needs results over time; these are of static"),
         (plot.speeds, "the figure 'speeds' shows results of run, and these are of static. Of these there are: conf"),
     ],
 )
@@ -80,7 +80,7 @@ def test_what_it_lacks_is_said(rest: StaticResult, use: Callable[[Any], object],
 
 
 def test_it_is_no_run(rest: StaticResult, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="is the result of another analysis, static"):
+    with pytest.raises(ModelError, match=r"is the result of another analysis \(static\)"):
         open_run(rest.save(tmp_path / "rest.nc"))
 
 
@@ -111,8 +111,8 @@ def test_the_tolerance_may_be_that_of_the_drive(drive: Drive) -> None:
 @pytest.mark.parametrize(
     ("example", "tolerance", "message"),
     [
-        ("band_brake", 0.01, "force_tolerance does not fit an open belt"),
-        ("alternator_drive", 0.0, "force_tolerance = 0 must lie between 0 and 1"),
+        ("band_brake", 0.01, "force_tolerance does not apply to an open belt"),
+        ("alternator_drive", 0.0, "force_tolerance = 0 must be between 0 and 1"),
     ],
 )
 def test_a_tolerance_that_makes_no_sense(example: str, tolerance: float, message: str) -> None:

@@ -95,4 +95,4 @@ def test_a_run_goes_on_on_the_mesh_of_that_in_which_it_begins(change: Change, tm
     del data["simulation"]["frame"]
     run = simulate(Drive(**data))
     assert mesh_of(run) == ("travelling", "ancf", "")
-    assert run.dataset.attrs["mesh_frame_reason"] == "as in the run in which it begins"
+    assert run.dataset.attrs["mesh_frame_reason"] == "as in the run it continues"

@@ -113,11 +113,11 @@ def test_modes_with_stuck_tensioners_have_numbers_of_their_own(drive: Drive) -> 
     ("options", "said"),
     [
         ({"count": 0}, "count = 0 modes are none"),
-        ({"count": 100}, "count = 100 is more than the 99 modes"),
+        ({"count": 100}, "count = 100 exceeds the limit of 99 modes"),
         ({"about": "standstill"}, "about = 'standstill' is no state"),
-        ({"about": "rest", "speed": "800 rpm"}, "speed, pulley and at go with about"),
+        ({"about": "rest", "speed": "800 rpm"}, "speed, pulley and at require about"),
         ({"pulley": "driver"}, "there is no speed"),
-        ({"speed": "800..900 rpm"}, "must be one speed"),
+        ({"speed": "800..900 rpm"}, "must be a single speed"),
         ({"speed": "fast"}, "speed = 'fast' must be a range"),
     ],
 )

@@ -115,9 +115,9 @@ def test_a_belt_lifts_off_at_the_speed_that_check_names() -> None:
 
 
 def test_bad_input(loaded: Drive) -> None:
-    with pytest.raises(ModelError, match=r"a map is over speed, load or both\."):
+    with pytest.raises(ModelError, match=r"a map needs speed, load or both\."):
         operating_map(loaded)
-    with pytest.raises(ModelError, match=r"load = '-1..1' holds a factor below zero"):
+    with pytest.raises(ModelError, match=r"load = '-1..1' contains a negative factor"):
         operating_map(loaded, load="-1..1")
     with pytest.raises(ModelError, match="pulley = 'fan' is not in this drive"):
         operating_map(loaded, speed="1..2 rpm", pulley="fan")

@@ -92,12 +92,12 @@ def test_where_no_design_keeps_to_all_limits(loaded: Drive) -> None:
     found = optimize(
         loaded, study=study(requirement=[{"result": "hub_load", "at_most": "300 N"}, SAFE], points={}), most=6
     )
-    assert any("no design keeps to all limits" in warning for warning in found.warnings)
+    assert any("no design satisfies all limits" in warning for warning in found.warnings)
 
 
 def test_a_start_that_does_not_run_is_refused(loaded: Drive) -> None:
     slack = loaded.with_({"belt.installed_tension": 210.0, "pulley[driven].torque.value": -300.0})
-    with pytest.raises(ConvergenceError, match="starts from the drive as it is given, which does not run"):
+    with pytest.raises(ConvergenceError, match="starts from the given drive, which does not run"):
         optimize(slack, study=study(points={}))
 
 
@@ -127,12 +127,12 @@ def test_another_drive_file_is_not_replaced(loaded: Drive, tmp_path: Path) -> No
     [
         ({"number": [FREE | {"path": "belt.widht"}]}, r"belt.widht is not a known key. Did you mean \"width\"?"),
         ({"number": [FREE | {"path": "pulley[idler].radius"}]}, r"pulley\[idler\] does not exist"),
-        ({"number": [FREE | {"path": "belt.elements"}]}, "is no number that changes gradually"),
+        ({"number": [FREE | {"path": "belt.elements"}]}, "is not a continuous number"),
         ({"number": [FREE | {"path": "belt.length"}]}, "is not given in the drive file"),
         ({"number": [FREE | {"largest": "9 m"}]}, "must be in units of N"),
         ({"number": [FREE | {"largest": 100.0}]}, "least = 200 is not below largest = 100"),
-        ({"number": [FREE | {"largest": 300.0}]}, "the drive file has 600, which is not between"),
-        ({"goal": {"result": "hub_laod"}}, "goal.result = 'hub_laod' is no result that has a number. Did you mean"),
+        ({"number": [FREE | {"largest": 300.0}]}, "the drive file has 600, which is outside"),
+        ({"goal": {"result": "hub_laod"}}, "goal.result = 'hub_laod' is not a numerical result. Did you mean"),
         ({"requirement": [SAFE | {"result": "safety"}]}, r"requirement\[1\].result = 'safety'"),
         (
             {"requirement": [{"result": "hub_load", "at_most": "3 m"}]},
@@ -178,4 +178,4 @@ def test_what_the_tolerance_of_limits_lets_pass_is_said(found: Result, tmp_path:
     best = found.dataset
     beyond = 1.0 - float(best.worst[1]) / SAFETY
     assert beyond <= 1e-4
-    assert ("a limit is missed by" in str(best.ended.item())) == (beyond > 0.0)
+    assert ("a limit is violated by" in str(best.ended.item())) == (beyond > 0.0)

@@ -91,7 +91,7 @@ def test_file_and_tables(found: bd.Result, tmp_path: Path) -> None:
     ("options", "said"),
     [
         ({"dry_tensioners": "dry"}, "dry_tensioners = 'dry' is neither"),
-        ({"speed": "-1, 100 rpm"}, "must not be below zero"),
+        ({"speed": "-1, 100 rpm"}, "must not be negative"),
         ({"pulley": "dirver"}, "driver"),
         ({"measured": "nowhere.csv"}, "nowhere.csv"),
         ({"compare": "nowhere.nc"}, "nowhere.nc"),
@@ -103,7 +103,7 @@ def test_options_that_make_no_sense(shaken: Drive, options: dict[str, Any], said
 
 
 def test_nothing_excites() -> None:
-    with pytest.raises(ModelError, match="nothing excites the drive"):
+    with pytest.raises(ModelError, match="the drive has no excitation"):
         response(better(loaded_two_pulley()), speed="60, 120 rad/s")
 
 

@@ -190,5 +190,5 @@ def test_stiffnesses_and_mass_of_a_belt_given_by_its_material(loaded: Drive, fou
 def test_a_measured_curve_has_no_stiffness_of_its_own(loaded: Drive) -> None:
     curve = {"strains": [0.01, 0.02], "tensions": [900.0, 1500.0]}
     curved = loaded.with_({"belt.stretch_curve": curve})
-    with pytest.raises(ModelError, match=r"belt\.axial_stiffness = .* is the slope with which"):
+    with pytest.raises(ModelError, match=r"belt\.axial_stiffness = .* is the initial slope of"):
         chosen_numbers(curved, "belt.axial_stiffness", {})

@@ -81,7 +81,7 @@ def test_interruption_keeps_what_was_computed(change: Change, tmp_path: Path, in
 
 
 def test_failure_keeps_what_was_computed(failing: Drive, tmp_path: Path) -> None:
-    with pytest.raises(ConvergenceError, match=r"cannot go on at t = 0\.002.*node \d.*Try more elements"):
+    with pytest.raises(ConvergenceError, match=r"fails at t = 0\.002.*node \d.*Try more elements"):
         simulate(failing, tmp_path / "run.nc")
     kept = open_run(tmp_path / "run.nc")
     assert kept.status == "failed"

@@ -147,7 +147,7 @@ def test_a_row_that_was_cut_off_is_computed_again(
     ("before", "after", "said"),
     [
         ('["hub_load", "tension"]', '["tension"]', "another drive, analysis or list of results"),
-        ("10, 12, 14 mm", "10, 12 mm", "not in the study any more"),
+        ("10, 12, 14 mm", "10, 12 mm", "no longer in the study"),
         ('path = "belt.width"', 'path = "belt.thickness"', "holds no points of this study"),
     ],
 )
@@ -232,8 +232,8 @@ def test_files_of_points_are_kept_where_asked_for(study_file: Path, tmp_path: Pa
     ("changes", "said"),
     [
         ({"results": ["hub_laod"]}, 'Did you mean "hub_load"'),
-        ({"options": {"att": 1.0}}, "att is no option"),
-        ({"analysis": "traction", "options": {"slop": "1 %"}}, "slop is no option"),
+        ({"options": {"att": 1.0}}, "att is not an option"),
+        ({"analysis": "traction", "options": {"slop": "1 %"}}, "slop is not an option"),
         ({"analysis": "sweep"}, '"sweep" needs pulley'),
     ],
 )

@@ -110,8 +110,8 @@ def test_what_a_designer_is_warned_of(slide: Drive, tmp_path: Path) -> None:
     result = tensioner_sheet(slide, tolerance="24 mm", wear="10 %")
     text = "\n".join(result.warnings)
     assert "worn belt: belt.length" in text
-    assert "the shortest belt brings the tensioner of tail against its stop, to -0.0" in text
-    assert "mm too short to be laid on with the tensioner of tail at its lower stop" in text
+    assert "the shortest belt moves the tensioner of tail to its stop at -0.0" in text
+    assert "mm too short to be fitted with the tensioner of tail at its lower stop" in text
     assert result.dataset.failure.sel(state="worn belt") != ""
     assert result.dataset.failure.sel(state="nominal belt") == ""
     found = bd.open_result(result.save(tmp_path / "sheet.nc"))
@@ -119,11 +119,11 @@ def test_what_a_designer_is_warned_of(slide: Drive, tmp_path: Path) -> None:
 
 
 def test_what_has_no_sheet(slide: Drive, drive: Drive) -> None:
-    with pytest.raises(ModelError, match="no tensioner moves, so that there is no sheet"):
+    with pytest.raises(ModelError, match="the drive has no moving tensioner"):
         tensioner_sheet(drive)
-    with pytest.raises(ModelError, match=r"pulley = 'driver' has no tensioner that moves\. Choose from: tail"):
+    with pytest.raises(ModelError, match=r"pulley = 'driver' has no moving tensioner\. Choose from: tail"):
         tensioner_sheet(slide, pulley="driver")
     with pytest.raises(ModelError, match="tolerance = '3' "):
         tensioner_sheet(slide, tolerance="3")
-    with pytest.raises(ModelError, match="wear = '-1 %' must be zero or more"):
+    with pytest.raises(ModelError, match="wear = '-1 %' must be non-negative"):
         tensioner_sheet(slide, wear="-1 %")

@@ -88,7 +88,7 @@ def test_lengths_as_given(drive: Drive) -> None:
 @pytest.mark.parametrize("shares", [[0.3, 0.3, 0.4], [0.1, 0.2, 0.3, 0.5], [-0.1, 0.4, 0.3, 0.4]])
 def test_lengths_must_make_the_belt(drive: Drive, shares: list[float]) -> None:
     belt = cut(drive, "truss", 4)
-    with pytest.raises(ModelError, match=r"do not make a belt with belt\.elements = 4 .* Give each element a positive"):
+    with pytest.raises(ModelError, match=r"do not match belt\.elements = 4 .* Give each element a positive"):
         discretize(belt, belt.given_length * np.array(shares))
 
 
@@ -120,7 +120,7 @@ def test_an_open_truss_hangs_on_its_points(drive: Drive) -> None:
 
 
 def test_moments_need_something_that_turns(drive: Drive) -> None:
-    with pytest.raises(ModelError, match=r'moments do not fit.*"truss".*choose discretization = "ancf"'):
+    with pytest.raises(ModelError, match=r'moments do not apply to.*"truss".*choose discretization = "ancf"'):
         belt_system(cut(drive, "truss", 12), moments=[(3, 1.0)])
 
 

@@ -1,4 +1,4 @@
-"""What is derived from a run for its user: functions of a `Run` that give labelled arrays with units."""
+"""Quantities derived from a run: functions of a `Run` that return labelled arrays with units."""
 
 from beltdyn.results.derived.arc import contact_arc
 from beltdyn.results.derived.labels import pulley_number

@@ -1,4 +1,4 @@
-"""Contact along the arc of a pulley, by the angle from where the belt enters."""
+"""Contact along the arc of a pulley, over the angle from the inlet."""
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,7 @@ from beltdyn.results.static import StaticResult
 
 
 def contact_arc(run: Run | StaticResult, pulley: str | int, time: float | None = None) -> xr.Dataset:
-    """Give pressure, shear and sliding along the arc of a pulley at one instant.
+    """Pressure, shear and sliding along the arc of a pulley at one instant.
 
     Parameters
     ----------

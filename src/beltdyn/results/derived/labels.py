@@ -51,10 +51,16 @@ def window(run: Run, start: float | None = None, end: float | None = None) -> xr
     if dataset.sizes["time"] == 0:
         times = run.dataset["time"].values
         raise ModelError(
-            f"there is no output from {start} to {end} s: the run was recorded from {times[0]:g} to {times[-1]:g} s. "
-            "Choose instants between these."
+            f"there is no output from {in_words(start, end)}; the run was recorded from {times[0]:g} to "
+            f"{times[-1]:g} s. Choose a time range between these."
         )
     return dataset
+
+
+def in_words(start: float | None, end: float | None) -> str:
+    """A time range whose ends may be open."""
+    first = "the start" if start is None else f"{start:g} s"
+    return f"{first} to the end" if end is None else f"{first} to {end:g} s"
 
 
 def pulley_number(run: Result, pulley: str | int) -> int:

@@ -1,4 +1,4 @@
-"""Powers of the pulleys over time."""
+"""Pulley powers over time."""
 
 import xarray as xr
 
@@ -9,7 +9,7 @@ from beltdyn.results.window import plain_window
 
 
 def pulley_powers(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Power in, out and lost at every pulley.
+    """Power in, power out and loss at every pulley.
 
     What comes in at the shaft either goes to the belt or is lost in contact, but for what the rim, the bodies of its
     hub and the contact store at the moment: in the mean of steady running ``power_in`` = ``power_out`` +
@@ -46,7 +46,7 @@ def pulley_powers(run: Run, start: float | None = None, end: float | None = None
 
 
 def balance(run: Run, start: float | None = None, end: float | None = None) -> Balance:
-    """Give mean powers of shafts and losses by cause over a part of a run, and with them the efficiency.
+    """Mean shaft powers, losses by cause and efficiency over part of a run.
 
     Parameters
     ----------

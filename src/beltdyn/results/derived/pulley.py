@@ -1,4 +1,4 @@
-"""Loads of the pulleys over time: hub load, and how far each is from gross slip."""
+"""Pulley loads over time: hub load, capstan margin and tension ratio."""
 
 import numpy as np
 import xarray as xr
@@ -10,7 +10,7 @@ from beltdyn.results.slip_margin import capstan_margin
 
 
 def hub_loads(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Force of the belt on every pulley as vector, magnitude and direction.
+    """Hub load of every pulley as vector, magnitude and direction.
 
     Parameters
     ----------
@@ -36,13 +36,13 @@ def hub_loads(run: Run, start: float | None = None, end: float | None = None) ->
         {
             "hub_force": force,
             "hub_load": labelled(np.hypot(x.values, y.values), x, "N", "Hub load"),
-            "hub_direction": labelled(np.arctan2(y.values, x.values), x, "rad", "Direction of the hub load"),
+            "hub_direction": labelled(np.arctan2(y.values, x.values), x, "rad", "Hub load direction"),
         }
     )
 
 
 def capstan_margins(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Factor on all loads at which the whole arc of each pulley slides, from the state of each instant.
+    """Capstan margin: the factor on all loads at which each pulley reaches gross slip, at each instant.
 
     See `beltdyn.results.slip_margin.capstan_margin`: 1 at the edge of gross slip, NaN without load.
 
@@ -69,7 +69,7 @@ def capstan_margins(run: Run, start: float | None = None, end: float | None = No
 
 
 def tension_ratios(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Larger over smaller tension of the two spans at every pulley.
+    """Tension ratio at every pulley: the larger over the smaller tension of its two spans.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Slip of the pulleys, and what it is made of: creep, and sliding of the whole arc."""
+"""Slip of the pulleys and its parts: creep, and sliding of the whole arc."""
 
 import numpy as np
 import xarray as xr
@@ -11,37 +11,37 @@ from beltdyn.results.slipping import slip_parts
 from beltdyn.results.window import Window
 
 _STANDING = 0.01
-"""Part of its largest speed below which the driver counts as standing still."""
+"""Share of its largest speed below which the driver counts as standing still."""
 
 
 def slips(run: Run, start: float | None = None, end: float | None = None, *, turns: bool = True) -> xr.Dataset:
-    """Slip over time, and what it is made of.
+    """Slip and its parts over time.
 
     The slip of pulley i is its rim's speed loss against that of the driver d, which is the first pulley of prescribed
     speed, or else the first with a motor: s_i = 1 - v_i / v_d with v = ``|omega|`` R, positive in the direction in
-    which the belt runs. Speeds are means over a turn of the belt and a period of what
-    repeats besides, as in the summary, or those of the instant. With the velocity g (belt faster than the rim)
+    which the belt runs. Speeds are means over a turn of the belt and the period of other
+    excitation, as in the summary, or instantaneous values. With the velocity g (belt faster than the rim)
     at which the belt slides on the *whole* arc of a pulley beyond what the friction law calls creep,
 
         sliding_i = (g_i - g_d) / v_d,    creep_i = s_i - sliding_i.
 
-    So creep is what a belt that still sticks or creeps somewhere on both arcs loses. Of it,
+    Creep is thus the slip of a belt that still sticks somewhere on both arcs. Its part
 
         elastic_creep_i = 1 - g(T_i) / g(T_d)
 
-    with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is what Coulomb's
-    friction would leave a limp belt (Reynolds 1874, Grashof 1883). ``bending`` is by the stretch that bending and its
-    hysteresis take on the way to the rim (`theory.elastic_creep.entry_strain`), and ``regularisation``, the rest, is
-    what the slope of the friction law makes. What slides is a loss without bound, as on a pulley that is overloaded.
+    with the stretches g of the spans that reach the two pulleys, (T_d - T_i) / E A at small strain, is the creep
+    of a belt without bending stiffness under Coulomb friction (Reynolds 1874, Grashof 1883). ``bending`` is due to the
+    stretch lost in bending and its hysteresis at the inlet (`theory.elastic_creep.entry_strain`), and
+    ``regularisation``, the rest, to the slope of the friction law. Sliding has no bound, as on an overloaded pulley.
 
     Parameters
     ----------
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
     turns : bool
-        Whether speeds and tensions are means over turns (`turn_means`), or those of the instant.
+        Whether speeds and tensions are means over turns (`turn_means`) or instantaneous.
 
     Returns
     -------
@@ -67,8 +67,8 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
         "slip": (parts.slip, "Slip"),
         "creep": (parts.slip - parts.sliding, "Creep"),
         "elastic_creep": (parts.elastic_creep, "Elastic creep"),
-        "bending": (parts.bending, "Slip by bending"),
-        "regularisation": (parts.regularisation, "Slip that the slope of the friction law makes"),
+        "bending": (parts.bending, "Slip due to bending"),
+        "regularisation": (parts.regularisation, "Slip due to the friction law slope"),
         "sliding": (parts.sliding, "Sliding"),
     }
     like = dataset["pulley_speed"]
@@ -77,14 +77,14 @@ def slips(run: Run, start: float | None = None, end: float | None = None, *, tur
 
 
 def sliding_arcs(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Arc of each pulley on which the belt slides: where ``|f_t|`` has reached mu f_n.
+    """Sliding arc of each pulley: where ``|f_t|`` has reached mu f_n.
 
     Parameters
     ----------
     run : Run
         The run.
     start, end : float, optional
-        From when to when, s.
+        Time range, s.
 
     Returns
     -------
@@ -100,7 +100,7 @@ def sliding_arcs(run: Run, start: float | None = None, end: float | None = None)
     wrap, share = dataset["wrap_angle"], dataset["sliding_share"].values
     return xr.Dataset(
         {
-            "sliding_share": labelled(share, wrap, "1", "Share of the arc that slides"),
+            "sliding_share": labelled(share, wrap, "1", "Sliding share of the arc"),
             "sliding_arc": labelled(share * wrap.values, wrap, "rad", "Sliding arc"),
         }
     )

@@ -1,4 +1,4 @@
-"""Spans: their tensions in numbers, and how far they move sideways."""
+"""Span tensions and mid-span displacements."""
 
 import xarray as xr
 
@@ -7,7 +7,7 @@ from beltdyn.results.run import Run
 
 
 def span_tensions(run: Run, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Mean, least and largest tension of every span.
+    """Mean, minimum and maximum tension of every span.
 
     Parameters
     ----------
@@ -29,8 +29,8 @@ def span_tensions(run: Run, start: float | None = None, end: float | None = None
     tension = window(run, start, end)["span_tension"]
     numbers = {
         "mean": (tension.mean("time"), "Mean span tension"),
-        "min": (tension.min("time"), "Least span tension"),
-        "max": (tension.max("time"), "Largest span tension"),
+        "min": (tension.min("time"), "Minimum span tension"),
+        "max": (tension.max("time"), "Maximum span tension"),
     }
     return xr.Dataset(
         {name: value.assign_attrs(units="N", long_name=meaning) for name, (value, meaning) in numbers.items()}
@@ -38,7 +38,7 @@ def span_tensions(run: Run, start: float | None = None, end: float | None = None
 
 
 def mid_span_displacements(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Transverse displacement of every span at its middle.
+    """Mid-span displacement of every span.
 
     The straight line between the tangent points of the two pulleys, where these are at the instant, is zero; the
     belt's place is interpolated between the points of contact of the free belt before and after the middle. Since the

@@ -1,4 +1,4 @@
-"""Spectra of whatever is recorded over time: amplitudes over frequency, and over speed in a run-up."""
+"""Spectra of recorded variables: amplitudes over frequency, and over speed in a run-up."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -27,7 +27,7 @@ _STANDING = 0.1
 
 
 def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArray:
-    """Give the amplitudes of the sinusoids that a variable is made of.
+    """Amplitude spectrum of a variable.
 
     The mean is taken away, and a window applied whose sum the amplitudes are divided by: a sinusoid of amplitude A at
     a frequency of the spectrum gives A, one between two of them down to 0.85 A with "hann" and 0.999 A with "flattop",
@@ -68,8 +68,8 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
     unknown = time[~np.isfinite(even.reshape(len(even), -1)).all(axis=1)]
     if unknown.size:
         raise ModelError(
-            f"{_name_of(values)} is unknown from t = {unknown[0]:.4g} s to {unknown[-1]:.4g} s, as where a "
-            "belt has left a pulley: there is no spectrum over that. Select a time before or after."
+            f"{_name_of(values)} is unknown from t = {unknown[0]:.4g} s to {unknown[-1]:.4g} s, for example because "
+            "the belt has left a pulley; a spectrum cannot span this gap. Select a time before or after it."
         )
     rate = (len(time) - 1) / (time[-1] - time[0])
     frequency, power = periodogram(even, rate, window, detrend="constant", scaling="spectrum", axis=0)
@@ -82,7 +82,7 @@ def amplitude_spectrum(values: xr.DataArray, window: str = "hann") -> xr.DataArr
 
 
 def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr.DataArray:
-    """Give short-time spectra over the speed of a pulley.
+    """Short-time spectra over the speed of a pulley (waterfall).
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def waterfall(values: xr.DataArray, speed: xr.DataArray, pieces: int = 60) -> xr
 
 
 def overall_level(amplitude: xr.DataArray) -> xr.DataArray:
-    """Give the root mean square of all that a waterfall shows, but for the mean.
+    """Overall level (root mean square) of a waterfall, without the mean.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def overall_level(amplitude: xr.DataArray) -> xr.DataArray:
 
 
 def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, revolutions: int = 8) -> xr.DataArray:
-    """Give the amplitudes of the orders of a pulley's rotation over its speed.
+    """Amplitudes of the orders of a pulley's rotation over its speed.
 
     The variable is laid out by cubic splines over the pulley's angle, in even steps no larger than the smallest that
     was recorded (computed order tracking, Fyfe and Munck 1997), and spectra are taken over a number of revolutions: a
@@ -208,8 +208,8 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
     turns = (turned[-1] - turned[0]) / (2.0 * np.pi)
     if turns < 2 * revolutions:
         raise ModelError(
-            f"the pulley makes {turns:.3g} turns above a tenth of its largest speed: orders need {2 * revolutions} or "
-            "more. Make the run longer (`--duration` of a sweep), or in Python take fewer revolutions."
+            f"the pulley makes {turns:.3g} turns above a tenth of its largest speed; orders need {2 * revolutions} or "
+            "more. Make the run longer (`--duration` of a sweep), or reduce `revolutions` in Python."
         )
     each = int(np.ceil(max(2.0 * np.pi / np.diff(turned).min(), 2.0 * largest)))
     steps = np.arange(turned[0], turned[-1], 2.0 * np.pi / each)
@@ -226,7 +226,7 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
 
 
 def element_order(drive: Drive, pulley: int) -> float:
-    """Give the order of a pulley's rotation at which elements of the mesh pass: how many do in one of its turns.
+    """Order of a pulley's rotation at which elements pass: the elements per turn of the pulley.
 
     What stands out there and at its multiples belongs to the mesh, not to the drive. On a mesh that stays no element
     passes: then it is infinite.
@@ -280,7 +280,7 @@ def _even(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]
     (known,) = np.nonzero(np.isfinite(flat).all(axis=1))
     if known.size < _FEWEST:
         raise ModelError(
-            f"{known.size} outputs are too few for a spectrum: {_FEWEST} or more are needed. "
+            f"{known.size} outputs are too few for a spectrum; {_FEWEST} or more are needed. "
             "Simulate longer, or reduce simulation.output_interval."
         )
     inside = slice(known[0], known[-1] + 1)
@@ -347,9 +347,7 @@ def _records(speed: FloatArray) -> IntArray:
     highest = np.maximum.accumulate(sign * speed)
     (kept,) = np.nonzero(np.append(True, np.diff(highest) > 0.0))
     if np.ptp(speed) < _SAME * speed.max() or len(kept) < 2:
-        raise ModelError(
-            f"the speed stays at {speed.mean():.4g} rad/s: there is no run-up to look at. Use beltdyn sweep."
-        )
+        raise ModelError(f"the speed is constant at {speed.mean():.4g} rad/s: there is no run-up. Use `beltdyn sweep`.")
     return kept if sign > 0.0 else kept[::-1]
 
 

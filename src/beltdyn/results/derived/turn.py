@@ -1,4 +1,4 @@
-"""Means over time in which what repeats in every turn of the belt, and in every wave of a harmonic, drops out."""
+"""Running means that remove ripple at the belt's turn and at harmonics."""
 
 import numpy as np
 import xarray as xr
@@ -9,7 +9,7 @@ from beltdyn.results.window import Cycle, Window
 
 
 def turn_means(run: Run, variable: xr.DataArray) -> xr.DataArray:
-    """Average a variable around every instant, over a turn of the belt and a period of what repeats besides.
+    """Running mean of a variable over a turn of the belt and the period of other excitation.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Wear intensity: work of friction, by place on the arc and by place on the belt (Archard 1953: wear grows with it)."""
+"""Wear intensity: friction work over the arc and over the belt, to which wear is proportional (Archard 1953)."""
 
 import numpy as np
 import xarray as xr
@@ -6,14 +6,14 @@ import xarray as xr
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.results.arc import arc_ends
-from beltdyn.results.derived.labels import window
+from beltdyn.results.derived.labels import in_words, window
 from beltdyn.results.friction_work import ARC_PARTS, BEYOND
 from beltdyn.results.mechanics import element_lengths
 from beltdyn.results.run import Run
 
 
 def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Give the work of ``|f_t v_t|`` by place on the arc of each pulley.
+    """Friction work ``|f_t v_t|`` over the arc of each pulley.
 
     In each of equal parts of the arc, the work done on the belt in it is summed and divided by its length, so that
     the sum over a pulley is all of its work. The parts reach a quarter of the arc between the tangent points further at
@@ -52,9 +52,9 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
         work / length,
         {
             "pulley": dataset["pulley"],
-            "share": ("share", share, {"units": "1", "long_name": "Share of the arc from the inlet"}),
+            "share": ("share", share, {"units": "1", "long_name": "Position on the arc from the inlet"}),
             "angle": (dims, np.outer(wrap, share), {"units": "rad", "long_name": "Angle from the inlet"}),
-            "part_length": (dims, length, {"units": "m", "long_name": "Length of the part of the arc"}),
+            "part_length": (dims, length, {"units": "m", "long_name": "Length of the arc segment"}),
         },
         dims,
         attrs={"units": "J/m", "long_name": "Wear intensity on the arc"},
@@ -62,7 +62,7 @@ def wear_by_arc(run: Run, start: float | None = None, end: float | None = None) 
 
 
 def wear_by_belt(run: Run, start: float | None = None, end: float | None = None) -> xr.DataArray:
-    """Give the work of ``|f_t v_t|`` by place on the belt.
+    """Friction work ``|f_t v_t|`` over the belt.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def wear_by_belt(run: Run, start: float | None = None, end: float | None = None)
     Returns
     -------
     DataArray
-        J per metre of belt, pulley and element: what each pulley does to each piece of the belt, on a mesh that stays
-        to that which was in an element at the beginning. Pulleys at its back wear the other surface.
+        J per metre of belt, pulley and element. On a staying mesh an element stands for the belt that was in it at the
+        beginning. Pulleys on the back of the belt wear its other surface.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _work(run: Run, name: str, start: float | None, end: float | None) -> tuple[
     dataset = window(run, start, end)
     if dataset.sizes["field_time"] < 2:
         raise ModelError(
-            f"there are no two outputs of fields from {start} to {end} s: their work cannot be told. "
-            "Choose a longer time, or reduce simulation.field_interval."
+            f"there are fewer than two outputs along the belt from {in_words(start, end)}, so the friction work "
+            "between them is unknown. Choose a longer time, or reduce simulation.field_interval."
         )
     return dataset, np.asarray(dataset[name][1:].values.sum(axis=0, dtype=float))

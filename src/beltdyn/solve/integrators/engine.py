@@ -182,7 +182,7 @@ def restart(system: System, state: IntegratorState, equations: Equations) -> Non
     speeds = state.velocity.copy()
     if not accelerate(system, after, state.multipliers, equations):
         raise ConvergenceError(
-            "a part of the drive that moves has no mass. Give belt, pulleys, tensioners and hubs mass or inertia."
+            "a moving part of the drive has no mass. Give belt, pulleys, tensioners and hubs mass or inertia."
         )
     state.auxiliary[:] = state.acceleration
     state.trend[:] = state.clock.persistence = 0.0

@@ -183,9 +183,9 @@ def _message(task: Task, state: IntegratorState, method: GeneralizedAlpha) -> st
     x, y = places[worst]
     undamped = "a simulation.spectral_radius below 1, " if method.spectral_radius == 1.0 else ""
     return (
-        f"the simulation cannot go on at t = {state.clock.time:.6g} s: a time step of "
-        f"{min(SMALLEST_STEP, method.max_step or SMALLEST_STEP):g} s is still too long. "
-        f"The belt moves most wildly at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
-        f"another simulation.rtol than {method.rtol:g}, or a gentler start; leave out what [contact] gives beside "
-        "friction, so that it is chosen."
+        f"the simulation fails at t = {state.clock.time:.6g} s: a time step of "
+        f"{min(SMALLEST_STEP, method.max_step or SMALLEST_STEP):g} s is still too long. The largest "
+        f"acceleration is at node {worst}, x = {x:.4g} m, y = {y:.4g} m. Try {undamped}more elements, "
+        f"another simulation.rtol than {method.rtol:g}, or a gentler start; omit all keys of [contact] "
+        "except friction, so that they are chosen."
     )

@@ -87,7 +87,7 @@ class StandardIntegrator:
     def _give_up(self, time: float, reason: Exception) -> ConvergenceError:
         """The error for a solver that stopped at a time, s."""
         return ConvergenceError(
-            f"the integrator {self.name} cannot go on at t = {time:.6g} s ({reason}). "
+            f"the integrator {self.name} fails at t = {time:.6g} s ({reason}). "
             f'Try a larger simulation.rtol than {self.rtol:g}, or simulation.integrator = "generalized_alpha".'
         )
 
@@ -222,7 +222,7 @@ def _import_sundials() -> Any:
         import sksundae
     except ImportError as error:
         raise ModelError(
-            'simulation.integrator is "cvode" or "ida", which need scikit-sundae: it is not installed. '
+            'simulation.integrator = "cvode" or "ida" needs scikit-sundae, which is not installed. Install it: '
             'pip install "beltdyn[integrators]", or choose "generalized_alpha", "bdf" or "radau".'
         ) from error
     return sksundae

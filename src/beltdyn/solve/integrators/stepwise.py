@@ -220,7 +220,7 @@ class Stepwise:
             task.statistics.rejected_steps += 1
             if not _SHORTEST < verdict.length < length:
                 raise ConvergenceError(
-                    f"the integrator {self.name} cannot go on at t = {round(time, 12):.6g} s "
+                    f"the integrator {self.name} fails at t = {round(time, 12):.6g} s "
                     f"with a step of {length:.3g} s: {reason}. "
                     "Try shorter steps, a larger tolerance, or the integrator generalized_alpha."
                 )

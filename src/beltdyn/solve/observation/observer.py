@@ -141,6 +141,6 @@ def _require_numbers(time: FloatArray, shown: BoolArray, seen: Arrays) -> None:
             times = time[shown] if name in _OF_SHOWN else time
             first = int(np.argmin(np.isfinite(values.reshape(len(times), -1)).all(axis=1)))
             raise ConvergenceError(
-                f"the simulation cannot go on at t = {times[first]:.6g} s: {name} has no finite value. "
-                "Check loads and stiffnesses for numbers beyond all measure, or reduce simulation.max_step."
+                f"the simulation fails at t = {times[first]:.6g} s: {name} is not finite. Check loads and "
+                "stiffnesses for extreme values, or reduce simulation.max_step."
             )

@@ -36,17 +36,18 @@ def step_bound(drive: Drive, statistics: Statistics, reached: float) -> str:
     mean, share = reached / taken, rejected / (taken + rejected)
     if share > _MANY:
         return (
-            f"{share:.0%} of the time steps are tried in vain, since friction takes hold within a small slip, or "
-            f"contact is hard. To make it quicker, {other_creep(drive, _GENTLER)}, which adds to the slip; or lower "
-            f"contact.stiffness = {drive.contact_stiffness:.2g} N/m^2, which costs tension."
+            f"{share:.0%} of the time steps are rejected because friction builds up within a small slip "
+            f"or contact is stiff. For a faster run, {other_creep(drive, _GENTLER)}, which adds to the "
+            f"slip; or reduce contact.stiffness = {drive.contact_stiffness:.2g} N/m^2, which reduces "
+            "the tension."
         )
     if simulation.max_step is not None and mean > _NEAR * simulation.max_step:
-        return f"simulation.max_step = {simulation.max_step:g} s bounds the steps."
+        return f"simulation.max_step = {simulation.max_step:g} s limits the steps."
     if mean > _NEAR * simulation.output_interval:
         interval = simulation.output_interval
-        return f"Steps end on outputs: a longer simulation.output_interval than {interval:g} s is quicker."
+        return f"Steps end on outputs: a simulation.output_interval above {interval:g} s is faster."
     return (
-        f"Steps are as short as simulation.rtol = {simulation.rtol:g} asks for where the belt vibrates on its pulleys. "
-        f"A larger one makes it quicker, or fewer belt.elements than {drive.elements}; `beltdyn check` tells "
-        "what that costs in accuracy."
+        f"Steps are as short as simulation.rtol = {simulation.rtol:g} requires where the belt vibrates "
+        f"on its pulleys. A larger value is faster, as are fewer belt.elements than {drive.elements}; "
+        "`beltdyn check` shows the loss of accuracy."
     )

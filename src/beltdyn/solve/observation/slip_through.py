@@ -56,9 +56,9 @@ class SlipThrough:
         sliding = abs(float(outputs["sliding_speed"][row, number]))
         share = sliding / (abs(speed) * self._radius)
         return (
-            f"the sweep stops at t = {time:.4g} s, {swept} at {RPM * speed:.4g} rpm: {name} slips through. Since "
-            f"{RPM * self._speed[number]:.4g} rpm its whole arc slides, now at {sliding:.3g} m/s, "
-            f"{share:.0%} of the speed of {swept}'s rim. When this began it had {self._load[number]:.4g} N m to "
-            f"transmit, and with the tensions of {max(before, after):.4g} and {min(before, after):.4g} N beside it "
-            "friction transmits no more."
+            f"the sweep stops at t = {time:.4g} s, {swept} at {RPM * speed:.4g} rpm: {name} is in gross slip. "
+            f"Since {RPM * self._speed[number]:.4g} rpm its whole arc has been sliding, now at {sliding:.3g} "
+            f"m/s, {share:.0%} of the rim speed of {swept}. At the onset it had to transmit "
+            f"{self._load[number]:.4g} N m, more than friction can transmit with the tensions of "
+            f"{max(before, after):.4g} and {min(before, after):.4g} N in the adjacent spans."
         )

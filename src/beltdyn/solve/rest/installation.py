@@ -58,7 +58,7 @@ class Rest(NamedTuple):
     seen: Observations
     """What is seen there, one instant."""
     unstable: tuple[str, ...] = ()
-    """Pulleys whose tensioners something drives away from there as soon as it moves them a little."""
+    """Pulleys whose tensioners are in unstable equilibrium."""
 
     @property
     def tension(self) -> float:
@@ -200,14 +200,15 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
     if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
         raise ConvergenceError(
-            f"belt.installed_tension = {wanted:.5g} N is not what the tensioner holds: its force makes "
-            f"{first.tension:.5g} N at any length of the belt. Give belt.length in place of the tension, near "
+            f"belt.installed_tension = {wanted:.5g} N cannot be set: the tensioner force gives "
+            f"{first.tension:.5g} N at any belt length. Give belt.length instead, near "
             f"{length:.5g} m, and set the tension by tensioner.preload."
         )
     raise _out_of_reach(
         first.drive,
-        f"at rest the belt has {rest.tension:.5g} N with a length of {rest.drive.belt_length:.6g} m, and "
-        f"{first.tension:.5g} N with {length:.6g} m{', since tensioners hold it' if first.drive.carriers else ''}.",
+        f"the tension at rest is {rest.tension:.5g} N with a belt length of {rest.drive.belt_length:.6g} m and "
+        f"{first.tension:.5g} N with {length:.6g} "
+        f"m{', since tensioners hold it' if first.drive.carriers else ''}.",
     )
 
 
@@ -224,7 +225,7 @@ def _beside_jump(slack: At, tight: At, wanted: float) -> At:
         raise _out_of_reach(
             nearer.drive,
             f"at rest the tension jumps from {slack.tension:.5g} to {tight.tension:.5g} N at a length of "
-            f"{nearer.drive.belt_length:.6g} m, as nodes of the mesh meet pulleys. Raise belt.elements.",
+            f"{nearer.drive.belt_length:.6g} m, where nodes of the mesh meet pulleys. Increase belt.elements.",
         )
     return nearer
 
@@ -257,8 +258,8 @@ def _shortened(drive: Drive, done: float, change: float, at_rest: Callable[[Driv
 
 def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
     return ConvergenceError(
-        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N is not reached with {drive.elements} "
-        f"elements: {reason} Change the tension, or give belt.length in its place."
+        f"belt.installed_tension = {drive.belt.installed_tension:.5g} N cannot be reached with {drive.elements} "
+        f"elements: {reason} Change the tension, or give belt.length instead."
     )
 
 
@@ -355,20 +356,21 @@ def looked_at(drive: Drive, system: System, state: State) -> Rest:
     ):
         if not wrap > 0.0:
             raise ConvergenceError(
-                f'at rest the belt leaves "{pulley.name}", and it has to touch all pulleys. Move "{pulley.name}" '
-                "against the belt, or raise the tension."
+                f'at rest the belt does not touch "{pulley.name}", but it must touch all pulleys. Move '
+                f'"{pulley.name}" towards the belt, or raise the tension.'
             )
         if depth > _DEEPEST * radius:
             raise ConvergenceError(
-                f'at rest the belt sinks into "{pulley.name}" by {1e3 * depth:.2g} mm, more than {_DEEPEST:.0%} of its '
-                "radius. Leave out contact.stiffness so that it is chosen, or raise it, or lower the tension."
+                f'at rest the belt sinks into "{pulley.name}" by {1e3 * depth:.2g} mm, more than {_DEEPEST:.0%} '
+                "of its radius. Omit contact.stiffness so that it is chosen, or increase it, or reduce the "
+                "tension."
             )
     known = np.isfinite(seen.span_tension[0])
     short = [f"{start} to {end}" for (start, end), one in zip(drive.spans, known, strict=True) if not one]
     if short:
         raise ConvergenceError(
-            f"the span {listing(short)} is shorter than one element of the belt, so that its tension is not known. "
-            "Raise belt.elements, or move the pulleys apart."
+            f"the span {listing(short)} is shorter than one element, so its tension is unknown. Increase "
+            "belt.elements, or move the pulleys apart."
         )
     return Rest(drive, system, state, seen)
 
@@ -391,7 +393,8 @@ def _cause(drive: Drive, installation: Installation) -> str:
         return ""
     enough = drive.contact_stiffness * parts[worst] / _SOUND
     return (
-        f' Contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by {parts[worst]:.0%} of the '
-        f"radius. Raise contact.stiffness from {drive.contact_stiffness:.2g} to {enough:.2g} N/m^2, or lower the "
-        "tension, or make the pulley larger."
+        f' The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by '
+        f"{parts[worst]:.0%} of the radius. Increase contact.stiffness from "
+        f"{drive.contact_stiffness:.2g} to {enough:.2g} N/m^2, reduce the tension, or use a larger "
+        "pulley."
     )

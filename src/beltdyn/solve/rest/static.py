@@ -105,10 +105,10 @@ def find_equilibrium(
             state = State(search.position.copy(), start.velocity.copy(), np.zeros_like(search.position))
             return Equilibrium(state, np.array(iterates), np.array(norms))
         shift = 0.1 * shift if shift > _SMALLEST_SHIFT else 0.0
-    last = f"still moves, by {norms[-1]:.1e} of its length in the last of {len(norms)} steps" if norms else "moves away"
+    last = f"relative movement {norms[-1]:.1e} after {len(norms)} iterations" if norms else "the search diverges"
     raise ConvergenceError(
-        f"the belt comes to no rest: it {last}. Give the belt another tension or length, leave out "
-        "contact.stiffness and belt.elements so that they are chosen, or raise belt.elements."
+        f"no static equilibrium found: {last}. Change the belt tension or length, omit contact.stiffness and "
+        "belt.elements so that they are chosen, or increase belt.elements."
     )
 
 

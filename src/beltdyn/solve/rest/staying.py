@@ -158,8 +158,8 @@ def stand_like(drive: Drive, like: Standing) -> Standing:
 
 def _no_rest(system: System) -> ConvergenceError:
     return ConvergenceError(
-        f"the belt comes to no rest, with {system.nodes} elements. Look at tension and depth of contact with `beltdyn "
-        "check`; give the belt another tension or length, or leave out contact.stiffness so that it is chosen."
+        f"no static equilibrium found with {system.nodes} elements. Check tension and penetration with `beltdyn "
+        "check`; change the belt tension or length, or omit contact.stiffness so that it is chosen."
     )
 
 

@@ -51,7 +51,7 @@ def driver_of(drive: Drive) -> int:
     """
     if drive.driver is None:
         raise ModelError(
-            "nothing drives the belt: no pulley has a speed or a motor. Name the pulley whose speed to prescribe."
+            "nothing drives the belt: no pulley has a speed or a motor. Give the pulley whose speed to prescribe."
         )
     return drive.driver
 
@@ -88,7 +88,7 @@ def with_torque(drive: Drive, number: int, torque: float) -> Drive:
     one = drive.pulleys[number]
     if one.prescribed:
         raise ModelError(
-            f"{one.name} has a prescribed speed, and takes whatever torque it needs. Give the torque of another pulley."
+            f"{one.name} has a prescribed speed, so its torque cannot be given. Give the torque of another pulley."
         )
     motors = tuple(load for load in one.load if is_motor(load))
     return with_pulley(drive, number, one.replace(torque=Constant(value=torque), load=motors))

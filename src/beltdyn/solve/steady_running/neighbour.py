@@ -31,17 +31,15 @@ def require_neighbour(drive: Drive, start: Run, elements: int | None) -> None:
         If they are not those of steady running, or of other pulleys and tensioners, or a mesh is asked for.
     """
     if elements is not None:
-        raise ModelError(
-            f"elements = {elements} does not go with start, which has its own mesh. Leave one of them out."
-        )
+        raise ModelError(f"elements = {elements} cannot be given with start, which has its own mesh. Omit one of them.")
     if not runs_steadily(start.dataset):
-        raise ModelError("start holds no steady running, but a run over time. Give what `steady_state` has returned.")
+        raise ModelError("start is a run over time, not steady running. Give a result of `steady_state`.")
     mine, other = ([pulley.name for pulley in one.pulleys] for one in (drive, start.drive))
     if mine != other or len(drive.moving_tensioners) != len(start.drive.moving_tensioners):
         raise ModelError(
-            f"start has the pulleys {', '.join(other)} and {len(start.drive.moving_tensioners)} moving tensioners; the "
-            f"drive has {', '.join(mine)} and {len(drive.moving_tensioners)}. Give the steady running of a drive that "
-            "differs in numbers alone, or leave start out."
+            f"start has the pulleys {', '.join(other)} and {len(start.drive.moving_tensioners)} moving "
+            f"tensioners; the drive has {', '.join(mine)} and {len(drive.moving_tensioners)}. Give the steady "
+            "running of a drive that differs only in values, or omit start."
         )
 
 

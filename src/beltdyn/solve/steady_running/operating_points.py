@@ -259,7 +259,7 @@ class OperatingPoints:
         """
         if self._error and not self.found and self._status != "interrupted":
             kind = ModelError if isinstance(self._error, ModelError) else ConvergenceError
-            points = f"none of {self._done} points has steady running. The first one: " if self._done > 1 else ""
+            points = f"no steady running at any of {self._done} points. The first one: " if self._done > 1 else ""
             raise kind(points + cause_of(self._error)) from self._error
         kept = {name: (self._labelled(VARIABLES[name]), values) for name, values in self.arrays.items()}
         coordinates = {**self._axes, **self.more, **self._named()}
@@ -277,11 +277,11 @@ class OperatingPoints:
         }
 
     def _extremes(self) -> dict[str, tuple[Variable, ArrayLike]]:
-        """What is worst for each pulley over all points."""
+        """The worst value of each pulley over all points."""
         over = tuple(range(len(self.shape)))
         found = {
             "largest_slip": (Variable(PULLEY, "1", "Largest slip"), np.fmax.reduce, "pulley_slip"),
-            "smallest_safety": (Variable(PULLEY, "1", "Least slip safety"), np.fmin.reduce, "slip_safety"),
+            "smallest_safety": (Variable(PULLEY, "1", "Least capstan margin"), np.fmin.reduce, "slip_safety"),
             "largest_hub_load": (Variable(PULLEY, "N", "Largest hub load"), np.fmax.reduce, "hub_load"),
         }
         return {
@@ -328,9 +328,9 @@ class OperatingPoints:
             if not others:
                 yield f"at {place}: {text}"
             elif weight > 0.0:
-                yield f"at {place}: {text} That is the worst of {others + 1} points, from {first} to {last}."
+                yield f"at {place}: {text} This is the worst of {others + 1} points, from {first} to {last}."
             else:
-                yield f"at {place}: {text} So at {others} more point{'s'[: others != 1]}, up to {last}."
+                yield f"at {place}: {text} The same applies at {others} more point{'s'[: others != 1]}, up to {last}."
 
     def _place(self, index: tuple[int, ...]) -> str:
         """Where a point is, in words."""

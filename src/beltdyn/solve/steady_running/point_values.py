@@ -15,34 +15,36 @@ _CAUSES = [cause for name, cause in LOSSES.items() if name != "numerical_loss"]
 
 VARIABLES = {
     "belt_speed": Variable((), "m/s", "Belt speed"),
-    "power_in": Variable((), "W", "Power in"),
-    "power_out": Variable((), "W", "Power out"),
+    "power_in": Variable((), "W", "Power input"),
+    "power_out": Variable((), "W", "Power output"),
     "efficiency": Variable((), "1", "Efficiency"),
     "largest_tension": Variable((), "N", "Largest tension"),
-    "least_slip_safety": Variable((), "1", "Least slip safety"),
-    "least_safe_pulley": Variable((), "1", "Pulley with it", "str"),
-    "pulley_speed": Variable(PULLEY, "rad/s", "Speed of the pulley"),
-    "shaft_torque": Variable(PULLEY, "N m", "Torque on the shaft"),
+    "least_slip_safety": Variable((), "1", "Least capstan margin"),
+    "least_safe_pulley": Variable((), "1", "Pulley with the least capstan margin", "str"),
+    "pulley_speed": Variable(PULLEY, "rad/s", "Pulley speed"),
+    "shaft_torque": Variable(PULLEY, "N m", "Shaft torque"),
     "power": Variable(PULLEY, "W", "Power into the drive"),
     "pulley_slip": Variable(PULLEY, "1", "Slip"),
     "elastic_creep": Variable(PULLEY, "1", "Elastic creep"),
-    "bending": Variable(PULLEY, "1", "Slip by bending"),
-    "regularisation": Variable(PULLEY, "1", "Slip that the slope of the friction law makes"),
-    "sliding": Variable(PULLEY, "1", "Slip of arcs that slide as a whole"),
-    "slip_safety": Variable(PULLEY, "1", "Slip safety: factor on all loads at which the whole arc slides"),
-    "sliding_arc": Variable(PULLEY, "rad", "Arc that slides"),
+    "bending": Variable(PULLEY, "1", "Slip due to bending"),
+    "regularisation": Variable(PULLEY, "1", "Slip due to the friction law slope"),
+    "sliding": Variable(PULLEY, "1", "Gross slip"),
+    "slip_safety": Variable(PULLEY, "1", "Capstan margin: factor on all loads at gross slip"),
+    "sliding_arc": Variable(PULLEY, "rad", "Sliding arc"),
     "wrap_angle": Variable(PULLEY, "rad", "Wrap angle"),
     "hub_load": Variable(PULLEY, "N", "Hub load"),
     "hub_force": Variable((*PULLEY, "axis"), "N", "Force of the belt on the pulley"),
     "span_tension": Variable(_SPAN, "N", "Span tension"),
-    "tensioner_position": Variable(_TENSIONER, "m or rad", "Position of the tensioner"),
+    "tensioner_position": Variable(_TENSIONER, "m or rad", "Tensioner position"),
     "tensioner_position_after_tensioning": Variable(
-        _TENSIONER, "m or rad", "Position, held by dry friction as it grew"
+        _TENSIONER, "m or rad", "Position, held by dry friction after tensioning"
     ),
-    "tensioner_position_after_yielding": Variable(_TENSIONER, "m or rad", "Position, held by dry friction as it fell"),
-    "loss": Variable(("cause",), "W", "Power lost"),
-    "mesh_error": Variable((), "1", "Error of the mesh"),
-    "failure": Variable((), "1", "Why there is no operating point", "str"),
+    "tensioner_position_after_yielding": Variable(
+        _TENSIONER, "m or rad", "Position, held by dry friction after yielding"
+    ),
+    "loss": Variable(("cause",), "W", "Power loss"),
+    "mesh_error": Variable((), "1", "Mesh error"),
+    "failure": Variable((), "1", "Why the operating point failed", "str"),
 }
 """What is known of an operating point; dimensions of the table come first."""
 

@@ -150,8 +150,9 @@ def refine(search: SteadySearch, rule: MeshRule, tolerance: float) -> tuple[dict
             if errors:
                 return errors, rule
             raise ConvergenceError(
-                f"steady running is found with {before.system.nodes} elements, but on no finer mesh, so that its "
-                "errors are not known. Give the number of elements, or simulate the drive over time with `beltdyn run`."
+                f"steady running was found with {before.system.nodes} elements but on no finer mesh, so its "
+                "errors are unknown. Give the number of elements, or simulate the drive over time with "
+                "`beltdyn run`."
             )
         rule, after = finer, _solution(search)
         errors = _differences(before, after)

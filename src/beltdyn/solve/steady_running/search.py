@@ -245,8 +245,8 @@ class SteadySearch:
         softer = soft._replace(bending_loss=0.0), *(soft._replace(bending_loss=0.0, smoothing=s) for s in _SMOOTHINGS)
         if not any(self._try(first) and (first == target or self._reach(target)) for first in (soft, *softer)):
             raise ConvergenceError(
-                f"steady running is found with fewer elements, but not with the {other.nodes} that force_tolerance "
-                "asks for. Give a larger force_tolerance."
+                f"steady running was found with fewer elements, but not with the {other.nodes} required by "
+                "force_tolerance. Increase force_tolerance."
             )
 
     def friction_band(self, known: Mapping[str, FloatArray] | None = None) -> dict[str, FloatArray]:

@@ -83,7 +83,7 @@ def slip_limit(drive: Drive, system: System, asked: System, passed: Sequence[Pas
         )
     torque = abs(float(torques[worst]))
     wanted = abs(_asked_of(drive, asked, last, slips[-1], worst))
-    of = f" of the {wanted:.4g} N m asked" if wanted > torque else ""
+    of = f" of the {wanted:.4g} N m required" if wanted > torque else ""
     speed = RPM * abs(float(here.state.velocity[system.first_body + worst]))
     return (
         f"the belt slips on `{drive.pulleys[worst].name}`, which transmits at most {torque:.4g} N m{of} at this "

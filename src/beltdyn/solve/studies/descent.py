@@ -97,7 +97,7 @@ class Descent:
                     here, derivatives = ahead, self._designs.derivatives(ahead.design)
                 reach = min(reach * (_LONGER if fall >= _GOOD else _SHORTER if fall < _POOR else 1.0), _LARGEST_PART)
             step, expected = self._step(here, derivatives, reach)
-        return "no design nearby is better"
+        return "no better design nearby"
 
     def _set_scales(self, start: Design, derivatives: FloatArray) -> None:
         """Measure the goal by its change along the whole way between bounds, limits by themselves."""

@@ -60,14 +60,14 @@ def free_number(drive: Drive, given: FreeNumber) -> Free:
     """
     path, start = given.path, value_at(drive, given.path)
     if isinstance(start, bool) or not isinstance(start, float):
-        told = "is not given in the drive file" if start is None else f"= {start!r} is no number that changes gradually"
-        raise ModelError(f"number {path} {told}. Give a number there, at which the study starts.")
+        told = "is not given in the drive file" if start is None else f"= {start!r} is not a continuous number"
+        raise ModelError(f"number {path} {told}. Give a number as the starting value.")
     least, largest = (float(converted(drive, path, bound)) for bound in (given.least, given.largest))
     if not least < largest:
-        raise ModelError(f"number {path}: least = {least:g} is not below largest = {largest:g}. Change one.")
+        raise ModelError(f"number {path}: least = {least:g} is not below largest = {largest:g}.")
     if not least <= start <= largest:
         raise ModelError(
-            f"number {path}: the drive file has {start:g}, which is not between least = {least:g} and largest = "
+            f"number {path}: the drive file has {start:g}, which is outside least = {least:g} and largest = "
             f"{largest:g}. Widen them, or change the drive file."
         )
     return Free(path, unit_at(drive, path).replace("*", " "), least, largest, start)
@@ -195,7 +195,7 @@ class Designs:
             pairs = list(zip(self._points, design.states, strict=True))
             states = [self._state(point, design.rest, [state]) for point, state in pairs]
         except ConvergenceError as error:
-            self.failed.append(f"the best design is not found anew on a mesh of its own: {error}")
+            self.failed.append(f"the best design could not be recomputed on its own mesh: {error}")
             return design
         values = np.array([self._read(one, number) for number, one in enumerate(states)])
         return replace(design, values=values, states=tuple(states))

@@ -144,7 +144,9 @@ class Dispatch:
             if attempts < _ATTEMPTS:
                 self._again.append(point)
             else:
-                failure = f"its process was killed {attempts} times, as when memory runs out. Compute fewer at once."
+                failure = (
+                    f"its process was killed {attempts} times, possibly because memory ran out. Run fewer at once."
+                )
                 self._take([Outcome(point, {}, failure, "", 0.0)], {})
 
     def _take_what_came(self) -> None:

@@ -107,11 +107,9 @@ def _number_in_place(drive: Drive, path: str, known: Sequence[str]) -> Number:
         value = None
     if path == "belt.axial_stiffness" and drive.belt.stretch_curve is not None:
         raise ModelError(
-            f"{path} = {value:.4g} N is the slope with which belt.stretch_curve begins, and no number of its own. "
-            "Remove the curve, or leave the stiffness out."
+            f"{path} = {value:.4g} N is the initial slope of belt.stretch_curve, not an independent parameter. "
+            "Remove the curve, or omit the stiffness."
         )
     if not isinstance(value, float) or value == 0.0 or path.startswith(_KEPT):
-        raise ModelError(
-            f"{path} is no number of this drive that can be changed a little. {suggest(path, list(known))}"
-        )
+        raise ModelError(f"{path} is not a continuous parameter of this drive. {suggest(path, list(known))}")
     return Number(path, value, PART * value)

@@ -16,7 +16,7 @@ from beltdyn.solve.compilation import usable_cores
 from beltdyn.solve.spawning import SPAWN, bare_workers
 from beltdyn.solve.worker import start_worker
 
-GONE = "the scheduler is gone, or has given up this study. Start it again, and it goes on where it was."
+GONE = "the scheduler was lost or has abandoned this study. Start the study again to resume it."
 _CONNECT = "30s"
 _ASK = 1.0
 """Time between two questions for the number of workers, s."""
@@ -121,7 +121,8 @@ class DaskWorkers:
             from distributed import Client
         except ImportError as error:
             raise ModelError(
-                f"scheduler = {scheduler!r} needs dask.distributed. Install it: pip install 'beltdyn[cluster]'."
+                f"scheduler = {scheduler!r} needs dask.distributed, which is not installed. Install it: pip install "
+                "'beltdyn[cluster]'."
             ) from error
         try:
             self._client = Client(scheduler, timeout=_CONNECT, set_as_default=False)
@@ -199,5 +200,8 @@ def workers_of(jobs: int | None, scheduler: str | None) -> Workers:
     if scheduler is None:
         return ThisProcess() if jobs == 1 else LocalProcesses(jobs)
     if jobs is not None:
-        raise ModelError(f"jobs = {jobs} is for processes of this machine, and scheduler = {scheduler!r} for others.")
+        raise ModelError(
+            f"jobs = {jobs} is for processes on this machine, but scheduler = {scheduler!r} is is for others. Give "
+            "one of them. Give one of them."
+        )
     return DaskWorkers(scheduler)

@@ -46,8 +46,8 @@ def require_free(output: Path, overwrite: bool, study: object) -> None:
     """
     if isinstance(study, Path | str) and target_of(found_file(output)) == target_of(Path(study)):
         raise ModelError(
-            f"the drive that is found would be written to {found_file(output)}, which is the study. Choose another "
-            "result file."
+            f"the optimised drive would be written to {found_file(output)}, which is the study file. Choose "
+            "another result file."
         )
     require_replaceable(output, is_result, overwrite)
     require_replaceable(found_file(output), _is_found, overwrite)

@@ -75,7 +75,7 @@ def read_headed(option: str, path: Path) -> list[HeadedColumn]:
     headings, body = rows[0].cells, rows[1:]
     for number, line in body:
         if len(line) != len(headings):
-            raise ModelError(f"{path}, line {number}: {len(line)} cells, and there are {len(headings)} headings.")
+            raise ModelError(f"{path}, line {number}: {len(line)} cells but {len(headings)} headings.")
     if body[1:] and (units := row_of_units(body[0].cells)):
         pairs = zip(headings, units, strict=True)
         headings, body = [f"{name} [{unit}]" if unit and " [" not in name else name for name, unit in pairs], body[1:]

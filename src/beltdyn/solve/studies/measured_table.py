@@ -68,7 +68,9 @@ def read_measured(path: Path, drive: Drive) -> MeasuredTable:
     for column in read_headed("table", path):
         _take(table, column, drive)
     if not table.results:
-        raise ModelError(f'{path} holds no result. Give a column such as "pulley_slip[{drive.pulleys[-1].name}]".')
+        raise ModelError(
+            f'{path} has no column of results. Add a column such as "pulley_slip[{drive.pulleys[-1].name}]".'
+        )
     for name, values in table.results.items():
         if not np.isfinite(values).any():
             raise ModelError(f"{path}: {name} was not measured in any row. Fill in the column, or remove it.")
@@ -102,8 +104,8 @@ def _take(table: MeasuredTable, column: HeadedColumn, drive: Drive) -> None:
     number = next((one for one in (whole, given.what) if _is_number(one, drive)), None)
     if number is None:
         raise ModelError(
-            f'{path}: the heading "{given.what}" is neither a result, nor "load", "NAME speed [rpm]" or "NAME torque '
-            f'[N m]", nor the path of a number. {suggest(given.what, known)}'
+            f'{path}: the heading "{given.what}" is not a result, "load", "NAME speed [rpm]", "NAME torque [N '
+            f'm]" or the path of a parameter. {suggest(given.what, known)}'
         )
     own = given._replace(unit="") if number == whole else given
     table.conditions.append(Condition(number, own.values(unit_at(drive, number))))

@@ -18,10 +18,10 @@ MODES = 12
 """Modes that have names by their numbers; as many more with stuck tensioners, if dry friction may hold some."""
 
 OF_MODES = {
-    "frequency": Variable(("span",), "Hz", "Lowest frequency of the modes in which the span swings most"),
+    "frequency": Variable(("span",), "Hz", "Lowest frequency of the modes dominated by the span"),
     "damping_ratio": Variable(("span",), "1", "Damping ratio of that mode"),
-    "mode_frequency": Variable(("mode",), "Hz", "Frequency of the mode of that number"),
-    "mode_damping_ratio": Variable(("mode",), "1", "Damping ratio of the mode of that number"),
+    "mode_frequency": Variable(("mode",), "Hz", "Frequency of the numbered mode"),
+    "mode_damping_ratio": Variable(("mode",), "1", "Damping ratio of the numbered mode"),
 }
 """Results of modes, in steady running and at rest."""
 
@@ -136,7 +136,7 @@ def names_in(known: Mapping[str, float] | Sequence[str], of: str, key: str = "of
         named = [name for name in known if wanted in (name, variable_and_label(name)[0])]
         if not named:
             names = known if "[" in wanted else dict.fromkeys(variable_and_label(name)[0] for name in known)
-            raise ModelError(f"{key} = {wanted!r} is no result that has a number. {suggest(wanted, list(names))}")
+            raise ModelError(f"{key} = {wanted!r} is not a numerical result. {suggest(wanted, list(names))}")
         found += named
     return list(dict.fromkeys(found))
 

@@ -34,7 +34,7 @@ _VARIABLES = {
     "goal_at_start": Variable((), VARIOUS, "Goal at the start"),
     "goal_found": Variable((), VARIOUS, "Goal of the best design"),
     "designs": Variable((), "1", "Designs tried", "int64"),
-    "ended": Variable((), "1", "Why the search ended", "str"),
+    "ended": Variable((), "1", "Reason for ending the search", "str"),
     "best_file": Variable((), "1", "Best drive file", "str"),
     "least": Variable(_NUMBER, VARIOUS, "Least"),
     "start": Variable(_NUMBER, VARIOUS, "Start"),
@@ -45,10 +45,10 @@ _VARIABLES = {
     "worst": Variable(_REQUIREMENT, VARIOUS, "Best"),
     "requirement_unit": Variable(_REQUIREMENT, "1", "Unit", "str"),
     "worst_at": Variable(_REQUIREMENT, "1", "At", "str"),
-    "design_number": Variable((*_DESIGN, "number"), "1", "Number of the design, in its unit"),
+    "design_number": Variable((*_DESIGN, "number"), "1", "Parameter of the design, in its unit"),
     "design_goal": Variable(_DESIGN, VARIOUS, "Goal of the design"),
-    "design_violation": Variable(_DESIGN, "1", "By how much the design violates limits, over the limit"),
-    "failure": Variable(_DESIGN, "1", "Why the design does not run", "str"),
+    "design_violation": Variable(_DESIGN, "1", "Violation of limits, over the limit"),
+    "failure": Variable(_DESIGN, "1", "Why the design failed", "str"),
     "start_result": Variable(_BOTH, VARIOUS, "Result at the start, in its unit"),
     "best_result": Variable(_BOTH, VARIOUS, "Result of the best design, in its unit"),
 }
@@ -181,7 +181,7 @@ class History:
         beyond = self._aims.violation(best.values)
         if not 0.0 < beyond <= _KEPT:
             return ""
-        return f"; a limit is missed by {beyond:.2g} of it, within the tolerance of {_KEPT:g}"
+        return f"; a limit is violated by {beyond:.2g} (relative), within the tolerance of {_KEPT:g}"
 
     def _of_numbers(self, best: Design) -> dict[str, ArrayLike]:
         return {
@@ -233,20 +233,22 @@ class History:
         return group[place].sign * float(signed[place, point]), ", ".join(filter(None, (label, where)))
 
     def _warnings(self, best: Design) -> list[str]:
-        """What makes the best design doubtful."""
+        """Warnings about the best design."""
         found, beyond = list(self._warned), self._aims.violation(best.values)
         if beyond > _KEPT:
             found.append(
-                f"no design keeps to all limits: the best one violates them by {beyond:.2%}. Widen the bounds, free "
-                "more numbers, or relax the limits."
+                f"no design satisfies all limits: the best one violates them by {beyond:.2%}. Widen the bounds, "
+                "vary more parameters, or relax the limits."
             )
         at_bounds = [one.path for one in self._numbers if best.changes[one.path] in (one.least, one.largest)]
         if at_bounds:
-            found.append(f"{', '.join(at_bounds)}: the best value is a bound. Widen it if more is possible.")
+            found.append(f"{', '.join(at_bounds)}: the best value lies at a bound. Widen it if possible.")
         failed = [one for one in self.tried if one.failure]
         if failed:
-            count = f"{len(failed)} designs do" if failed[1:] else "a design does"
-            found.append(f"{count} not run, and are no solutions. The last one: {failed[-1].failure}")
+            count = f"{len(failed)} designs" if failed[1:] else "1 design"
+            found.append(
+                f"{count} failed and {'are' if failed[1:] else 'is'} excluded. The last failure: {failed[-1].failure}"
+            )
         return found
 
     def _save(self) -> None:

@@ -106,7 +106,7 @@ def _analysed(work: PointWork, point: int, changes: Mapping[str, Any]) -> Result
     """The result at a point, in memory or in a file."""
     if work.version != (own := version_of("beltdyn")):
         raise RuntimeError(
-            f"this worker has beltdyn {own}, and the study was started by {work.version}. Install the same."
+            f"this worker has beltdyn {own}, but the study was started with {work.version}. Install the same version."
         )
     drive = work.drive.with_(changes)
     if work.folder is not None:

@@ -82,7 +82,8 @@ class Residuals:
         self.on = np.isfinite(self.measured)
         if np.sum(self.on) < len(numbers):
             raise ModelError(
-                f"{np.sum(self.on)} measured values cannot tell {len(numbers)} numbers. Measure more, or fit fewer."
+                f"{np.sum(self.on)} measured values cannot identify {len(numbers)} parameters. Measure more, or fit "
+                "fewer."
             )
         self._near: list[Design] | None = None
         self._found: dict[bytes, list[Design]] = {}
@@ -98,9 +99,7 @@ class Residuals:
         first = np.array([(one.start - one.least) / (one.largest - one.least) for one in self._numbers])
         failures = [one.failure for one in self._at(first) if one.failure]
         if failures:
-            raise ConvergenceError(
-                f"the search starts from the drive as it is given, which does not run. {failures[0]}"
-            )
+            raise ConvergenceError(f"the search starts from the given drive, which does not run. {failures[0]}")
         self.first = self.values(first)
         return first
 
@@ -150,8 +149,8 @@ def _deviations_are_known(measurements: Sequence[Measurement], tables: Sequence[
     if any(given) and not all(given):
         where, name = named[given.index(False)]
         raise ModelError(
-            f'{where} gives no deviation of {name}, while others have one. Add a column "± {name}", or remove the '
-            "others."
+            f'{where} has no standard deviation of {name}, while other results have one. Add a column "± '
+            f'{name}", or remove the others.'
         )
     return all(given)
 

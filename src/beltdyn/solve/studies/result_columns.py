@@ -72,7 +72,7 @@ def columns_of(result: Result, wanted: Sequence[str]) -> Columns:
 
 def _remedy(name: str, known: Sequence[str]) -> str:
     names = known if "[" in name else list(dict.fromkeys(one.partition("[")[0] for one in known))
-    return f"is no result that has a number. {suggest(name, list(names))}"
+    return f"is not a numerical result. {suggest(name, list(names))}"
 
 
 def _plain(result: Result) -> dict[str, tuple[float, str]]:
@@ -121,4 +121,6 @@ def require_reductions(wanted: Sequence[str]) -> None:
         call = _CALL.fullmatch(text.strip())
         if "(" in text and (call is None or call["reduction"] not in _REDUCTIONS):
             word = text.partition("(")[0]
-            raise ModelError(f"results: {text!r} is no result. {suggest(word, list(_REDUCTIONS))}.".replace("?.", "?"))
+            raise ModelError(
+                f"results: {text!r} is not a result. {suggest(word, list(_REDUCTIONS))}.".replace("?.", "?")
+            )

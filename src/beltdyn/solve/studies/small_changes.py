@@ -44,7 +44,7 @@ class SmallChanges:
         ModelError
             If there is no such drive.
         ConvergenceError
-            If it finds no rest.
+            If no static equilibrium is found.
         """
         wanted, drive = self._rest.tension, self._rest.drive
         if path == "belt.installed_tension":

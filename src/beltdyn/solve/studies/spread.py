@@ -19,9 +19,9 @@ from beltdyn.solve.studies.tolerance_points import DEVIATIONS
 
 _RESULT, _NUMBER = ("result",), ("number",)
 _VARIABLES = {
-    "tolerance": Variable(_NUMBER, VARIOUS, "Tolerance of the number in SI units"),
-    "contribution": Variable(("result", "number"), VARIOUS, "Change of the result with the tolerance of the number"),
-    "spread": Variable(_RESULT, VARIOUS, "Spread by tolerances"),
+    "tolerance": Variable(_NUMBER, VARIOUS, "Tolerance of the parameter, in SI units"),
+    "contribution": Variable(("result", "number"), VARIOUS, "Change of the result over the tolerance of the parameter"),
+    "spread": Variable(_RESULT, VARIOUS, "Spread due to tolerances"),
     "worst_case": Variable(_RESULT, VARIOUS, "Worst case of tolerances"),
     "mean_of_points": Variable(_RESULT, VARIOUS, "Mean over Sobol points"),
     "spread_of_points": Variable(_RESULT, VARIOUS, "Spread over Sobol points"),

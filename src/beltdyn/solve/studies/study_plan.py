@@ -82,8 +82,8 @@ def _combined(sampling: str, several: Sequence[Values], given: Sequence[Any]) ->
     count = prod(map(len, several))
     if count > MOST_POINTS:
         raise ModelError(
-            f"the study has {count:,} points, and {MOST_POINTS:,} are the most. Give fewer values, or sample between "
-            'bounds by sampling = "sobol".'
+            f"the study has {count:,} points, more than the limit of {MOST_POINTS:,}. Give fewer values, or "
+            'sample between bounds with sampling = "sobol".'
         )
     return combinations(several)
 
@@ -91,7 +91,9 @@ def _combined(sampling: str, several: Sequence[Values], given: Sequence[Any]) ->
 def _together(several: Sequence[Values]) -> Values:
     """Points at which the n-th values of all numbers stand together."""
     if len({len(one) for one in several}) > 1:
-        raise ModelError('sampling = "together" needs as many values of each number. Add some, or remove some.')
+        raise ModelError(
+            'sampling = "together" needs the same number of values for each [[number]]. Add or remove values.'
+        )
     return np.stack(several, axis=1)
 
 
@@ -100,7 +102,7 @@ def _sampled(study: ParameterStudy, drive: Drive, units: Sequence[str]) -> Value
     bounds = [_bounds(one, drive, unit) for one, unit in zip(study.numbers, units, strict=True)]
     count = study.points * (len(bounds) + 2) if study.sampling == "saltelli" else study.points
     if count > MOST_POINTS:
-        raise ModelError(f"the study has {count:,} points, and {MOST_POINTS:,} are the most. Lower points.")
+        raise ModelError(f"the study has {count:,} points, more than the limit of {MOST_POINTS:,}. Reduce points.")
     unit = unit_points(study.sampling, len(bounds), study.points, study.seed)
     low, high = np.array([[float(one) for one in pair] for pair in bounds]).T
     placed = low + unit * (high - low)
@@ -122,7 +124,7 @@ def _bounds(number: VariedNumber, drive: Drive, unit: str) -> tuple[float | int,
     values = _values(number.replace(steps=2), drive, unit)
     if len(values) != 2 or any(isinstance(one, str | bool) for one in values):
         raise ModelError(
-            f"number {number.path}: values = {number.values!r} are no bounds. Write a range such as "
+            f"number {number.path}: values = {number.values!r} are not bounds. Write a range such as "
             f'"0.2..1.2 {unit}".'.replace(' ".', '".')
         )
     low, high = sorted(values.tolist())
@@ -162,7 +164,7 @@ def _taken(drive: Drive, path: str, values: Sequence[Any]) -> Values:
         except ModelError as error:
             raise ModelError(f"number {path}: {error}") from error
         if not isinstance(one, bool | int | float | str):
-            raise ModelError(f"number {path}: {value!r} is no number and no word that could vary. Lead to one in it.")
+            raise ModelError(f"number {path}: {value!r} is neither a number nor a word. Give the path of one in it.")
         found[place] = one
     return found
 

@@ -101,7 +101,7 @@ class StudyTable:
         rows = self._rows.read()
         if not rows:
             return
-        remedy = "Choose another --output, or compute all anew with --force (in Python: overwrite=True)."
+        remedy = "Choose another --output, or recompute all with --force (in Python: overwrite=True)."
         if self._known_computing(output) != self.computing:
             raise ModelError(
                 f"{self._rows.path} holds {len(rows)} points of another drive, analysis or list of results. {remedy}"
@@ -109,7 +109,7 @@ class StudyTable:
         places = {self._rows.key(point): point for point in range(len(self._plan.values))}
         lost = sum(row.key not in places for row in rows)
         if lost:
-            raise ModelError(f"{self._rows.path} holds {lost} points that are not in the study any more. {remedy}")
+            raise ModelError(f"{self._rows.path} holds {lost} points that are no longer in the study. {remedy}")
         self._columns = dict(self._rows.columns)
         self._values = {name: np.full(len(self.done), np.nan) for name in self._columns}
         for row in rows:

@@ -28,7 +28,7 @@ def require_points(count: int) -> None:
         If there are not 2, 4, 8, ... of them.
     """
     if count < 0 or (count and count & (count - 1)) or count == 1:
-        raise ModelError(f"sobol = {count} is no number of Sobol points. Give a power of two, such as 64 or 256.")
+        raise ModelError(f"sobol = {count} must be a power of two, such as 64 or 256.")
 
 
 def results_at_points(

@@ -69,8 +69,8 @@ def distance_from_order(order: Order, drive: Drive, points: Sequence[OperatingPo
     if not inside.any():
         raise ModelError(
             f"order {order.order:g} of {name} counts from {RPM * order.least_speed:g} to "
-            f"{RPM * order.largest_speed:g} rpm, and no operating point prescribes a speed of {name} there. Add one "
-            "under [points]."
+            f"{RPM * order.largest_speed:g} rpm, but no operating point prescribes a speed of {name} in this "
+            "range. Add one under [points]."
         )
     low, high = (order.order * speed / (2.0 * np.pi) for speed in (order.least_speed, order.largest_speed))
 

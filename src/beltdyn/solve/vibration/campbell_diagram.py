@@ -32,31 +32,31 @@ _SPEED, _MODE, _EXCITATION, _CRITICAL = ("speed",), ("mode",), ("excitation",), 
 _BOTH = (*_SPEED, *_MODE)
 
 VARIABLES = {
-    "growth": Variable(_SPEED, "1/s", "Growth rate, the largest of the modes"),
-    "flutter_rate": Variable(_SPEED, "1/s", "Flutter rate, the largest near the frequency of the belt on its contact"),
+    "growth": Variable(_SPEED, "1/s", "Growth rate, maximum over the modes"),
+    "flutter_rate": Variable(_SPEED, "1/s", "Flutter rate, maximum near the contact resonance of the belt"),
     "flutter_frequency": Variable(_SPEED, "Hz", "Flutter frequency"),
-    "flutter_bound": Variable(("pulley",), "1/s", "Flutter rate, if a whole arc without ends slid"),
-    "order": Variable(_EXCITATION, "1", "Order, waves in a turn of the pulley"),
-    "excitation_frequency": Variable((*_SPEED, *_EXCITATION), "Hz", "Frequency of the excitation"),
-    "kind": Variable(_MODE, "1", "Kind, by the shares of kinetic energy", "str"),
+    "flutter_bound": Variable(("pulley",), "1/s", "Flutter rate, for an infinitely long sliding arc"),
+    "order": Variable(_EXCITATION, "1", "Order, cycles per turn of the pulley"),
+    "excitation_frequency": Variable((*_SPEED, *_EXCITATION), "Hz", "Excitation frequency"),
+    "kind": Variable(_MODE, "1", "Kind, by shares of kinetic energy", "str"),
     "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
     "lowest_frequency": Variable(_MODE, "Hz", "Lowest frequency"),
     "highest_frequency": Variable(_MODE, "Hz", "Highest frequency"),
     "least_damping_ratio": Variable(_MODE, "1", "Least damping ratio"),
     "frequency": Variable(_BOTH, "Hz", "Frequency"),
     "damping_ratio": Variable(_BOTH, "1", "Damping ratio"),
-    "growth_rate": Variable(_BOTH, "1/s", "Growth rate, below zero where the mode decays"),
-    "assurance": Variable(_BOTH, "1", "Modal assurance with the speed before"),
-    "span_share": Variable((*_BOTH, "span"), "1", "Share of the kinetic energy, of the span across itself"),
-    "pulley_share": Variable((*_BOTH, "pulley"), "1", "Share of the kinetic energy, of the pulley's rotation"),
-    "belt_share": Variable(_BOTH, "1", "Share of the kinetic energy, of the belt along itself"),
-    "tensioner_share": Variable((*_BOTH, "tensioner"), "1", "Share of the kinetic energy, of the tensioner"),
+    "growth_rate": Variable(_BOTH, "1/s", "Growth rate, negative for decaying modes"),
+    "assurance": Variable(_BOTH, "1", "Modal assurance with the previous speed"),
+    "span_share": Variable((*_BOTH, "span"), "1", "Share of kinetic energy, transverse motion of the span"),
+    "pulley_share": Variable((*_BOTH, "pulley"), "1", "Share of kinetic energy, rotation of the pulley"),
+    "belt_share": Variable(_BOTH, "1", "Share of kinetic energy, longitudinal motion of the belt"),
+    "tensioner_share": Variable((*_BOTH, "tensioner"), "1", "Share of kinetic energy, tensioner"),
     "critical_speed": Variable(_CRITICAL, "rad/s", "Speed, critical"),
     "critical_excitation": Variable(_CRITICAL, "1", "Excitation", "str"),
     "critical_mode": Variable(_CRITICAL, "1", "Mode", "int64"),
     "critical_frequency": Variable(_CRITICAL, "Hz", "Frequency"),
     "critical_damping_ratio": Variable(_CRITICAL, "1", "Damping ratio"),
-    "critical_parts": Variable(_CRITICAL, "1", "Parts of the mode there, with most of its energy", "str"),
+    "critical_parts": Variable(_CRITICAL, "1", "Parts of the mode, with most of its energy", "str"),
 }
 """What is known beside operating points."""
 
@@ -214,9 +214,9 @@ class CampbellDiagram:
                 first, last = (RPM * self._speeds[grows[k]] for k in (0, -1))
                 rate = float(values.real[grows].max())
                 yield (
-                    f"mode {number + 1} grows by itself at {grows.size} of {len(self._speeds)} speeds, from "
-                    f"{first:.4g} to {last:.4g} rpm, by up to {rate:.3g} 1/s: the drive does not stay in steady "
-                    "running there. Add damping, or look at a run over time with `beltdyn run`."
+                    f"mode {number + 1} is unstable at {grows.size} of {len(self._speeds)} speeds, from "
+                    f"{first:.4g} to {last:.4g} rpm, by up to {rate:.3g} 1/s: the drive does not remain in "
+                    "steady running there. Add damping, or simulate it over time with `beltdyn run`."
                 )
 
     def _doubtful(self) -> Iterator[str]:
@@ -226,8 +226,8 @@ class CampbellDiagram:
         if unsure.size:
             places = ", ".join(f"{RPM * self._speeds[row]:.4g}" for row in unsure)
             yield (
-                f"mode shapes change much from the speed before to {places} rpm, so that it is doubtful which goes on "
-                "as which. Give more points there, and look at slip: a pulley may have begun to slip as a whole."
+                f"mode shapes change strongly from the previous speed to {places} rpm, so the modes cannot be "
+                "tracked reliably. Add points there, and check slip: a pulley may be in gross slip."
             )
 
 

@@ -179,9 +179,9 @@ def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, Co
                 with np.errstate(divide="ignore", invalid="ignore"):
                     return shift + 1.0 / ritz.values[:found], ritz.vectors(found)
     except RuntimeError as error:
-        raise ConvergenceError(f"vibrations are not found: {error}. Check masses and inertias.") from error
+        raise ConvergenceError(f"the modes cannot be computed: {error}. Check masses and inertias.") from error
     raise ConvergenceError(
-        f"{count} vibrations near {abs(shift) / (2.0 * np.pi):.4g} Hz are not found. Ask for fewer modes."
+        f"{count} vibrations near {abs(shift) / (2.0 * np.pi):.4g} Hz were not found. Reduce the number of modes."
     )
 
 

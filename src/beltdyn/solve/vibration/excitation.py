@@ -83,7 +83,7 @@ def given_excitations(orders: str, drive: Drive, number: int) -> list[Excitation
     name = drive.pulleys[number].name
     found = [] if ".." in orders else [float(one) for one in numbers_in("orders", orders, "", 2)]
     if not found or found[0] <= 0.0:
-        raise ModelError(f'orders = {orders!r} must be numbers above zero with commas between, such as "0.5, 1, 2".')
+        raise ModelError(f'orders = {orders!r} must be positive numbers separated by commas, such as "0.5, 1, 2".')
     return [Excitation(f"order {order:g} of {name}", TURN, order, SHAFT, number) for order in found]
 
 

@@ -19,7 +19,7 @@ STUCK: str = "stuck"
 """Whether tensioners with dry friction move in a mode, without it, or are held by it."""
 FIRST_STUCK = MOST_SWINGING + 2
 """Number of the first mode with stuck tensioners, however many there are with sliding ones."""
-_GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: hardly resonates)")
+_GROUPS = (f"lightly damped (damping ratio below {LIGHT:g})", f"heavily damped ({LIGHT:g} or above: barely resonates)")
 _GROWS = 1e-6
 """Growth rate of a mode that grows by itself, over its angular frequency."""
 _MODE = ("mode",)
@@ -27,19 +27,19 @@ _MODE = ("mode",)
 VARIABLES = {
     "frequency": Variable(_MODE, "Hz", "Frequency"),
     "damping_ratio": Variable(_MODE, "1", "Damping ratio"),
-    "damping": Variable(_MODE, "1", "Whether it is lightly or heavily damped", "str"),
-    "growth_rate": Variable(_MODE, "1/s", "Growth rate, below zero where the mode decays"),
-    "kind": Variable(_MODE, "1", "Kind, by the shares of kinetic energy", "str"),
+    "damping": Variable(_MODE, "1", "Damping class", "str"),
+    "growth_rate": Variable(_MODE, "1/s", "Growth rate, negative for decaying modes"),
+    "kind": Variable(_MODE, "1", "Kind, by shares of kinetic energy", "str"),
     "moving_parts": Variable(_MODE, "1", "Parts with most of the energy", "str"),
     "dry_tensioners": Variable(_MODE, "1", "Tensioners with dry friction", "str"),
-    "span_share": Variable((*_MODE, "span"), "1", "Share of the kinetic energy, of the span across itself"),
-    "pulley_share": Variable((*_MODE, "pulley"), "1", "Share of the kinetic energy, of the pulley's rotation"),
-    "belt_share": Variable((*_MODE, "whole"), "1", "Share of the kinetic energy, of the belt along itself"),
-    "tensioner_share": Variable((*_MODE, "tensioner"), "1", "Share of the kinetic energy, of the tensioner"),
+    "span_share": Variable((*_MODE, "span"), "1", "Share of kinetic energy, transverse motion of the span"),
+    "pulley_share": Variable((*_MODE, "pulley"), "1", "Share of kinetic energy, rotation of the pulley"),
+    "belt_share": Variable((*_MODE, "whole"), "1", "Share of kinetic energy, longitudinal motion of the belt"),
+    "tensioner_share": Variable((*_MODE, "tensioner"), "1", "Share of kinetic energy, tensioner"),
     "belt_shape": Variable((*_MODE, "part", "point"), "1", "Displacement of the belt to its left"),
-    "rim_shape": Variable((*_MODE, "part", "pulley"), "1", "Way of the rim, counter-clockwise"),
-    "tensioner_shape": Variable((*_MODE, "part", "tensioner"), "1", "Way of the tensioned pulley"),
-    "point_position": Variable(("point", "axis"), "m", "Position of the belt's points"),
+    "rim_shape": Variable((*_MODE, "part", "pulley"), "1", "Displacement of the rim, counter-clockwise"),
+    "tensioner_shape": Variable((*_MODE, "part", "tensioner"), "1", "Displacement of the tensioned pulley"),
+    "point_position": Variable(("point", "axis"), "m", "Position of the belt points"),
     "point_normal": Variable(("point", "axis"), "1", "Unit vector to the left of the belt"),
     "point_span": Variable(("point",), "1", "Number of the span, or of that behind the arc", "int64"),
 }
@@ -111,7 +111,7 @@ def eigenmodes(
     given = pencil(motions.stiffness, motions.damping, motions.mass, motions.free)
     values, vectors = swinging(given, count, counted=counted)
     if not values.size:
-        raise ConvergenceError("the drive has no mode that swings. Check its masses, stiffnesses and damping.")
+        raise ConvergenceError("the drive has no oscillating mode. Check its masses, stiffnesses and damping.")
     return values, given.coordinates(values, vectors)
 
 
@@ -186,6 +186,6 @@ def _warnings(numbers: IntArray, values: ComplexArray) -> list[str]:
         return []
     named = ", ".join(f"{number} ({rate:.3g} 1/s)" for number, rate in growing)
     return [
-        f"modes grow by themselves: {named}. The drive does not stay in this state. Add damping, or look at a run over "
+        f"unstable modes: {named}. The drive does not remain in this state. Add damping, or simulate it over "
         "time with `beltdyn run`."
     ]

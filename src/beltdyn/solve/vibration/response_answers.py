@@ -21,12 +21,12 @@ RESPONSES = {
     "span_tension": Variable(("span",), "N", "Span tension"),
     "mid_span_displacement": Variable(("span",), "m", "Mid-span displacement"),
     "belt_speed": Variable(("span",), "m/s", "Belt speed"),
-    "pulley_speed": Variable(("pulley",), "rad/s", "Speed of the pulley"),
-    "shaft_speed": Variable(("pulley",), "rad/s", "Speed of the shaft"),
+    "pulley_speed": Variable(("pulley",), "rad/s", "Pulley speed"),
+    "shaft_speed": Variable(("pulley",), "rad/s", "Shaft speed"),
     "pulley_torque": Variable(("pulley",), "N m", "Torque of the belt on the pulley"),
-    "shaft_torque": Variable(("pulley",), "N m", "Torque on the shaft"),
+    "shaft_torque": Variable(("pulley",), "N m", "Shaft torque"),
     "hub_load": Variable(("pulley",), "N", "Hub load"),
-    "tensioner_position": Variable(("tensioner",), "m or rad", "Position of the tensioner"),
+    "tensioner_position": Variable(("tensioner",), "m or rad", "Tensioner position"),
 }
 """Results whose amplitudes are found, with the dimension that comes after speed and excitation."""
 _ABOUT = ("speed", "excitation")
@@ -61,8 +61,9 @@ class Answers:
         ]
         if not self.excitations:
             raise ModelError(
-                "nothing excites the drive: no prescribed speed and no load of a free pulley has harmonics. Give a "
-                "pulley `harmonics = [{ order = 2, amplitude = 0.02 }]`, or a load a torque over its angle."
+                "the drive has no excitation: no prescribed speed and no load of a free pulley has harmonics. "
+                "Give a pulley `harmonics = [{ order = 2, amplitude = 0.02 }]`, or a load a torque over its "
+                "angle."
             )
         known = {name: one for name, one in RESPONSES.items() if self._labels[one.dims[0]]}
         self._variables = known
@@ -113,11 +114,11 @@ class Answers:
         """Amplitudes and phases, and for each span, pulley and tensioner the largest sum of all amplitudes."""
         found: dict[str, tuple[Variable, ArrayLike]] = {
             "order": (
-                Variable(("excitation",), "1", "Order, waves in a turn of the exciting shaft"),
+                Variable(("excitation",), "1", "Order, cycles per turn of the exciting shaft"),
                 [one.order for one in self.excitations],
             ),
             "excitation_frequency": (
-                Variable(("speed", "excitation"), "Hz", "Frequency of the excitation"),
+                Variable(("speed", "excitation"), "Hz", "Excitation frequency"),
                 self._frequency,
             ),
         }
@@ -128,7 +129,7 @@ class Answers:
             found[f"{name}_phase"] = Variable(dims, "rad", f"{one.long_name}, phase"), np.angle(values)
         for name, one in self._variables.items():
             total = np.abs(self._found[name]).sum(axis=1)
-            label = f"Amplitude of {one.long_name[0].lower()}{one.long_name[1:]}: the largest sum of all orders"
+            label = f"Amplitude of {one.long_name[0].lower()}{one.long_name[1:]}: maximum sum of all orders"
             largest = np.fmax.reduce(total, axis=0)
             found[f"largest_{name}_amplitude"] = Variable(one.dims, self._units(one.units), label), largest
         return found
@@ -148,10 +149,11 @@ class Answers:
             return []
         row, span = np.unravel_index(np.nanargmax(np.where(slack, total / means["span_tension"], 0.0)), slack.shape)
         return [
-            f"at {np.count_nonzero(slack.any(axis=1))} speeds spans would go slack: worst at "
-            f"{RPM * self._speeds[row]:.4g} rpm, where the tension of {self._labels['span'][span]} swings by up to "
-            f"{total[row, span]:.4g} N about {means['span_tension'][row, span]:.4g} N. Vibrations are not small there, "
-            "and amplitudes are too large. Look at a run-up over time with `beltdyn sweep`, put beside by --compare."
+            f"at {np.count_nonzero(slack.any(axis=1))} speeds spans would go slack; the worst is at "
+            f"{RPM * self._speeds[row]:.4g} rpm, where the tension of {self._labels['span'][span]} oscillates "
+            f"by up to {total[row, span]:.4g} N about {means['span_tension'][row, span]:.4g} N. The linear "
+            "analysis overestimates the amplitudes there. Simulate a run-up with `beltdyn sweep` and add it "
+            "with --compare."
         ]
 
     def _units(self, units: str) -> str:

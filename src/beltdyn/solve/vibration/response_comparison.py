@@ -66,7 +66,7 @@ def run_up_amplitudes(given: Run | Path | str, place: Place) -> Axes:
     own = [str(one) for one in run.dataset["pulley"].values]
     if own != list(place.labels["pulley"]):
         raise ModelError(
-            f"compare holds a run with the pulleys {', '.join(own)}, and the drive has "
+            f"the run given by compare has the pulleys {', '.join(own)}, but the drive has "
             f"{', '.join(place.labels['pulley'])}. Give a run-up of the same drive."
         )
     found = dict[str, tuple[Variable, FloatArray]]()
@@ -143,12 +143,12 @@ def _named(column: HeadedColumn, place: Place) -> tuple[str, int, int]:
     match = _HEADING.fullmatch(column.what)
     if match is None:
         raise ModelError(
-            f'{column.path}: the heading "{column.what}" is none such as "speed [rpm]" or '
-            '"span_tension crank-idler order 2 [N]". Correct it.'
+            f'{column.path}: the heading "{column.what}" must be of the form "speed [rpm]" or "span_tension '
+            'crank-idler order 2 [N]".'
         )
     name, of, order = match["name"], match["of"], float(match["order"])
     if name not in RESPONSES:
-        raise ModelError(f"{column.path}: {name} is no result of a response. {suggest(name, list(RESPONSES))}")
+        raise ModelError(f"{column.path}: {name} is not a result of a response. {suggest(name, list(RESPONSES))}")
     known = list(place.labels[RESPONSES[name].dims[0]])
     if of not in known:
         raise ModelError(f"{column.path}: {of} is not in this drive. {suggest(of, known)}")
@@ -156,6 +156,6 @@ def _named(column: HeadedColumn, place: Place) -> tuple[str, int, int]:
     if order not in orders:
         there = ", ".join(f"{one:g}" for one in orders if one is not None)
         raise ModelError(
-            f"{column.path}: order {order:g} is none that excites the drive. Those of this pulley: {there or 'none'}."
+            f"{column.path}: order {order:g} does not excite the drive. Orders of this pulley: {there or 'none'}."
         )
     return name, orders.index(order), known.index(of)

@@ -27,8 +27,8 @@ def require_mesh_that_stays(run: Run) -> None:
     """
     if not run.drive.frame.stays:
         raise ModelError(
-            'the mesh of this run travels with the belt, simulation.frame = "travelling", so that nodes come and go at '
-            'arcs, and no state of it stays. Run the drive again with frame = "staying", or find its modes about '
+            'modes need a run on a staying mesh, but this run has simulation.frame = "travelling", whose nodes '
+            'enter and leave the arcs. Run the drive again with frame = "staying", or compute its modes about '
             "steady running."
         )
 

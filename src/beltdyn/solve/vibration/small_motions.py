@@ -123,10 +123,10 @@ def about_rest(drive: Drive) -> SmallMotions:
     ModelError
         If its belt is open.
     ConvergenceError
-        If it comes to no rest.
+        If no static equilibrium is found.
     """
     if drive.ends:
-        raise ModelError("the belt is open, and modes are those of a closed belt. Look at a run with `beltdyn run`.")
+        raise ModelError("the belt is open, but modes need a closed belt. Simulate the drive with `beltdyn run`.")
     return about_standing(bring_to_stand(drive))
 
 

@@ -66,9 +66,7 @@ def test_no_drive_file_holds_a_function(carrying: Drive) -> None:
 def test_no_other_process_gets_a_function(carrying: Drive, tmp_path: Path) -> None:
     """It is refused before anything starts, and is not lost on the way."""
     told = list[object]()
-    with pytest.raises(
-        ModelError, match=r'load of kind "function": run.nc is computed by another process.* call `simulate`'
-    ):
+    with pytest.raises(ModelError, match=r'load of kind "function": run.nc runs in another process.* Call `simulate`'):
         simulate_all({tmp_path / "run.nc": carrying}, told.append)
     assert told == []
     assert list(tmp_path.iterdir()) == []

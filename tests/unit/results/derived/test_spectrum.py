@@ -67,7 +67,7 @@ def test_too_few_outputs_have_no_spectrum(outputs: int) -> None:
         lambda values: waterfall(values, pulley),
         lambda values: orders(values, pulley),
     ):
-        with pytest.raises(ModelError, match=f"{outputs} outputs are too few for a spectrum: 16 or more"):
+        with pytest.raises(ModelError, match=f"{outputs} outputs are too few for a spectrum; 16 or more"):
             spectrum(few)
 
 
@@ -85,7 +85,7 @@ def test_a_run_up_is_two_spectra_or_more(outputs: int, spectra: int) -> None:
     if spectra > 1:
         np.testing.assert_allclose(waterfall(record, speed)["speed"], 18.0 + 4.0 * np.arange(spectra), rtol=1e-12)
     else:
-        with pytest.raises(ModelError, match="there is no run-up to look at"):
+        with pytest.raises(ModelError, match="there is no run-up"):
             waterfall(record, speed)
 
 
@@ -119,7 +119,7 @@ def test_waterfall_shows_the_line_of_an_order_and_that_of_a_hum(
 def test_a_single_spectrum_longer_than_the_record_is_no_run_up(run_up: Signals) -> None:
     """With three pieces each is to be of four thirds of the record."""
     values, speed, _ = run_up
-    with pytest.raises(ModelError, match="there is no run-up to look at"):
+    with pytest.raises(ModelError, match="there is no run-up"):
         waterfall(values, speed, pieces=3)
 
 
@@ -149,7 +149,7 @@ def test_a_run_up_may_be_small_but_not_a_ripple(run_up: Signals) -> None:
     slow = series(time, 100.0 + time / 8.0 * 1.8)
     assert np.all(np.diff(waterfall(values, slow)["speed"]) > 0.0)
     for speed in (100.0 + 0.1 * time, 100.0 + 0.3 * np.sin(2.0 * np.pi * 0.3 * time)):
-        with pytest.raises(ModelError, match=r"the speed stays at 100(\.\d)? rad/s: there is no run-up"):
+        with pytest.raises(ModelError, match=r"the speed is constant at 100(\.\d)? rad/s: there is no run-up"):
             waterfall(values, series(time, speed))
 
 
@@ -226,7 +226,7 @@ def test_a_constant_speed_is_no_run_up() -> None:
     speed = xr.DataArray(
         np.full(1000, 300.0), {"time": time}, ("time",), attrs={"units": "rad/s", "long_name": "Speed"}
     )
-    with pytest.raises(ModelError, match="the speed stays at 300 rad/s"):
+    with pytest.raises(ModelError, match="the speed is constant at 300 rad/s"):
         waterfall(series(time, np.sin(time)), speed)
 
 

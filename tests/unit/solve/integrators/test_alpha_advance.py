@@ -121,5 +121,5 @@ def test_nan_forces_end_with_too_small_a_step(spinning: System) -> None:
 
 def test_massless_belt_is_refused(spinning: System) -> None:
     massless = spinning._replace(mass=np.zeros_like(spinning.mass))
-    with pytest.raises(ConvergenceError, match="a part of the drive that moves has no mass"):
+    with pytest.raises(ConvergenceError, match="a moving part of the drive has no mass"):
         restart(massless, start(spinning), new_equations(spinning))

@@ -65,5 +65,5 @@ def test_steps_without_a_solution_are_tried_shorter(short: Drive) -> None:
 
 
 def test_a_method_that_cannot_go_on_says_why(short: Drive) -> None:
-    with pytest.raises(ConvergenceError, match=r"frozen cannot go on at t = 0 s .*: it is too long\. Try"):
+    with pytest.raises(ConvergenceError, match=r"frozen fails at t = 0 s .*: it is too long\. Try"):
         simulate(short, integrator=Stepwise(Frozen(1e-3), FixedSteps(2e-3)))

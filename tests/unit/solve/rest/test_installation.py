@@ -140,7 +140,7 @@ def test_take_up_for_a_tension() -> None:
     ("tension", "said"),
     [
         (600.0, "it presses with 1700 N, and that tension takes 1200 N"),
-        pytest.param(850.0, "its force makes 8.* N at any length", marks=pytest.mark.slow),
+        pytest.param(850.0, "the tensioner force gives 8.* N at any belt length", marks=pytest.mark.slow),
     ],
 )
 def test_a_take_up_of_constant_force_sets_the_tension(tension: float, said: str) -> None:

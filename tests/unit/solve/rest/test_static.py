@@ -68,11 +68,13 @@ def test_pulleys_stand_still(drive: Drive) -> None:
 
 
 def test_too_few_iterations_say_so(cantilever: System) -> None:
-    with pytest.raises(ConvergenceError, match=r"comes to no rest: .* the last of 2 steps.* raise belt.elements"):
+    with pytest.raises(
+        ConvergenceError, match=r"no static equilibrium found: .* after 2 iterations.* increase belt.elements"
+    ):
         find_equilibrium(cantilever, straight(cantilever), max_iterations=2)
 
 
 def test_a_belt_on_the_loose_has_no_equilibrium(drive: Drive) -> None:
     system = belt_system(drive.belt, forces=[(-1, (1.0, 0.0))])
-    with pytest.raises(ConvergenceError, match="comes to no rest"):
+    with pytest.raises(ConvergenceError, match="no static equilibrium found"):
         find_equilibrium(system, straight(system), max_iterations=50)

@@ -99,7 +99,7 @@ def test_the_belt_is_drawn_by_the_elements_that_stay(short: Drive) -> None:
 def test_what_does_not_fit_is_refused(loaded: Drive) -> None:
     with pytest.raises(ModelError, match="every prescribed speed is zero"):
         bd.simulate(loaded.replace(simulation=loaded.simulation.replace(start="steady")))
-    with pytest.raises(ModelError, match=r'"bdf" does not fit simulation\.frame = "staying"'):
+    with pytest.raises(ModelError, match=r'"bdf" does not support simulation\.frame = "staying"'):
         bd.simulate(loaded, integrator=StandardIntegrator("bdf", 1e-3))
     band = bd.load(str(files("beltdyn") / "examples" / "band_brake.toml"))
     with pytest.raises(ModelError, match="does not fit an open belt"):

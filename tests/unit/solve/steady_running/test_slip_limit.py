@@ -13,7 +13,7 @@ from beltdyn.solve.steady import steady_state
 from beltdyn.solve.steady_running import search
 from beltdyn.solve.traction import traction
 
-NUMBERS = re.compile(r"slips on `(\w+)`, which transmits at most (\S+) N m of the (\S+) N m asked")
+NUMBERS = re.compile(r"slips on `(\w+)`, which transmits at most (\S+) N m of the (\S+) N m required")
 
 
 FAN = {"kind": "fan", "rated_power": "3 kW", "rated_speed": "955 rpm"}

@@ -133,7 +133,7 @@ def test_a_cluster_that_goes_ends_the_study_with_what_came_back(tiny_work: Make)
             cluster.close()
 
         dispatch = Dispatch(workers, tiny_work(seconds=0.2), lambda _: {"belt.width": 0.01}, take, lambda: None)
-        with pytest.raises(SimulationError, match="goes on where it was"):
+        with pytest.raises(SimulationError, match="to resume it"):
             dispatch.run(range(50))
     assert 0 < len(found) < 50
 

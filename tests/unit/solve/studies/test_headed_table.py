@@ -38,7 +38,7 @@ def test_a_table_of_a_logger(tmp_path: Path) -> None:
     ("text", "said"),
     [
         ("a [N]\n", "has no rows"),
-        ("a, b\n1\n", "line 2: 1 cells, and there are 2 headings"),
+        ("a, b\n1\n", "line 2: 1 cells but 2 headings"),
         ("a [N]\nx\n", 'line 2: "x"'),
         ("a [m]\n1\n", "must be in units of"),
         ("a [N]\nnan\n", '"nan" below "a" must be a number'),

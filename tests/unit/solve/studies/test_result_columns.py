@@ -49,7 +49,7 @@ def test_all_takes_every_single_number(drive: Drive) -> None:
 def test_what_there_is_not_is_told(drive: Drive) -> None:
     found = columns_of(equilibrium(drive), ["hub_laod", "tension"])
     assert found.values.keys() == {"tension"}
-    assert found.missing == "results = 'hub_laod' is no result that has a number. Did you mean \"hub_load\"?"
+    assert found.missing == "results = 'hub_laod' is not a numerical result. Did you mean \"hub_load\"?"
 
 
 @pytest.mark.parametrize("text", ["greatest(span_tension)", "largest(span_tension", "largest()"])

@@ -73,7 +73,7 @@ def test_rows_of_a_table_are_points(drive: Drive, tmp_path: Path) -> None:
         ([WIDTH | {"values": "10..20 kg"}], {}, "must be in units of m"),
         ([WIDTH | {"values": [-1.0]}], {}, "belt.width = -1"),
         ([{"path": "pulley[driver].speed", "values": [12.0]}], {}, "speed"),
-        ([WIDTH], {"sampling": "sobol"}, "are no bounds"),
+        ([WIDTH], {"sampling": "sobol"}, "are not bounds"),
         ([WIDTH, WIDTH], {}, "stands twice"),
         ([], {}, "points come from a table, or from groups"),
         ([WIDTH], {"table": "a.csv"}, "Give one of them"),

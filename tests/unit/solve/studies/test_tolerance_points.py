@@ -44,7 +44,7 @@ def test_a_hub_carries_the_tension_twice(found: Result) -> None:
 
 
 def test_points_need_tolerances_and_a_power_of_two(toleranced: Drive) -> None:
-    with pytest.raises(ModelError, match="sobol = 12 is no number of Sobol points"):
+    with pytest.raises(ModelError, match="sobol = 12 must be a power of two"):
         require_points(12)
     without = better(loaded_two_pulley())
     with pytest.raises(ModelError, match="the drive file has none"):

@@ -57,7 +57,7 @@ def test_orders_of_a_run_up(run: bd.Run) -> None:
 
 
 def test_a_run_of_another_drive(run: bd.Run) -> None:
-    with pytest.raises(ModelError, match="compare holds a run with the pulleys driver, driven"):
+    with pytest.raises(ModelError, match="the run given by compare has the pulleys driver, driven"):
         run_up_amplitudes(run, PLACE._replace(labels={**PLACE.labels, "pulley": ["a", "b"]}))
 
 
@@ -77,10 +77,10 @@ def test_measured(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("heading", "said"),
     [
-        ("tension", 'the heading "tension" is none such as'),
+        ("tension", 'the heading "tension" must be of the form'),
         ("span_tensoin driven-driver order 2", "span_tensoin is no result of a response"),
         ("span_tension driven order 2", "driven is not in this drive"),
-        ("span_tension driven-driver order 3", "order 3 is none that excites the drive. Those of this pulley: 2"),
+        ("span_tension driven-driver order 3", "order 3 does not excite the drive. Orders of this pulley: 2"),
     ],
 )
 def test_headings_that_are_wrong(tmp_path: Path, heading: str, said: str) -> None:

@@ -79,11 +79,11 @@ def test_a_mesh_that_travels_has_none(drive: Drive) -> None:
 
 
 def test_options_that_do_not_go_with_a_run(settled: bd.Run, steady: bd.Run) -> None:
-    with pytest.raises(ModelError, match="speed and pulley do not go with a run over time"):
+    with pytest.raises(ModelError, match="speed and pulley cannot be given with a run over time"):
         modes(settled, speed="800 rpm")
-    with pytest.raises(ModelError, match="about does not go with a run"):
+    with pytest.raises(ModelError, match="about cannot be given with a run"):
         modes(settled, about="rest")
-    with pytest.raises(ModelError, match="speed, pulley and at go with about"):
+    with pytest.raises(ModelError, match="speed, pulley and at require about"):
         modes(steady, at=0.1)
 
 

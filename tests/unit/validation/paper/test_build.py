@@ -43,7 +43,7 @@ def test_two_parts_may_not_use_a_name_for_two_drives(tmp_path: Path) -> None:
 def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
     file = tmp_path / "file"
     file.touch()
-    with pytest.raises(ModelError, match=r"the folder .* cannot be made"):
+    with pytest.raises(ModelError, match=r"the folder .* cannot be created"):
         build_paper(file, parts=[])
 
 

@@ -10,7 +10,7 @@ def test_an_output_folder_that_is_a_file(tmp_path: Path, capsys: pytest.CaptureF
     file = tmp_path / "file"
     file.touch()
     assert command.main(["--out", str(file)]) == 2
-    assert "cannot be made" in capsys.readouterr().err
+    assert "cannot be created" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("failures", "code"), [({}, 0), ({"run_1": "no convergence"}, 3)])
