@@ -41,8 +41,8 @@ def fmu(
 ) -> Path:
     """Export a drive as a functional mock-up unit (FMU) for co-simulation.
 
-    The unit holds the drive as `dumps` writes it, with the tables that its file names, and steps it by a `Simulator`.
-    The host needs a Python with beltdyn; see the page on FMUs.
+    The unit contains the drive as written by `dumps`, with the tables of its file, and a `Simulator`. The host needs a
+    Python with beltdyn; see the page on FMUs.
 
     Parameters
     ----------
@@ -51,18 +51,18 @@ def fmu(
     path : Path or str
         The file, ``.fmu``.
     inputs : sequence of str, optional
-        What the host sets: ``pulley[NAME].speed`` of pulleys whose speed is prescribed, in rad/s, and
-        ``pulley[NAME].torque`` of others, in N m. By default all that the drive file gives. What the host never sets
-        goes by the drive file.
+        Inputs set by the host: ``pulley[NAME].speed`` of pulleys whose speed is prescribed, in rad/s, and
+        ``pulley[NAME].torque`` of others, in N m. By default all that the drive file gives. Inputs that the host never
+        sets keep their course in the drive file.
     outputs : sequence of str, optional
-        What the host reads: names of `Simulator.outputs`, or those before the brackets, such as "pulley_speed" for that
-        of all pulleys. By default all.
+        Outputs read by the host: names of `Simulator.outputs`, or their part before the brackets, such as
+        "pulley_speed" for all pulleys. By default all.
     fmi : str
         Version of FMI, "2.0" or "3.0".
     progress : callable, optional
-        Called with a `Progress` while the beginning is found.
+        Called with a `Progress` while the initial state is computed.
     overwrite : bool
-        Replace any regular file, and not only those of beltdyn.
+        Overwrite any regular file, not only those of beltdyn.
 
     Returns
     -------
@@ -72,10 +72,11 @@ def fmu(
     Raises
     ------
     ModelError
-        If a name or the version is unknown, the drive holds functions of Python or asks for another integrator than
-        "generalized_alpha", pythonfmu is missing, or the file cannot be written or would replace one that is not ours.
+        If a name or the version is unknown, the drive has Python functions or another integrator than
+        "generalized_alpha", pythonfmu is missing, or the file cannot be written or would replace a file of another
+        program.
     ConvergenceError
-        If there is no state to begin with.
+        If no initial state is found.
 
     Examples
     --------

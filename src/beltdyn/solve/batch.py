@@ -30,27 +30,27 @@ def simulate_all(
 ) -> dict[Path, Ending]:
     """Simulate several drives in parallel, each in its own process; see `analyse_all`.
 
-    Kernels are compiled first, once, unless they are on the disk already.  A simulation that fails leaves the others
-    alone.  Ctrl-C ends those on their way, which keep what they computed.  Processes do not run the caller's script
-    again, so that it needs no ``if __name__ == "__main__"``.
+    Kernels are compiled once beforehand, unless they are on disk already.  A failed simulation does not affect the
+    others.  Ctrl-C ends the running ones, which keep their results so far.  Processes do not import the caller's
+    script, so it needs no ``if __name__ == "__main__"``.
 
     Parameters
     ----------
     drives : mapping
         Result file -> drive.
     progress : callable, optional
-        Called at the beginning, and several times a second while simulations are on their way.
+        Called at the start, and several times a second while simulations run.
     jobs : int, optional
-        How many at a time; by default as many as there are cores.
+        Number of parallel simulations; by default the number of cores.
     overwrite : bool
-        Replace any regular files by the results, and not only earlier results.
+        Overwrite any regular files, not only earlier results.
     finish : callable, optional
-        A function of a module, called with each completed run in the process that made it; it may replace the file.
+        A function of a module, called with each completed run in its process; it may replace the file.
 
     Returns
     -------
     dict
-        Result file -> how its simulation ended, in the order of `drives`.
+        Result file -> `Ending` of its simulation, in the order of `drives`.
     """
     return analyse_all(ANALYSES[RUN], drives, progress, jobs, overwrite, finish)
 
@@ -80,12 +80,12 @@ def analyse_all(
     Returns
     -------
     dict
-        Result file -> how its analysis ended, in the order of `drives`.
+        Result file -> `Ending` of its analysis, in the order of `drives`.
 
     Raises
     ------
     ModelError
-        If a load is a function of Python, before anything is computed.
+        If a load is a Python function; nothing is computed then.
     """
     endings: dict[Path, Ending] = {}
     files = {Path(file): drive for file, drive in drives.items()}

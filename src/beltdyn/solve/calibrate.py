@@ -65,42 +65,42 @@ def calibrate(
 ) -> Result:
     r"""Fit parameters of a drive to measured results, with confidence intervals.
 
-    A study names the numbers and tables of measurements: results of steady running or at rest, such as slip over
-    torque, frequencies of spans, or the place of a tensioner over the tension. Numbers are those of least squares, and
-    their intervals follow from the derivatives of results and the deviations of measurements; where tables give none,
-    measurements have the same relative one, which is estimated.
+    A study names the parameters and the tables of measurements: results in steady running or at rest, such as slip over
+    torque, span frequencies, or tensioner position over tension. The parameters are fitted by least squares. Their
+    confidence intervals follow from the derivatives of results and the standard deviations of measurements; without
+    these, a common relative deviation is estimated.
 
     Parameters
     ----------
     drive
-        The drive, at which the search starts.
+        The drive, with the starting values.
     study
         The study file, TOML.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), with the calibrated drive file beside it; without one the results stay in memory.
+        Result file (NetCDF4), with the calibrated drive file beside it; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
     Result
-        Along ``number`` ``fitted``, ``standard_error``, ``lower`` and ``upper``; along ``measured`` what was measured
-        and what the drive gives. Its drive is the calibrated one, of which the attribute ``best_drive`` is the text.
+        Along ``number`` ``fitted``, ``standard_error``, ``lower`` and ``upper``; along ``measured`` the measured and
+        the computed values. Its drive is the calibrated one, whose file text is the attribute ``best_drive``.
 
     Raises
     ------
     ModelError
-        If the study is none, or does not fit the drive.
+        If the study is invalid, or does not fit the drive.
     ConvergenceError
-        If the drive that is given has no such state, or measurements do not tell the numbers.
+        If the given drive has no such state, or the measurements cannot identify the parameters.
     KeyboardInterrupt
-        If the search is interrupted before there are numbers to keep. Later it ends with those that it has come to, and
-        with the status "interrupted".
+        If the search is interrupted before its first result. Later it returns the values of the last iteration, with
+        the status "interrupted".
 
     Examples
     --------

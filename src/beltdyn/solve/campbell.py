@@ -38,41 +38,41 @@ def campbell(
 ) -> Result:
     """Compute a Campbell diagram: the modes of a drive over speed, and the critical speeds at which orders excite them.
 
-    Modes are those of `modes`, about steady running. They are followed from speed to speed by their shapes. Loads are
-    those of the drive file at one instant; those over speed follow the speed. A speed without steady running is marked,
-    and the others stay.
+    Modes are those of `modes`, about steady running, and are tracked over speed by their shapes. Loads are those of the
+    drive file at one instant; speed-dependent loads follow the speed. Speeds without steady running are marked as
+    failed.
 
     Parameters
     ----------
     drive
         The drive.
     speed
-        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in the sense in
-        which it turns.
+        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in its sense of
+        rotation.
     pulley
-        The pulley whose speed is prescribed, in place of its motor; by default the one that drives.
+        The pulley whose speed is prescribed, in place of its motor; by default the driver.
     points
         Number of speeds of a range.
     count
-        How many modes to follow at each speed, from the lowest frequency on.
+        Number of modes at each speed, from the lowest frequency.
     orders
-        Orders of the pulley's rotation that excite, such as "1, 2, 4". By default the harmonics of speeds and loads in
-        the drive file, the turns of all pulleys, and that of the belt.
+        Exciting orders of the pulley's rotation, such as "1, 2, 4". By default the harmonics of speeds and loads in the
+        drive file, and the rotation of all pulleys and of the belt.
     dry_tensioners
-        "sliding" for tensioners without dry friction, as in large vibrations, or "stuck" for those that it
-        holds, as in small ones.
+        "sliding" for tensioners without dry friction, as in large vibrations, or "stuck" for tensioners held by it, as
+        in small ones.
     at
-        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
-        the simulation.
+        Instant at which loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+        Result file (NetCDF4), updated point by point; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def campbell(
     Raises
     ------
     ModelError
-        If options make no sense, or the drive cannot run steadily.
+        If options are invalid, or the drive cannot run steadily.
     ConvergenceError
         If no speed has steady running.
 

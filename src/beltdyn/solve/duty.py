@@ -49,8 +49,8 @@ def duty(
     r"""Compute the operating points of a duty table, with means weighted by duration.
 
     The table is a CSV file with a line of headings: "duration [s]", "NAME speed [rpm]" and "NAME torque [N m]" of
-    pulleys, and "load", the factor on all torques and loads of the drive file but those of motors. Each line below is
-    an operating point. What a table does not name stays as the drive file says.
+    pulleys, and "load", the factor on all torques and loads of the drive file but those of motors. Each line is an
+    operating point. Quantities without a column are those of the drive file.
 
     Parameters
     ----------
@@ -59,29 +59,29 @@ def duty(
     table
         The CSV file.
     at
-        At which instant the rest of the drive is taken, such as "0.5 s", or in s; by default at the end of
-        the simulation.
+        Instant at which the rest of the drive is evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+        Result file (NetCDF4), updated point by point; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
     Result
         Variables along ``row``, and their means over all rows that have an operating point: ``mean_power_in``,
         ``mean_efficiency`` and others; ``equivalent_hub_load`` is the cubic mean over the turns of each pulley, which
-        gives ball bearings the same life.
+        gives the same life of ball bearings.
 
     Raises
     ------
     ModelError
-        If the file is no such table, or the drive cannot run steadily.
+        If the file is not a duty table, or the drive cannot run steadily.
     ConvergenceError
         If no row has steady running.
 

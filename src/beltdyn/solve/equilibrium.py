@@ -26,11 +26,11 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     drive
         The drive.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which a mesh that is graded towards the ends of
-        arcs is refined; by default that of the drive, simulation.force_tolerance. Without either the mesh is that of
-        equal elements, as many as the drive has.
+        Tolerance of contact forces, relative to the largest on each pulley, to which a mesh graded towards the ends of
+        arcs is refined; by default simulation.force_tolerance. Without either the mesh has equal elements, as many as
+        the drive.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
 
     Returns
     -------
@@ -41,7 +41,7 @@ def equilibrium(drive: Drive, *, force_tolerance: float | None = None, progress:
     Raises
     ------
     ModelError
-        If the tolerance does not lie between 0 and 1, or there is one for a belt with ends.
+        If the tolerance is not between 0 and 1, or is given for an open belt.
     ConvergenceError
         If no equilibrium is found in which the belt touches every pulley.
 

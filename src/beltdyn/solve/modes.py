@@ -32,37 +32,35 @@ def modes(
 ) -> Result:
     """Compute the modes of a drive: frequency, damping ratio and shape.
 
-    Vibrations are small, about a state that stays: at rest with a belt that sticks to its pulleys, or in steady
-    running, where the belt moves, creeps and slides as it does there. A pulley of prescribed speed does not swing.
-    Where tensioners have dry friction, modes are given twice: with tensioners that slide without it, and with stuck
-    ones.
+    Small vibrations about a steady state: at rest with a belt that sticks to its pulleys, or in steady running with its
+    creep and sliding. Pulleys of prescribed speed do not vibrate. For tensioners with dry friction modes are given
+    twice: with tensioners sliding without friction, and with stuck tensioners.
 
-    Modes are numbered from the lowest frequency on, those with stuck tensioners from 101 on. Those with a damping ratio
-    below 0.5 come first, then those that hardly resonate, such as motions of a tensioner that the creep of the belt
-    damps.
+    Modes are numbered by frequency, those with stuck tensioners from 101. Modes with a damping ratio below 0.5 come
+    first, then those that barely resonate, such as tensioner motions damped by belt creep.
 
     Parameters
     ----------
     drive
-        The drive. In its place a run stands for its drive and for `about`.
+        The drive, or a run, which gives the drive and `about`.
     about
-        "steady" or "rest"; or the results of `steady_state`, or of a run over time on a mesh that stays, whose drive
-        counts then. The state of a run at an instant is taken as if it stayed.
+        "steady" or "rest"; or the result of `steady_state`, or of a run over time on a staying mesh, whose drive is
+        then used. The state of a run at an instant is treated as a steady state.
     speed
-        Speed of the pulley that drives, such as "800 rpm", in place of its motor; by default it turns as its file says.
+        Speed of the driver, such as "800 rpm", in place of its motor; by default that of the drive file.
     pulley
-        The pulley whose speed is prescribed by `speed`; by default the one that drives.
+        The pulley whose speed is prescribed by `speed`; by default the driver.
     at
-        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of the
-        simulation. Of a run over time an instant at which its belt was recorded, by default the last.
+        Instant at which loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation. For a run over time an instant of its outputs along the belt, by default the last.
     count
-        How many lightly damped modes to give, from the lowest frequency on, up to 99. Heavily damped ones between them
-        are given, too, 99 modes in all at most.
+        Number of lightly damped modes, from the lowest frequency, up to 99. Heavily damped modes in between are
+        included, up to 99 modes in total.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh of steady running is refined; by
-        default that of the drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh of steady running is
+        refined; by default that of the drive, 0.01.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
 
     Returns
     -------
@@ -72,9 +70,9 @@ def modes(
     Raises
     ------
     ModelError
-        If the belt is open, the drive cannot run steadily, or options do not go together.
+        If the belt is open, the drive cannot run steadily, or options are incompatible.
     ConvergenceError
-        If there is no such state, or nothing swings.
+        If there is no such state, or no oscillating mode.
 
     Examples
     --------

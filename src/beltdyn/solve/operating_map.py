@@ -29,37 +29,36 @@ def operating_map(
 ) -> Result:
     """Compute operating points over speed, load, or both: tensions, slip, hub loads, efficiency.
 
-    Each point is steady running, as `steady_state` finds it, and begins at the point before. Loads are those of the
-    drive file at one instant; those over speed follow the speed. A point that has no steady running is marked, and the
-    others stay.
+    Each point is steady running as of `steady_state`, found from the previous point. Loads are those of the drive file
+    at one instant; speed-dependent loads follow the speed. Points without steady running are marked as failed.
 
     Parameters
     ----------
     drive
         The drive.
     pulley
-        The pulley whose speed is prescribed, in place of its motor; by default the one that drives.
+        The pulley whose speed is prescribed, in place of its motor; by default the driver.
     speed
-        Its speeds: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in the sense in which it
-        turns. Without them the drive turns as its file says.
+        Its speeds: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in its sense of rotation.
+        By default those of the drive file.
     load
-        Factors on all torques and loads but those of motors: a range such as "0.2..1.2", or a list.
+        Factors on all torques and loads except motors: a range such as "0.2..1.2", or a list.
     points
         Number of speeds of a range.
     load_points
         Number of factors of a range.
     at
-        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
-        the simulation.
+        Instant at which loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+        Result file (NetCDF4), updated point by point; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
@@ -69,7 +68,7 @@ def operating_map(
     Raises
     ------
     ModelError
-        If there is neither speed nor load, a text is no range, or the drive cannot run steadily.
+        If neither speed nor load is given, a range is invalid, or the drive cannot run steadily.
     ConvergenceError
         If no point has steady running.
 

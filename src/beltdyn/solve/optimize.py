@@ -27,44 +27,44 @@ def optimize(
 ) -> Result:
     """Minimise or maximise a result over parameters of a drive, within limits.
 
-    A study names the numbers that may change with their bounds, the operating points, the goal, and what must be kept:
-    limits of results, distances of modes from orders, clearances. Every design is a drive in steady running at all
-    operating points; one without is no solution, for the reason that is told. What is found is the best design near to
-    the drive that is given; another start may lead to another one.
+    A study names the parameters with their bounds, the operating points, the goal, and the constraints: limits of
+    results, distances of modes from orders, clearances. Each design must have steady running at all operating points;
+    otherwise it is marked as failed with the reason. The search finds a local optimum near the given drive; another
+    start may lead to another one.
 
     Parameters
     ----------
     drive
-        The drive, at which the search starts.
+        The drive, with the starting values.
     study
         The study file, TOML.
     most
-        How many designs to try, at most.
+        Largest number of designs to try.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), written as designs are tried, with the best drive file beside it; without one the
-        results stay in memory.
+        Result file (NetCDF4), updated design by design, with the best drive file beside it; without it the results stay
+        in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
     Result
         Along ``number`` ``start`` and ``best``; along ``requirement`` the worst of each result before and after; along
-        ``design`` the goal of each design and by how much it violates limits; along ``point`` and ``result``
-        ``start_result`` and ``best_result``. Its drive is the best one, of which the attribute ``best_drive`` is the
-        text, with the comments of the file that was read.
+        ``design`` the goal of each design and its violation of limits; along ``point`` and ``result`` ``start_result``
+        and ``best_result``. Its drive is the best one, whose file text, with the original comments, is the attribute
+        ``best_drive``.
 
     Raises
     ------
     ModelError
-        If the study is none, or does not fit the drive.
+        If the study is invalid, or does not fit the drive.
     ConvergenceError
-        If the drive that is given has no steady running at an operating point.
+        If the given drive has no steady running at an operating point.
 
     Examples
     --------

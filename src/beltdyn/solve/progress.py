@@ -33,21 +33,21 @@ class Progress:
     time : float
         Simulated time since the beginning, s.
     duration : float
-        All of it, s.
+        Total simulated time, s.
     step_size : float
         Latest step of the solver, s; zero before the first one.
     outputs_written : int
         Outputs recorded so far.
     phase : str
-        "compiling" (the kernels, once on a machine), "equilibrium", "settling" (at the first speed of a run-up),
-        "integrating", or "operating points", "designs" and "points" (of a study), of which time and duration are the
-        numbers of those done and of all; "no workers" while a cluster has none that could compute points.
+        "compiling" (the kernels, once per machine), "equilibrium", "settling" (at the first speed of a run-up),
+        "integrating", or "operating points", "designs" and "points" (of a study), for which time and duration are the
+        numbers done and in total; "no workers" while a cluster has no workers.
     elapsed : float
         Computing time since the first step, s.
     bound : str
-        What bounds the time steps, in words; empty before the first one.
+        What limits the time steps, in words; empty before the first step.
     pace : float
-        Simulated time over computing time of late; by default of all until now.
+        Recent simulated time over computing time; by default the mean so far.
     """
 
     time: float
@@ -109,9 +109,9 @@ class BatchProgress:
     Attributes
     ----------
     done, total : int
-        Simulations that ended, and all.
+        Finished simulations, and their total number.
     running : mapping
-        Result file -> part that is done, 0 to 1, of those on their way.
+        Result file -> completed share, 0 to 1, of running simulations.
     """
 
     done: int

@@ -41,41 +41,40 @@ def response(
 ) -> Result:
     """Compute the forced response to harmonics of speeds and loads over speed (order cuts) by linear analysis.
 
-    Vibrations are small, about steady running at each speed, and have the frequencies of their orders. Loads are those
-    of the drive file at one instant; those over speed follow the speed. A speed without steady running is marked, and
-    the others stay.
+    Small vibrations about steady running at each speed, at the frequencies of the orders. Loads are those of the drive
+    file at one instant; speed-dependent loads follow the speed. Speeds without steady running are marked as failed.
 
     Parameters
     ----------
     drive
-        The drive, with harmonics of a prescribed speed or of loads, or with torques over the angle of shafts.
+        The drive, with harmonics of a prescribed speed or of loads, or with torques over the shaft angle.
     speed
-        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in the sense in
-        which it turns.
+        Speeds of the pulley: a range such as "700..6000 rpm", or a list "700, 1500, 3000 rpm"; positive in its sense of
+        rotation.
     pulley
-        The pulley whose speed is prescribed; by default the one that drives.
+        The pulley whose speed is prescribed; by default the driver.
     points
         Number of speeds of a range.
     dry_tensioners
-        "sliding" for tensioners whose dry friction is left out, as in large vibrations, or "stuck" for those that it
-        holds, as in small ones.
+        "sliding" for tensioners without dry friction, as in large vibrations, or "stuck" for tensioners held by it, as
+        in small ones.
     compare
-        A result file of `sweep`, or its results: amplitudes of the same orders in the run-up are put beside.
+        A result file of `sweep`, or its result: adds the amplitudes of the same orders in the run-up.
     measured
-        A CSV file of measured amplitudes to put beside: a column "speed [rpm]", and columns such as
-        "span_tension crank-idler order 2 [N]".
+        A CSV file of measured amplitudes to add: a column "speed [rpm]", and columns such as "span_tension crank-idler
+        order 2 [N]".
     at
-        At which instant loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
-        the simulation.
+        Instant at which loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+        Result file (NetCDF4), updated point by point; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
@@ -87,7 +86,7 @@ def response(
     Raises
     ------
     ModelError
-        If nothing excites the drive, options make no sense, or the drive cannot run steadily.
+        If nothing excites the drive, options are invalid, or the drive cannot run steadily.
     ConvergenceError
         If no speed has steady running.
 

@@ -49,49 +49,49 @@ def sensitivity(
 ) -> Result:
     """Compute the sensitivity of results in steady running, or at rest, to each parameter of the drive file.
 
-    Effects are those of 1 % more of a number, and of 1 mm more of a coordinate of a center or pivot. An installed
-    tension that the file asks for is kept: the length of the belt follows, or the take-up where that is given.
+    Effects are changes per 1 % of a parameter, or per 1 mm of a coordinate of a center or pivot. A given installed
+    tension is kept: the belt length, or the take-up, follows.
 
     Parameters
     ----------
     drive
         The drive.
     of
-        Results, with commas between, such as "efficiency, pulley_slip[driven], hub_load": variables of a map, and in
+        Results, separated by commas, such as "efficiency, pulley_slip[driven], hub_load": variables of a map, and in
         brackets the pulley, span, tensioner or cause of one. Results of modes are "frequency[SPAN]" and
-        "damping_ratio[SPAN]", of the lowest mode in which the span swings most, and "mode_frequency[NUMBER]" and
-        "mode_damping_ratio[NUMBER]". "all" takes all of them. By default efficiency, slip safety and tension; at rest
-        tension and hub loads.
+        "damping_ratio[SPAN]", of the lowest mode dominated by the span, and "mode_frequency[NUMBER]" and
+        "mode_damping_ratio[NUMBER]". "all" selects all of them. By default efficiency, capstan margin and tension; at
+        rest tension and hub loads.
     numbers
-        Paths of numbers, with commas between, such as "belt.width, pulley[driven].radius". By default all numbers that
-        the drive has at that instant, but for zeros.
+        Paths of parameters, separated by commas, such as "belt.width, pulley[driven].radius". By default all non-zero
+        parameters of the drive at that instant.
     about
         "steady" or "rest".
     at
-        At which instant speeds, torques and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        Instant at which speeds, torques and schedules are evaluated, such as "0.5 s", or in s; by default the end of
         the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     sobol
-        Number of Sobol points at which tolerances are tried, as a check of the spread by derivatives: a power of two.
-        By default none.
+        Number of Sobol points within the tolerances that check the linear estimate of the spread: a power of two. By
+        default none.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
 
     Returns
     -------
     Result
-        Along ``result`` and ``number`` ``derivative``, in SI units, and ``effect``, the change of the result with 1 %
-        or 1 mm more; along ``number``, of which those of largest effect come first, ``relative_NAME`` of each result,
-        its change in per cent; along ``result`` its ``value``. Where the drive file has tolerances, along ``number``
-        ``tolerance``, along both ``contribution``, and along ``result`` ``spread`` and ``worst_case``; with `sobol`
-        ``spread_of_points`` and ``mean_of_points``.
+        Along ``result`` and ``number`` ``derivative``, in SI units, and ``effect``, the change of the result per 1 % or
+        1 mm; along ``number``, sorted by effect, ``relative_NAME`` of each result, its change in per cent; along
+        ``result`` its ``value``. Where the drive file has tolerances, along ``number`` ``tolerance``, along both
+        ``contribution``, and along ``result`` ``spread`` and ``worst_case``; with `sobol` ``spread_of_points`` and
+        ``mean_of_points``.
 
     Raises
     ------
     ModelError
-        If a name is not known, a result has no value, or the drive cannot run steadily.
+        If a name is unknown, a result has no value, or the drive cannot run steadily.
     ConvergenceError
         If there is no such state.
 

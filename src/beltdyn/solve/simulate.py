@@ -53,23 +53,22 @@ def simulate(
     drive
         The drive.
     output
-        Result file (NetCDF4), written as the simulation goes; without one the results stay in memory.
+        Result file (NetCDF4), written during the simulation; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
     integrator
-        Method of time integration; that of the drive, `simulation.integrator`, by default. A one-step method becomes
-        one by `Stepwise`.
+        Method of time integration; by default `simulation.integrator` of the drive. `Stepwise` makes an integrator from
+        a one-step method.
     compare_steady
-        Find the steady running under the speeds and loads at the end too, and tell how the run differs from it.
+        Also compute the steady running under the speeds and loads at the end, and compare the run with it.
     checkpoint
-        Computing time between two checkpoints, such as "10 min", or in s: a run into a file that is interrupted or
-        killed goes on from the last one. They are in a file beside it with the ending ``.checkpoint``, which is removed
-        at the end.
+        Computing time between two checkpoints, such as "10 min", or in s: an interrupted or killed run can resume from
+        the last one. They are stored beside the result file with the ending ``.checkpoint``, and removed at the end.
     resume
-        Go on with the run in the result file, with the same steps and results as if it had not been interrupted. On
-        the command line the result file may stand in place of the drive file.
+        Resume the run in the result file, with the same steps and results as without the interruption. On the command
+        line the result file may be given instead of the drive file.
 
     Returns
     -------
@@ -80,11 +79,11 @@ def simulate(
     Raises
     ------
     ModelError
-        If the result file cannot be written, is being written by another run, or would replace a file that is no
-        result; there is no room for it; or an integrator is not installed.
+        If the result file cannot be written, is being written by another run, or would replace a file that is not a
+        result; the disk is too small; or an integrator is not installed.
     SimulationError
-        If the simulation cannot go on (`ConvergenceError`) or the disk is full (`OutputError`); what was computed is
-        kept in the file, with the status "failed".
+        If the simulation fails (`ConvergenceError`) or the disk is full (`OutputError`); the results so far are kept in
+        the file, with the status "failed".
 
     Examples
     --------

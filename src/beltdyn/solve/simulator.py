@@ -151,20 +151,20 @@ class Simulator:
     def set_center(self, pulley: str, center: Sequence[float | str]) -> None:
         """Move the center of a pulley along a straight line over the next step, then hold it.
 
-        What moves it does work against the force of the belt on the pulley, which is in ``driver_work`` of the outputs.
-        On the mesh that stays the mesh does not follow: its fine parts stay at the ends of the arcs of the beginning.
+        The work done against the hub load is part of ``driver_work`` in the outputs. A staying mesh does not follow:
+        its refined parts remain at the initial ends of the arcs.
 
         Parameters
         ----------
         pulley : str
-            Name of a pulley that no tensioner with a spring carries.
+            Name of a pulley not carried by a spring-loaded tensioner.
         center : sequence of 2 float or str
             At the end of the next step, m, or texts with units.
 
         Raises
         ------
         ModelError
-            If there is no such pulley, a spring holds it, or the place is none.
+            If there is no such pulley, a spring-loaded tensioner carries it, or the position is invalid.
         """
         number = self.drive.number_of(pulley)
         if any(one.pulley == pulley for one in self.drive.moving_tensioners):
@@ -199,14 +199,14 @@ class Simulator:
         Parameters
         ----------
         until : float
-            s, after the present time.
+            s, after the current time.
 
         Raises
         ------
         ModelError
             If it is not later.
         ConvergenceError
-            If the simulation cannot go on.
+            If the simulation fails.
         """
         if not (isfinite(until) and until > self.time):
             raise ModelError(f"until = {until:g} s is not after the current time, {self.time:g} s. Give a later one.")
@@ -267,7 +267,7 @@ class Simulator:
             ``pulley_speed[NAME]``, ``pulley_angle[NAME]``, ``shaft_speed[NAME]``, ``shaft_angle[NAME]`` (behind a hub
             chain), ``shaft_torque[NAME]`` (from outside), ``pulley_torque[NAME]`` (of the belt), ``hub_load[NAME]``,
             ``wrap_angle[NAME]``, ``span_tension[NAME-NAME]``, of tensioners ``tensioner_position[NAME]``, and the
-            energies that the drive holds, the works done and the losses since the beginning, by their names in results.
+            stored energies, the works and the losses since the beginning, by their names in results.
         """
         system, state = self._integration.system, self._integration.state
         position, velocity = state.position[None].copy(), state.velocity[None].copy()
@@ -308,7 +308,7 @@ class Simulator:
         Raises
         ------
         ModelError
-            If it is of another drive.
+            If it belongs to another drive.
         """
         now = self._integration
         system = now.system._replace(**deepcopy(saved.changed))

@@ -41,30 +41,29 @@ def steady_state(
 ) -> Run:
     """Compute the steady running of a drive without a simulation over time.
 
-    Speeds, torques and schedules are taken at one instant and held; harmonics of speeds are left out, and loads that
-    change with the angles of shafts are taken by their means. The mesh is one of its own, graded towards the ends of
-    arcs, and refined until contact forces no longer depend on it.
+    Speeds, torques and schedules are those of one instant; harmonics of speeds are ignored, and loads that depend on
+    shaft angles are averaged. The mesh is graded towards the ends of arcs, and refined until contact forces no longer
+    depend on it.
 
     Parameters
     ----------
     drive
         The drive.
     at
-        At which instant speeds, torques and schedules are taken, such as "0.5 s", or in s; by default at the end of
+        Instant at which speeds, torques and schedules are evaluated, such as "0.5 s", or in s; by default the end of
         the simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     elements
-        Number of equal elements, in place of the graded mesh; by default as ``drive.steady`` says.
+        Number of equal elements instead of the graded mesh; by default that of ``drive.steady``.
     start
-        Steady running of the same drive under other speeds, torques or loads, or of one that differs in some numbers.
-        The search begins there, on its mesh, which is compared with a coarser one, and made anew where its errors are
-        larger than `force_tolerance`; where that fails, it begins at rest.
-        It is quick where the length of the belt is known: of the same drive at another instant, or of copies of
+        Steady running of the same drive under other speeds, torques or loads, or of a drive with other parameters. The
+        search starts there on its mesh, which is rebuilt if its error exceeds `force_tolerance`; if that fails, it
+        starts at rest. It is fast if the belt length is known: for the same drive at another instant, or copies of
         ``start.drive``.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
 
     Returns
     -------
@@ -75,9 +74,9 @@ def steady_state(
     Raises
     ------
     ModelError
-        If the drive cannot run steadily: its belt is open, nothing drives, or a pulley is not a smooth circle.
+        If the drive cannot run steadily: its belt is open, nothing drives it, or a pulley is not a smooth circle.
     ConvergenceError
-        If there is no steady running; it says which pulley slips through, and what it transmits at most.
+        If there is no steady running; the message names the slipping pulley and the largest torque it transmits.
 
     Examples
     --------

@@ -42,9 +42,8 @@ def study(
 ) -> Result:
     """Analyse many variants of a drive, on all cores or on a cluster.
 
-    A point that fails is marked with its reason, and the others go on.  Results are written as points finish; a study
-    that was interrupted or killed goes on where it was when it is started again with the same file.  So does one to
-    which points were added.
+    Failed points are marked with their reason. Results are written as points finish; an interrupted or killed study, or
+    one with added points, resumes when it is started again with the same file.
 
     Parameters
     ----------
@@ -53,19 +52,17 @@ def study(
     drive
         The drive; by default that of the file that the study names.
     jobs
-        How many points to compute at a time; by default as many as there are cores. With 1 they are computed in this
-        process.
+        Number of points computed in parallel; by default the number of cores. With 1 they are computed in this process.
     scheduler
-        Address of the scheduler of a Dask cluster that computes them instead, such as "tcp://host:8786".
+        Address of the scheduler of a Dask cluster to use instead, such as "tcp://host:8786".
     retry
-        Compute points again that failed before.
+        Recompute points that failed before.
     output
-        Result file (NetCDF4), with rows of all finished points beside it in a file with the ending ``.csv``; without
-        one the results stay in memory.
+        Result file (NetCDF4), with a CSV file of all finished points beside it; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Begin anew, and replace any regular files.
+        Start again, and overwrite any regular files.
 
     Returns
     -------
@@ -79,7 +76,7 @@ def study(
         If the study does not fit the drive or its analysis, there is no such result, files cannot be written, or hold
         points of another study.
     SimulationError
-        If the cluster is gone.
+        If the cluster is lost.
 
     Examples
     --------

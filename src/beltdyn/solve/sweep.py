@@ -36,11 +36,11 @@ def sweep(
 ) -> Run:
     """Simulate a run-up through a range of speeds, for waterfall and order plots.
 
-    The speed of one pulley rises linearly in place of what the drive says; its harmonics stay. Whatever else changes
-    over time, as schedules of loads, keeps its final value, and a motor runs in delta; a function of Python is given
-    the time of the run-up, and before it that of the settling. The run begins at the first speed, when the transients
-    of the start have died; what goes before is not recorded. It ends early where a pulley slips through. Spectra reach
-    0.375 over simulation.output_interval; `beltdyn plot FILE --figures waterfall,orders` draws them.
+    The speed of one pulley rises linearly instead of its profile; its harmonics are kept. Other time-dependent
+    quantities, such as load schedules, keep their final values, and motors run in delta; Python functions get the time
+    of the run-up, and before it that of settling. The recording starts at the first speed once the starting transients
+    have decayed. The run ends early at gross slip. Spectra reach 0.375 over simulation.output_interval; `beltdyn plot
+    FILE --figures waterfall,orders` draws them.
 
     Parameters
     ----------
@@ -49,34 +49,34 @@ def sweep(
     pulley
         The name of the pulley, whose speed is prescribed.
     from_
-        The speed at the beginning, with a unit, such as "700 rpm", or in rad/s.
+        Initial speed with a unit, such as "700 rpm", or in rad/s.
     to
-        The speed at the end, such as "6000 rpm".
+        Final speed, such as "6000 rpm".
     duration
-        How long the run-up takes, with a unit, such as "5 s", or in s.
+        Duration of the run-up with a unit, such as "5 s", or in s.
     settling
-        The longest time at the first speed before, such as "2 s"; by default as long as the run-up. It takes less where
-        transients die sooner.
+        Longest settling time at the first speed, such as "2 s"; by default the duration of the run-up. It is shorter if
+        transients decay sooner.
     output
-        Result file (NetCDF4), written as the simulation goes; without one the results stay in memory.
+        Result file (NetCDF4), written during the simulation; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
     Run
         As `simulate` gives it. Attributes of its dataset are ``swept_pulley``, the name of the pulley;
-        ``settling_time``, what was not recorded, s; ``settling_left``, what it left of the start in the span tensions,
-        over the largest mean one; and ``held``, what keeps its final value.
+        ``settling_time``, the time before the recording, s; ``settling_left``, the transient left in the span tensions,
+        over the largest mean span tension; and ``held``, the quantities held constant.
 
     Raises
     ------
     ModelError
-        If there is no such pulley, its speed is not prescribed, or the numbers make no run-up; and as `simulate`.
+        If there is no such pulley, its speed is not prescribed, or the speeds make no run-up; and as `simulate`.
     SimulationError
-        As `simulate`; a `SlipError` if a pulley slips through.
+        As `simulate`; a `SlipError` at gross slip.
 
     Examples
     --------

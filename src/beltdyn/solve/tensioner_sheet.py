@@ -76,21 +76,21 @@ def tensioner_sheet(
     """Compute a tensioner sheet: position, tension and hub load of a tensioner for belts of different lengths.
 
     The belt is at rest, in equilibrium. The nominal belt is that of the drive file; the longest and the shortest belt
-    differ from it by the tolerance, and the worn belt is the longest one, lengthened by wear. At a stop the sheet tells
-    which length of belt just brings the tensioner there. Dry friction leaves a band of tensions.
+    differ from it by the tolerance, and the worn belt is the longest one, lengthened by wear. For a stop the sheet
+    gives the belt length at which the tensioner just reaches it. Dry friction gives a range of tensions.
 
     Parameters
     ----------
     drive
         The drive.
     pulley
-        The pulley of the tensioner; by default that of the only one that moves.
+        The pulley of the tensioner; by default that of the only moving tensioner.
     tolerance
-        By how much the length of a new belt may differ from the nominal one, as "6 mm" or "0.5 %".
+        Length tolerance of a new belt, such as "6 mm" or "0.5 %".
     wear
-        By how much a belt gets longer in its life, as "10 mm" or "1 %".
+        Elongation of the belt over its life, such as "10 mm" or "1 %".
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
 
     Returns
     -------
@@ -100,7 +100,8 @@ def tensioner_sheet(
     Raises
     ------
     ModelError
-        If no tensioner moves or there are several and none is named, or tolerance or wear is no length.
+        If the drive has no moving tensioner, or several and pulley is not given, or if tolerance or wear is not a
+        length.
     ConvergenceError
         If no static equilibrium of the nominal belt is found.
 

@@ -69,39 +69,39 @@ def traction(
 ) -> Result:
     """Compute the traction curve of a pulley: its slip over its torque, beyond gross slip.
 
-    The slip of the rim against the driver's is prescribed, and the torque follows. Beyond gross slip it stays as it is.
-    Where the driver would slide on its whole arc at once, the speed of the belt would be open: its friction is raised
-    by 0.2 %. Beside the torque stand elastic creep, which
-    Coulomb's friction would leave, what the slope of the friction law adds, and the torque by Euler's formula with the
-    tensions of each point. Other pulleys keep their loads. A hub chain of the pulley is left out.
+    The slip of the rim relative to that of the driver is prescribed, and the torque follows; beyond gross slip it stays
+    constant. If both whole arcs would slide at once, the belt speed would be undetermined, so the friction of the
+    driver is raised by 0.2 %. The result also holds the elastic creep under Coulomb friction, the slip added by the
+    slope of the friction law, and the torque by Euler's formula with the tensions of each point. Other pulleys keep
+    their loads. A hub chain of the pulley is ignored.
 
     Parameters
     ----------
     drive
         The drive.
     pulley
-        The pulley; by default the one that is loaded, where it is one alone.
+        The pulley; by default the only loaded one.
     slip
         Slips: a range such as "0..20 %", or a list. By default from zero to a fifth beyond gross slip.
     points
         Number of slips of a range.
     at
-        At which instant speeds, loads and schedules are taken, such as "0.5 s", or in s; by default at the end of
-        the simulation.
+        Instant at which speeds, loads and schedules are evaluated, such as "0.5 s", or in s; by default the end of the
+        simulation.
     force_tolerance
-        Error of contact forces, over the largest of a pulley, up to which the mesh is refined; by default that of the
-        drive, 0.01.
+        Tolerance of contact forces, relative to the largest on each pulley, to which the mesh is refined; by default
+        that of the drive, 0.01.
     output
-        Result file (NetCDF4), written as points are found; without one the results stay in memory.
+        Result file (NetCDF4), updated point by point; without it the results stay in memory.
     progress
-        Called now and then with a `Progress`.
+        Called repeatedly with a `Progress`.
     overwrite
-        Replace any regular file by the results, and not only earlier results.
+        Overwrite any regular file, not only earlier results.
 
     Returns
     -------
     Result
-        Variables along ``slip``; the attribute ``pulley`` names the pulley, ``driver`` the one that drives.
+        Variables along ``slip``; the attribute ``pulley`` names the pulley, ``driver`` the driver.
 
     Raises
     ------

@@ -49,11 +49,11 @@ class Ending:
     error : str
         Why it failed; empty otherwise.
     summary : Summary or None
-        The numbers that sum up a run; None where there is no output, and of other results than runs.
+        Summary of a run; None without output, or for other analyses.
     warnings : tuple of str
-        What makes the results doubtful.
+        The warnings.
     kept : bool
-        Whether there are results in the file.
+        Whether the file holds results.
     """
 
     status: str
