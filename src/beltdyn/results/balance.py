@@ -35,11 +35,11 @@ class Balance:
     Attributes
     ----------
     pulleys : tuple of float
-        Power into the drive at each shaft, positive where the shaft drives.
+        Power into the drive at each shaft, positive for a driving shaft.
     losses : dict of str to float
         Power lost, by cause, such as "friction".
     stored : float
-        Rate at which the energy held by the drive grows: kinetic, strain, penalty, spring and potential energy.
+        Rate of change of the stored energy: kinetic, strain, contact, spring and potential energy.
 
     Examples
     --------
@@ -66,7 +66,7 @@ class Balance:
     def efficiency(self) -> float:
         """Power output over the sum of power output and losses; NaN without power input.
 
-        In steady running this is power out over power in; energy that is being stored or given back is left out.
+        In steady running this is power output over power input; stored and returned energy is not counted.
         """
         return self.power_out / (self.power_out + self.lost) if self.power_in > 0.0 else math.nan
 
@@ -82,7 +82,7 @@ def losses_of(recorded: Recorded) -> Mapping[str, str]:
     Parameters
     ----------
     recorded : Recorded
-        What was recorded.
+        The results.
     """
     return {name: cause for name, cause in LOSSES.items() if name in recorded} | (
         {} if "bending_loss" in recorded else _BEFORE
@@ -92,15 +92,15 @@ def losses_of(recorded: Recorded) -> Mapping[str, str]:
 def power_balance(recorded: Recorded, window: Window | None = None) -> Balance:
     """Give mean powers over a window.
 
-    The powers of the shafts are means over outputs; losses and stored energy are differences of what was integrated
-    and recorded. A single output gives no rates: they are zero.
+    Shaft powers are means over outputs; losses and stored power are differences of recorded integrals. With a single
+    output all rates are zero.
 
     Parameters
     ----------
     recorded : Recorded
-        What was recorded.
+        The results.
     window : Window, optional
-        What means are taken over; from the first to the last output by default.
+        The averaging window; by default from the first to the last output.
 
     Returns
     -------

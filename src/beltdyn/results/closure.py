@@ -1,4 +1,4 @@
-"""How far the energy account of a run was open at the most, and what the time integrator took."""
+"""Largest energy balance error and numerical loss of a run."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from beltdyn.results.recorded import Recorded
 
 
 class Closure(NamedTuple):
-    """Largest closure error of a run.
+    """Largest energy balance error of a run.
 
     Attributes
     ----------
@@ -24,12 +24,12 @@ class Closure(NamedTuple):
 
 
 def largest_closure(recorded: Recorded) -> Closure:
-    """Largest closure error of the energy account over time.
+    """Largest energy balance error over time.
 
     Parameters
     ----------
     recorded : Recorded
-        What was recorded, with at least one output.
+        The results, with at least one output.
 
     Returns
     -------
@@ -40,12 +40,12 @@ def largest_closure(recorded: Recorded) -> Closure:
 
 
 def largest_numerical_share(recorded: Recorded) -> Closure:
-    """Largest share of the energy put in that the damping of the time integrator took.
+    """Largest share of the energy input lost in time integration.
 
     Parameters
     ----------
     recorded : Recorded
-        What was recorded, with at least one output.
+        The results, with at least one output.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def energy_put_in(recorded: Recorded) -> FloatArray:
     Parameters
     ----------
     recorded : Recorded
-        What was recorded, with at least one output.
+        The results, with at least one output.
 
     Returns
     -------

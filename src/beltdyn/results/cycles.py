@@ -1,4 +1,4 @@
-"""What repeats at the end of a run, and with it the window over which means are taken."""
+"""The averaging window: whole cycles at the end of a run."""
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
@@ -26,24 +26,23 @@ _FINEST = 64
 
 
 def mean_window(recorded: Recorded, drive: Drive) -> Window:
-    """Decide over which part of a run means are taken.
+    """Choose the averaging window of a run.
 
-    Whole turns of the belt, and whole periods of prescribed harmonics and of tables that repeat: at least a tenth of
-    the recorded time, and at most half of it or what has gone by since the last prescribed change. Where no turn of
-    the belt fits, as many whole elements of the belt pass as fit into a tenth; the mesh repeats with each. Where
-    nothing turns, the last tenth.
+    Whole turns of the belt and whole periods of prescribed harmonics and repeating tables: at least a tenth of the
+    recorded time, and at most half of it or the time since the last prescribed change. If no turn of the belt fits, the
+    window covers whole element passings within a tenth of the time. If nothing turns, it is the last tenth.
 
     Parameters
     ----------
     recorded : Recorded
-        What was recorded, with at least one output.
+        The results, with at least one output.
     drive : Drive
         The drive.
 
     Returns
     -------
     Window
-        The window; figures, tables and summaries take means over it.
+        The averaging window of figures, tables and summaries.
     """
     shortest = turn_window(recorded, drive)
     time, least = shortest.time, SHORTEST * float(np.ptp(shortest.time))
@@ -55,19 +54,19 @@ def mean_window(recorded: Recorded, drive: Drive) -> Window:
 
 
 def turn_window(recorded: Recorded, drive: Drive) -> Window:
-    """Give the shortest window of whole cycles, a turn of the belt where one fits: for means over time.
+    """Give the shortest window of whole cycles, a turn of the belt if it fits, for running means.
 
     Parameters
     ----------
     recorded : Recorded
-        What was recorded, with at least one output.
+        The results, with at least one output.
     drive : Drive
         The drive.
 
     Returns
     -------
     Window
-        The window; one without cycles, which leaves values as they are, where nothing turns.
+        The window; if nothing turns, a window without cycles, which leaves values unchanged.
     """
     time = np.asarray(recorded["time"], dtype=float)
     elapsed = float(np.ptp(time))

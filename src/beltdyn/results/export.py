@@ -1,4 +1,4 @@
-"""Results in the formats of other programs."""
+"""Export of results to the formats of other programs."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ from beltdyn.results.vtkhdf import require_vtkhdf, write_vtkhdf
 
 
 class _Format(NamedTuple):
-    """How a format is written.
+    """An export format.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ FORMATS = MappingProxyType(
         "parquet": _Format(tables_folder, require_parquet, write_parquet),
     }
 )
-"""Formats by name."""
+"""Export formats by name."""
 
 
 def export(

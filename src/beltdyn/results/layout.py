@@ -1,4 +1,4 @@
-"""What is recorded: the names and reference coordinates along every dimension but times."""
+"""Layout of recorded data: names and reference coordinates of all dimensions except time."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from beltdyn.results.schema import AXIS_NAMES, COORDINATES, RECORDED, Variable
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Names and reference coordinates of what is recorded.
+    """Names and reference coordinates of recorded data.
 
     Attributes
     ----------
@@ -32,9 +32,9 @@ class Layout:
     coordinate_names : tuple of str
         Names of the coordinates of a node.
     tensioners : tuple of str
-        Names of the pulleys that tensioners carry, in the order of their coordinates.
+        Names of the pulleys carried by tensioners, in the order of their coordinates.
     bodies : tuple of str
-        Names of all that moves beside the belt, in the order of the coordinates.
+        Names of all bodies other than the belt, in the order of the coordinates.
     """
 
     pulleys: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Means of pulleys and spans over the end of a run, from plain arrays."""
+"""Means of pulleys, spans and tensioners over the averaging window of a run."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ from beltdyn.results.window import Window
 
 @dataclass(frozen=True, slots=True)
 class PulleySummary:
-    """Means of one pulley over the end of a run.
+    """Means of one pulley over the averaging window.
 
     Attributes
     ----------
@@ -26,28 +26,27 @@ class PulleySummary:
     belt_torque : float
         Torque of the belt on the pulley, N m.
     shaft_torque : float
-        Torque on the shaft from outside, N m.
+        External torque on the shaft, N m.
     power : float
         Power of that torque into the drive, W.
     slip : float
         Relative speed loss of the rim against the driver's (`Drive.reference`),
         ``1 - v_i / v_d`` of the mean rim speeds along the belt; NaN when the driver stands still.
     elastic_creep : float
-        Part of the slip that the belt's change of stretch makes, as with Coulomb's friction.
+        Part of the slip due to elastic creep, as with Coulomb friction.
     bending : float
-        Part of the slip by what bending and its hysteresis take from the stretch until the belt touches.
+        Part of the slip due to the stretch lost in bending and its hysteresis before contact.
     regularisation : float
-        Part of the slip that the slope of the friction law makes: what is left of the slip.
+        Part of the slip due to the slope of the friction law: the remainder.
     sliding : float
-        Part of the slip that is no creep: the belt slides on the whole arc of this pulley or of the driver.
+        Part of the slip that is gross slip: the belt slides on the whole arc of this pulley or of the driver.
     sliding_speed : float
-        Velocity at which the belt slides on the whole arc of this pulley, m/s along the belt; zero as long as it creeps
-        somewhere.
+        Sliding speed of the whole arc of this pulley, m/s along the belt; zero while part of it creeps.
     sliding_arc : float
         Angle over which friction is fully used, rad.
     margin : float
-        Capstan margin: factor on all loads of the drive at which the whole arc slides, if the other pulleys hold; NaN
-        without load.
+        Capstan margin: factor on all loads of the drive at gross slip of this pulley, if the others hold; NaN without
+        load.
     wrap_angle : float
         Wrap angle, rad.
     hub_load : float
@@ -79,7 +78,7 @@ class PulleySummary:
 
 @dataclass(frozen=True, slots=True)
 class TensionerSummary:
-    """Where a tensioner stands over the end of a run.
+    """Means of one tensioner over the averaging window.
 
     Attributes
     ----------
@@ -88,7 +87,7 @@ class TensionerSummary:
     rotary : bool
         Whether it turns, so that its positions are angles.
     position, lowest, highest : float
-        Mean, least and largest position, m or rad.
+        Mean, minimum and maximum position, m or rad.
 
     Examples
     --------
@@ -107,7 +106,7 @@ class TensionerSummary:
 
 @dataclass(frozen=True, slots=True)
 class SpanSummary:
-    """One span over the end of a run.
+    """Means of one span over the averaging window.
 
     Attributes
     ----------
@@ -116,7 +115,7 @@ class SpanSummary:
     tension : float
         Mean tension, N.
     lowest, highest : float
-        Least and largest tension, N.
+        Minimum and maximum tension, N.
     belt_speed : float
         Mean speed of the belt, m/s.
 
@@ -135,7 +134,7 @@ class SpanSummary:
 
 
 def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[PulleySummary, ...]:
-    """Sum up the pulleys over the end of a run.
+    """Average the pulleys over a window.
 
     Parameters
     ----------
@@ -181,7 +180,7 @@ def pulley_means(recorded: Recorded, drive: Drive, window: Window | None = None)
 
 
 def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[TensionerSummary, ...]:
-    """Sum up the tensioners that move over the end of a run.
+    """Average the moving tensioners over a window.
 
     Parameters
     ----------
@@ -209,7 +208,7 @@ def tensioner_means(recorded: Recorded, drive: Drive, window: Window | None = No
 
 
 def span_means(recorded: Recorded, drive: Drive, window: Window | None = None) -> tuple[SpanSummary, ...]:
-    """Sum up the spans over the end of a run.
+    """Average the spans over a window.
 
     Parameters
     ----------

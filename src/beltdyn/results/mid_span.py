@@ -1,4 +1,4 @@
-"""How far spans move sideways, from where the belt is."""
+"""Mid-span displacements from the position of the belt."""
 
 from math import sqrt
 

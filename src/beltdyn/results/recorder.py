@@ -1,4 +1,4 @@
-"""Recorders take outputs as a simulation goes, into memory or into a file."""
+"""Recorders of outputs during a simulation, in memory or in a file."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,10 +30,10 @@ def status_after(error: type[BaseException] | None) -> Status:
 
 
 class Recorder(Protocol):
-    """Takes outputs as a simulation goes."""
+    """Records outputs during a simulation."""
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
-        """Begin anew, with other coordinates and attributes, before the first outputs.
+        """Restart with other coordinates and attributes, before the first outputs.
 
         Parameters
         ----------
@@ -42,7 +42,7 @@ class Recorder(Protocol):
         """
 
     def append(self, outputs: Outputs) -> None:
-        """Take outputs.
+        """Append outputs.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class Recorder(Protocol):
         """
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Take the end of the simulation.
+        """Finish the recording.
 
         Parameters
         ----------
@@ -68,7 +68,7 @@ class Recorder(Protocol):
         """
 
     def dataset(self) -> "xr.Dataset":
-        """Give what has been recorded so far.
+        """Give the outputs recorded so far.
 
         Returns
         -------
@@ -82,7 +82,7 @@ class Recorder(Protocol):
 
 
 class MemoryRecorder:
-    """Keeps outputs in memory.
+    """Records outputs in memory.
 
     Parameters
     ----------
@@ -97,37 +97,37 @@ class MemoryRecorder:
         self._chunks = [checked_outputs(layout, _no_outputs(layout))]
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
-        """Begin anew; see `Recorder.revise`."""
+        """Restart; see `Recorder.revise`."""
         self._layout, self._attributes = layout, {**attributes, "status": "running"}
 
     def append(self, outputs: Outputs) -> None:
-        """Take outputs; see `Recorder.append`."""
+        """Append outputs; see `Recorder.append`."""
         arrays = checked_outputs(self._layout, outputs)
         self._chunks.append({name: array.copy() for name, array in arrays.items()})
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Take the end of the simulation; see `Recorder.close`."""
+        """Finish the recording; see `Recorder.close`."""
         self._attributes |= {**attributes, "status": status}
 
     def dataset(self) -> "xr.Dataset":
-        """Give what has been recorded so far; see `Recorder.dataset`."""
+        """Give the outputs recorded so far; see `Recorder.dataset`."""
         arrays = {name: np.concatenate([chunk[name] for chunk in self._chunks]) for name in self._layout.recorded}
         return build_dataset(self._layout, arrays, self._attributes)
 
     @property
     def file(self) -> None:
-        """None; see `Recorder.file`."""
+        """Always None; see `Recorder.file`."""
 
 
 class FileRecorder:
-    """Writes outputs to a NetCDF4 file, which is closed and readable between any two of them.
+    """Writes outputs to a NetCDF4 file, which is closed and readable between outputs.
 
     No other recorder can write to that file until this one is closed.
 
     Parameters
     ----------
     path : Path or str
-        The file; a result file that exists is replaced when the first outputs are complete, and stays until then.
+        The file; an existing result file is replaced once the first outputs are complete.
     layout : Layout
         Names and reference coordinates of what is recorded.
     attributes : mapping
@@ -138,7 +138,7 @@ class FileRecorder:
     Raises
     ------
     ModelError
-        If the file cannot be written, is being written by another run, or would replace one that is no result.
+        If the file cannot be written, is being written by another run, or would replace a file that is not a result.
     """
 
     def __init__(
@@ -156,7 +156,7 @@ class FileRecorder:
 
     @classmethod
     def resumed(cls, path: Path, layout: Layout, counts: Mapping[str, int]) -> Self:
-        """Go on with a file whose writer was interrupted or killed, without what it holds beyond some outputs.
+        """Resume a file whose writer was interrupted or killed, dropping later outputs.
 
         Parameters
         ----------
@@ -191,11 +191,11 @@ class FileRecorder:
         return made
 
     def revise(self, layout: Layout, attributes: Mapping[str, Any]) -> None:
-        """Begin anew; see `Recorder.revise`."""
+        """Restart; see `Recorder.revise`."""
         self._layout, self._attributes = layout, {**attributes, "status": "running"}
 
     def append(self, outputs: Outputs) -> None:
-        """Take outputs; see `Recorder.append`.
+        """Append outputs; see `Recorder.append`.
 
         Raises
         ------
@@ -225,7 +225,7 @@ class FileRecorder:
         return file
 
     def close(self, status: Status, attributes: Mapping[str, Any]) -> None:
-        """Take the end of the simulation; see `Recorder.close`. Without outputs there is no file, or an earlier one.
+        """Finish the recording; see `Recorder.close`. Without outputs there is no file, or an earlier one.
 
         Raises
         ------
@@ -251,7 +251,7 @@ class FileRecorder:
         return OutputError(unwritable(self.path, error))
 
     def dataset(self) -> "xr.Dataset":
-        """Give what has been recorded so far, read when it is used; see `Recorder.dataset`."""
+        """Give the outputs recorded so far, read lazily; see `Recorder.dataset`."""
         if self._file is None:
             return build_dataset(self._layout, _no_outputs(self._layout), self._attributes)
         return open_dataset(self.path)

@@ -1,4 +1,4 @@
-"""How well the mesh of a run resolves its results: `beltdyn.model.resolution` with the tension and speed of the run."""
+"""Mesh error of a run: `beltdyn.model.resolution` with the tension and speed of the run."""
 
 import math
 from collections.abc import Mapping
@@ -17,18 +17,18 @@ _MOVING = frozenset({"slip", "losses"})
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """Estimated errors of the mesh over the last fifth of a run.
+    """Estimated mesh error over the last fifth of a run.
 
     Attributes
     ----------
     errors : dict of str to float
         Relative error of each quantity, without sign: "tension", "mean pressure" and "peak pressure" of contact,
-        "slip", "losses". Not known, NaN, without tension; at rest there is no slip and no loss.
+        "slip", "losses". NaN if unknown, without tension; at rest there is no slip and no loss.
     needed : dict of str to int
-        Number of elements from which twice each estimate keeps to its limit, `beltdyn.model.ERROR_LIMITS`; it depends
+        Number of elements for which twice each estimate is within its limit, `beltdyn.model.ERROR_LIMITS`; it depends
         on the drive and its tension, not on the mesh of the run. Empty without tension.
     layers : tuple of float
-        Lengths within which the belt turns straight at the ends of an arc, sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
+        Lengths of the boundary layers of the belt at the ends of an arc, sqrt(E I alpha2 / T) and sqrt(T / k_p), m.
 
     Examples
     --------
@@ -41,15 +41,15 @@ class Resolution:
     layers: tuple[float, float]
 
     def resolves(self, quantity: str) -> bool:
-        """Whether the error of a quantity keeps to its limit, or is not known."""
+        """Whether the error of a quantity is within its limit, or unknown."""
         return not self.errors[quantity] > ERROR_LIMITS[quantity]
 
 
 def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
-    """Estimate how well the mesh of a run resolves its results.
+    """Estimate the mesh error of a run.
 
-    A coarse mesh raises the tension, from which the errors are estimated; so it is taken at rest, from the drive, or
-    from the run where it is less.
+    The errors are estimated from the tension, which a coarse mesh raises; therefore the tension at rest of the drive is
+    used, or that of the run if it is lower.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def estimate_resolution(recorded: Recorded, drive: Drive) -> Resolution:
     Returns
     -------
     Resolution
-        Validated against converged meshes in the documentation.
+        The estimates, validated against converged meshes in the documentation.
     """
     found = found_errors(recorded)
     if found:
@@ -90,7 +90,7 @@ def found_errors(recorded: Recorded) -> dict[str, float]:
 
 
 def mesh_resolution(drive: Drive, tension: float, square: float) -> Resolution:
-    """Estimate how well a mesh resolves what it computes at a tension and speed of the belt.
+    """Estimate the mesh error at a tension and speed of the belt.
 
     Parameters
     ----------

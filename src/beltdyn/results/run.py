@@ -144,7 +144,7 @@ class Run(Result):
 
     @cached_property
     def resolution(self) -> Resolution:
-        """How well the mesh resolves tension and contact.
+        """The estimated mesh error.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""In which units numbers of results are shown to a reader."""
+"""Display units of results."""
 
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ _SHOWN = {**SHOWN_UNITS, **dict.fromkeys(("1", VARIOUS), ("", 1.0))}
 
 
 def shown_unit(variable: "xr.DataArray") -> tuple[str, float]:
-    """Give the unit in which a variable is shown, and the factor on its numbers.
+    """Give the display unit of a variable and its factor.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How far the belt slides on every pulley."""
+"""Sliding of the belt on every pulley."""
 
 from beltdyn.arrays import FloatArray, IntArray
 from beltdyn.model import Drive

@@ -46,7 +46,7 @@ _LONGEST = 0.2
 
 
 def capstan_margin(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
-    """Factor on all loads at which the belt slides on the whole arc of each pulley, if the others hold.
+    """Capstan margin of each pulley: the factor on all loads at its gross slip, if the others hold.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def capstan_margin(tension: FloatArray, belt_speed: FloatArray, centers: FloatAr
 
 
 def friction_used(tension: FloatArray, belt_speed: FloatArray, centers: FloatArray, drive: Drive) -> FloatArray:
-    """Part of its friction with which each pulley would just hold its load, ln((T1 - m v^2) / (T2 - m v^2)) / mu theta.
+    """Share of friction used by each pulley, ln((T1 - m v^2) / (T2 - m v^2)) / mu theta.
 
     Parameters and shape of the result are those of `capstan_margin`; 1 or more where the whole arc slides.
     """

@@ -1,4 +1,4 @@
-"""Slip of the pulleys against the driver, and what it is made of."""
+"""Slip of the pulleys relative to the driver, and its parts."""
 
 from typing import NamedTuple
 

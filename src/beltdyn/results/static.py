@@ -1,4 +1,4 @@
-"""A drive in static equilibrium: tensions, contact and loads of hubs, without a time."""
+"""Results of static equilibrium: tensions, contact forces and hub loads."""
 
 from dataclasses import replace
 from functools import cached_property
@@ -30,16 +30,16 @@ OWN = {
 
 
 class StaticResult(Result):
-    """A drive in static equilibrium, with pulleys that do not turn.
+    """Results of static equilibrium.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         Variables of a `Run` without a time, and ``belt_length``, ``tension`` and ``hub_load``.
     drive : Drive
-        The drive, with the length of the belt or the take-up that gives the installed tension.
+        The drive, with the belt length or the take-up that gives the installed tension.
     path : Path or None
-        The file that it was read from, or None for a result in memory.
+        The result file, or None for a result in memory.
 
     Examples
     --------
@@ -49,7 +49,7 @@ class StaticResult(Result):
     """
 
     def fields_at(self, time: float | None = None) -> "xr.Dataset":
-        """The drive as the instant of a run, at time zero; see `Run.fields_at`."""
+        """All variables as one instant at time zero; see `Run.fields_at`."""
         sizes, motion = self.dataset.sizes, {name: VARIABLES[name] for name in _MOTION}
         still = {
             name: (one.dims[1:], np.zeros([sizes[dim] for dim in one.dims[1:]]), one.attributes)
@@ -59,7 +59,7 @@ class StaticResult(Result):
 
     @cached_property
     def resolution(self) -> Resolution:
-        """How well the mesh resolves tension and contact: what a finer mesh has told, or else an estimate."""
+        """The mesh error: found with a finer mesh, or else estimated."""
         found, tension = found_errors(self.dataset), float(self.dataset["belt_tension"].mean())
         if found:
             return Resolution(found, {}, layer_lengths(self.drive, tension))

@@ -1,4 +1,4 @@
-"""Tables of a result for MATLAB and for data frames: MAT and Parquet files."""
+"""Tables of a result as MAT and Parquet files."""
 
 import re
 from contextlib import suppress
@@ -82,7 +82,7 @@ def mat_file(path: Path) -> Path:
 
 
 def require_mat(path: Path, overwrite: bool = False) -> None:
-    """Make sure that a MAT file would replace nothing but one of beltdyn.
+    """Check that a MAT file replaces at most one of beltdyn.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def write_parquet(result: Result, folder: Path | str, overwrite: bool = False) -
 
 
 def require_parquet(folder: Path, overwrite: bool = False) -> None:
-    """Make sure that Parquet files can be written, and would replace nothing but tables of ours.
+    """Check that Parquet files can be written, and replace at most tables of beltdyn.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def require_parquet(folder: Path, overwrite: bool = False) -> None:
 
 
 def _is_parquet(path: Path) -> bool:
-    """Tell whether `write_parquet` wrote a file."""
+    """Whether a file was written by `write_parquet`."""
     from pyarrow import ArrowException, parquet
 
     with suppress(OSError, ArrowException):

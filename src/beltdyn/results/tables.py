@@ -1,4 +1,4 @@
-"""Plain tables of a run, for spreadsheets and other programs."""
+"""Tables of a result as CSV files."""
 
 import csv
 from collections.abc import Iterable, Sequence
@@ -208,7 +208,7 @@ def _tables_of_names(dataset: "xr.Dataset") -> dict[str, Table]:
 
 
 def require_tables(folder: Path | str, overwrite: bool = False) -> None:
-    """Make sure that tables in a folder would replace nothing but tables of ours.
+    """Check that tables in a folder replace at most tables of beltdyn.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Runs as VTKHDF files, which ParaView and VTK show over time."""
+"""Runs as VTKHDF files for ParaView and VTK."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -66,7 +66,7 @@ def write_vtkhdf(run: Run, path: Path | str, overwrite: bool = False) -> list[Pa
 
 
 def require_vtkhdf(path: Path | str, overwrite: bool = False) -> None:
-    """Make sure that files would replace nothing but those of `write_vtkhdf`.
+    """Check that files replace at most those of `write_vtkhdf`.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _files(path: Path | str) -> dict[str, Path]:
 
 
 def _is_ours(path: Path) -> bool:
-    """Tell whether `write_vtkhdf` wrote a file."""
+    """Whether a file was written by `write_vtkhdf`."""
     with suppress(OSError), h5py.File(path, "r") as file:
         return file.attrs.get(_MAKER) == MARK and "VTKHDF" in file
     return False

@@ -18,7 +18,7 @@ from beltdyn.results.recorded import Recorded
 
 @dataclass(frozen=True, eq=False)
 class Cycle:
-    """Something that repeats.
+    """A repeating process.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Cycle:
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """The part of a run over which means are taken, which ends with the last output.
+    """An averaging window, which ends with the last output.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class Window:
 
     @property
     def first(self) -> int:
-        """Number of the first output that counts."""
+        """Number of the first output in the window."""
         return int(np.searchsorted(self.time, self.start * (1.0 - 1e-12)))
 
     def mean(self, recorded: Recorded, name: str) -> FloatArray:
