@@ -20,7 +20,7 @@ def save_all(
     variable: str = "span_tension",
     overwrite: bool = False,
 ) -> list[Path]:
-    """Write figures of a run, or of the result of another analysis, as PNG.
+    """Save figures of a result as PNG.
 
     Parameters
     ----------
@@ -62,11 +62,11 @@ def save_all(
     known = _known(results)
     if not known:
         kinds = " and ".join(dict.fromkeys(result.kind for result in results))
-        raise ModelError(f"there is no figure of {kinds}. Look at its dataset: `bd.open_result(path).dataset`.")
+        raise ModelError(f"there is no figure for {kinds}. Use its dataset: `bd.open_result(path).dataset`.")
     chosen = chosen_by_default(results) if figures is None else tuple(figures)
     for name in chosen:
         if name not in FIGURES:
-            raise ModelError(f"figure {name!r} is not known. Choose out of {', '.join(known)}.")
+            raise ModelError(f"figure {name!r} is unknown. Choose from {', '.join(known)}.")
         require_results(name, results)
     choice = Choice(None if pulley is None else _number(results, pulley), variable)
     paths = {name: Path(folder) / f"{name}.png" for name in chosen}
@@ -84,7 +84,7 @@ def _number(results: Sequence[Result], pulley: str | int) -> int:
 
 
 def chosen_by_default(results: Sequence[Result]) -> tuple[str, ...]:
-    """Give the names of the figures that are drawn where none is chosen.
+    """Give the names of the default figures.
 
     Parameters
     ----------

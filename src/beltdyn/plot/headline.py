@@ -1,4 +1,4 @@
-"""What stands above a figure: the name of the drive, and the point at which it runs."""
+"""Headline of a figure: name of the drive and operating point."""
 
 from collections.abc import Sequence
 from textwrap import fill
@@ -30,7 +30,7 @@ def headlines(results: Sequence[Result]) -> str:
 
 
 def headline(result: Result) -> str:
-    """Say which drive a result is of, by its name or that of the file, and at which point it runs.
+    """Describe the drive of a result and its operating point.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The layout of a drive, before anything is simulated."""
+"""The layout of a drive at rest."""
 
 from collections.abc import Iterator
 from itertools import chain

@@ -1,4 +1,4 @@
-"""Modes of a drive: shapes, drawn where they are largest, or moving."""
+"""Mode shapes of a drive, still or animated."""
 
 from functools import partial
 from pathlib import Path
@@ -154,7 +154,7 @@ def _all_modes(draw: object, result: Result, choice: Choice) -> Figure:
 
 @figure(always, _all_modes, of=("modes",))
 def mode_shape(result: Result, mode: int = 1, *, ax: Axes | None = None) -> Axes:
-    """Draw the shape of a mode: the belt where it is farthest out, pulleys as far turned as they are then, and arms.
+    """Draw the shape of a mode at its largest displacement: belt, pulleys and tensioner arms.
 
     The color tells its kind: span, rotational, tensioner or coupled.
 
@@ -186,7 +186,7 @@ def mode_shape(result: Result, mode: int = 1, *, ax: Axes | None = None) -> Axes
     numbers = result.dataset["mode"].values
     if mode not in numbers:
         raise ModelError(
-            f"mode = {mode} is none of this result, which has modes {', '.join(map(str, numbers))}. Give one of these."
+            f"mode = {mode} does not exist; this result has modes {', '.join(map(str, numbers))}. Choose one of these."
         )
     ax = axes_or_new(ax, size_of(result.drive))
     ModePicture(result, mode, ax).show(0.0)
@@ -195,7 +195,7 @@ def mode_shape(result: Result, mode: int = 1, *, ax: Axes | None = None) -> Axes
 
 @styled
 def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwrite: bool = False) -> Path:
-    """Write an animation of modes, a period of each in about a second, without their decay.
+    """Write an animation of modes, about one period per second, without their decay.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwr
         be written or would replace one that is no animation of ours.
     """
     if result.kind != "modes":
-        raise ModelError(f"modes are animated, and these results are of {result.kind}. Give what `modes` has returned.")
+        raise ModelError(f"an animation of modes needs a result of `modes`; this is one of {result.kind}.")
     pictures = list[ModePicture]()
 
     def add(mode: int, *, ax: Axes) -> Axes:

@@ -1,4 +1,4 @@
-"""Figures into files, and into pages as a part of their text."""
+"""Saving of figures to files and pages."""
 
 import base64
 import io

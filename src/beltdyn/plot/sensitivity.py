@@ -1,4 +1,4 @@
-"""Tornado figure: what results owe to the numbers of a drive."""
+"""Tornado figures: sensitivity of results to the parameters of a drive."""
 
 from collections.abc import Callable
 from functools import partial
@@ -26,7 +26,7 @@ def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Fi
 
 @figure(always, _all_panels, of=("sensitivity",))
 def sensitivity(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw the numbers of a drive to which a result owes most, the largest on top.
+    """Draw the parameters with the largest effect on a result, the largest on top.
 
     Bars are changes of the result with 1 % more of a number, or 1 mm more of a coordinate.
 
@@ -55,7 +55,7 @@ def sensitivity(result: Result, of: str | None = None, *, ax: Axes | None = None
     >>> [number.get_text() for number in bd.plot.sensitivity(found).get_yticklabels()]
     ['belt.width', 'belt.length']
     """
-    return _tornado(result, of, "effect", "change with 1 % or 1 mm more", axes_or_new(ax))
+    return _tornado(result, of, "effect", "change per 1 % or 1 mm", axes_or_new(ax))
 
 
 def _has_tolerances(result: Result) -> bool:
@@ -65,7 +65,7 @@ def _has_tolerances(result: Result) -> bool:
 
 @figure(_has_tolerances, _all_panels, of=("sensitivity",))
 def tolerances(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw the tolerances of a drive to which the spread of a result owes most, the largest on top.
+    """Draw the tolerances with the largest effect on a result, the largest on top.
 
     Bars are changes of the result with the tolerance of a number. The lowest is the spread of all, which are
     independent: the root of the sum of squares.
@@ -98,7 +98,7 @@ def tolerances(result: Result, of: str | None = None, *, ax: Axes | None = None)
     """
     if not _has_tolerances(result):
         raise ModelError('the drive file has no tolerances. Write for example width = "12.5 ± 0.1 mm".')
-    return _tornado(result, of, "contribution", "change with the tolerance", axes_or_new(ax))
+    return _tornado(result, of, "contribution", "change over the tolerance", axes_or_new(ax))
 
 
 def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes) -> Axes:
@@ -106,7 +106,7 @@ def _tornado(result: Result, of: str | None, variable: str, words: str, ax: Axes
     names = [str(name) for name in result.dataset["result"].values]
     name = names[0] if of is None else of
     if name not in names:
-        raise ModelError(f"of = {name!r} is none of the results. {suggest(name, names)}")
+        raise ModelError(f"of = {name!r} is not a result. {suggest(name, names)}")
     chosen = result.dataset.sel(result=name)
     effects = np.nan_to_num(chosen[variable].values)
     labels = [str(path) for path in chosen["number"].values]

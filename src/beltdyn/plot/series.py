@@ -1,4 +1,4 @@
-"""One variable over time of one pulley, span or tensioner, in the unit that figures of run-ups show."""
+"""A variable over time of one pulley, span or tensioner, in the unit of run-up figures."""
 
 import numpy as np
 import xarray as xr
@@ -42,7 +42,7 @@ def names_of(run: Run, variable: str) -> list[str]:
     if "hub_force" in run.dataset:
         known[HUB_LOAD] = "pulley"
     if variable not in known:
-        raise ModelError(f"variable = {variable!r} is not known over time. Those are: {', '.join(known)}.")
+        raise ModelError(f"variable = {variable!r} is not a variable over time. Choose from: {', '.join(known)}.")
     return [str(name) for name in run.dataset[known[variable]].values]
 
 

@@ -18,7 +18,7 @@ _LARGEST = 0.01
 
 @styled
 def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
-    """Draw the tension of a belt of the catalogue over its strain, with the points that were measured.
+    """Draw the tension of a catalogue belt over its strain, with the measured points.
 
     Dashed is the straight line with which the curve begins.
 
@@ -49,7 +49,7 @@ def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
     if curve is not None:
         points = 100.0 * np.array(curve.strains), np.array(curve.tensions)
         ax.plot(*points, color=COLORS[1], marker="o", linestyle="", label="measured")
-        begins = f"{entry.axial_stiffness:.4g} N times the strain"
+        begins = f"{entry.axial_stiffness:.4g} N × strain"
         ax.plot(
             100.0 * strain, entry.axial_stiffness * strain, color=INK, linewidth=0.8, linestyle=dash(1), label=begins
         )
@@ -62,7 +62,7 @@ def stretch(entry: Entry, name: str = "", ax: Axes | None = None) -> Axes:
 
 @styled
 def save_stretch(entry: Entry, path: Path | str, name: str = "", *, overwrite: bool = False) -> Path:
-    """Draw the tension of a belt of the catalogue over its strain into a file; see `stretch`.
+    """Save the tension-strain diagram of a catalogue belt; see `stretch`.
 
     Parameters
     ----------

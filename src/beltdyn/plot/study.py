@@ -37,7 +37,7 @@ _BACK = {"facecolor": "w", "edgecolor": "none", "pad": 0.8}
 
 @figure(suits("lines"), panel_for_each_result, of=(STUDY,))
 def study_lines(result: Result, of: str | None = None, over: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw a result of a study over a number, a line for each value of a second one; over more numbers, its points.
+    """Draw a result of a study over a parameter, with a line for each value of a second one, or points for more.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def study_lines(result: Result, of: str | None = None, over: str | None = None, 
 
 @figure(suits("contour"), panel_for_each_result, of=(STUDY,))
 def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw a result of a study over two numbers, as contours between its points; crosses are points that failed.
+    """Draw a result of a study over two parameters as contours; crosses mark failed points.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = No
     name = chosen_result(result, of)
     if not spans_a_plane(result):
         raise ModelError(
-            f"contours need two numbers that vary, and {', '.join(varied_numbers(result)) or 'none'} does."
+            f"contours need two varying parameters; this study varies {', '.join(varied_numbers(result)) or 'none'}."
         )
     ax, (first, second) = axes_or_new(ax), varied_numbers(result)
     x, y, z = (in_shown_units(result.dataset[one]) for one in (first, second, name))
@@ -148,7 +148,7 @@ def study_contour(result: Result, of: str | None = None, *, ax: Axes | None = No
 
 @figure(suits("parallel"), of=(STUDY,))
 def parallel_coordinates(result: Result, of: str | None = None, *, ax: Axes | None = None) -> Axes:
-    """Draw each point of a study as a line across parallel axes, of numbers and then of results.
+    """Draw each point of a study as a line across parallel axes of parameters and results.
 
     Parameters
     ----------

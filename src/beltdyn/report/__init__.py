@@ -1,4 +1,4 @@
-"""Results as one page: a file to mail, to open in any browser, and to print."""
+"""Reports: results as one self-contained page."""
 
 from beltdyn.report.build import report_file, require_report, write_report
 from beltdyn.report.interactive import InteractiveFigures, interactive

@@ -1,4 +1,4 @@
-"""From results to the file: what the page shows, and how it is written."""
+"""Report of results: content and file."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ _SAYS_WHO_MADE_IT = f'<meta name="generator" content="{MARK} report">'
 
 
 def write_report(results: Result | Sequence[Result], path: Path | str, overwrite: bool = False) -> Path:
-    """Write a report of a result, or of several side by side, as one page that needs nothing but a browser.
+    """Write a report of one or several results as a self-contained HTML page.
 
     It shows the numbers that decide about the drive beside the limits that its file states, warnings with their
     remedies, the drive moving, figures that zoom and read out, tables, where the result comes from, and the drive file.
@@ -64,7 +64,7 @@ def write_report(results: Result | Sequence[Result], path: Path | str, overwrite
     path, several = Path(path), [results] if isinstance(results, Result) else list(results)
     require_report(path, overwrite)
     if not several:
-        raise ModelError("a report shows a result or several, and there is none. Give one.")
+        raise ModelError("a report needs at least one result.")
     for one in several:
         if isinstance(one, Run):
             one.require_output()

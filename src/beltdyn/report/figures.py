@@ -1,4 +1,4 @@
-"""The figures of a report: as they are on paper, and where they are lines as charts beside."""
+"""Figures of a report, as drawings and as interactive charts."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple

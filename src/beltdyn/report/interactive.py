@@ -1,4 +1,4 @@
-"""Figures for notebooks: charts that zoom and read out under the pointer, in a frame that needs no network."""
+"""Interactive figures for notebooks, without network access."""
 
 import json
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ _HIGHEST = 900
 
 
 class InteractiveFigures:
-    """Figures of results, which a notebook shows.
+    """Interactive figures of results in a notebook.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class InteractiveFigures:
 
 
 def interactive(results: Result | Sequence[Result], *names: str) -> InteractiveFigures:
-    """Draw figures that zoom and read out under the pointer, for a notebook.
+    """Draw interactive figures for a notebook.
 
     Parameters
     ----------

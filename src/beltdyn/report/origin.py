@@ -1,4 +1,4 @@
-"""Where a result comes from, and in what drives differ."""
+"""Provenance of results, and differences between drives."""
 
 import hashlib
 from collections.abc import Sequence
@@ -32,8 +32,8 @@ def origin(result: Result) -> list[tuple[str, str]]:
     facts = [
         ("analysis", f"{analysis_of(result)}, {result.status}"),
         ("versions", versions),
-        ("computed", str(said.get("created", "not known"))),
-        ("format of the result file", str(said.get("format", "not known"))),
+        ("computed", str(said.get("created", "unknown"))),
+        ("format of the result file", str(said.get("format", "unknown"))),
         ("SHA-256 of the drive", _hash(result.drive.text.encode())),
     ]
     if result.path is not None and result.path.is_file():

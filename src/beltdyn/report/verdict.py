@@ -1,4 +1,4 @@
-"""The key numbers of results beside their limits, and what follows."""
+"""Key numbers of results against their limits, and the verdict."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -36,8 +36,12 @@ class SideBySide(NamedTuple):
         if number == 0 or first is None or other is None or not np.isfinite([first.value, other.value]).all():
             return ""
         if first.value == 0.0:
-            return "" if other.value == 0.0 else f"{in_unit(other.value - first.value, first.unit, '+')} to the first"
-        return f"{other.value / first.value - 1.0:+z.1%} to the first"
+            return (
+                ""
+                if other.value == 0.0
+                else f"{in_unit(other.value - first.value, first.unit, '+')} relative to the first"
+            )
+        return f"{other.value / first.value - 1.0:+z.1%} relative to the first"
 
 
 def compared(results: Sequence[Result]) -> list[SideBySide]:
@@ -59,7 +63,7 @@ def compared(results: Sequence[Result]) -> list[SideBySide]:
 
 
 def verdict(results: Sequence[Result]) -> tuple[str, str]:
-    """Say how results stand to their limits.
+    """Compare results with their limits.
 
     Parameters
     ----------
@@ -69,8 +73,8 @@ def verdict(results: Sequence[Result]) -> tuple[str, str]:
     Returns
     -------
     kind : {"pass", "fail", "open"}
-        "fail" also where a belt slid through or a span went slack at any time, "open" where no limit is stated, or a
-        tensioner lay on a stop.
+        "fail" also after gross slip or a slack span at any time, "open" if no limit is given, or a
+        tensioner was on a stop.
     words : str
         In a sentence.
     """
@@ -79,17 +83,17 @@ def verdict(results: Sequence[Result]) -> tuple[str, str]:
     happened = [one for result in results for one in _incidents(result)]
     said = listing(list(map(str, happened))) if happened else ""
     if not judged:
-        return "open", f"No limit is judged{said and f'; {said}'}"
+        return "open", f"No limits are given{said and f'; {said}'}"
     if kept < len(judged):
-        return "fail", f"{kept} of {len(judged)} limits are kept{said and f'; {said}'}"
-    words = f"All {kept} limits are kept" if kept > 1 else "The limit is kept"
+        return "fail", f"{kept} of {len(judged)} limits are met{said and f'; {said}'}"
+    words = f"All {kept} limits are met" if kept > 1 else "The limit is met"
     if not happened:
         return "pass", words
     return ("fail" if any(one.severe for one in happened) else "open"), f"{words}, but {said}"
 
 
 def _incidents(result: Result) -> tuple[Incident, ...]:
-    """What happened at any time of a run; nothing of other results."""
+    """Events of a run; empty for other results."""
     if not isinstance(result, Run) or result.outputs == 0:
         return ()
     with result.recorded() as recorded:
@@ -104,14 +108,14 @@ def limit_in_words(number: KeyNumber | None) -> str:
 
 
 def in_unit(value: float, unit: str, sign: str = "") -> str:
-    """Write a key number: four digits with its unit; pure numbers below one as parts in a hundred.
+    """Format a key number with four digits and its unit.
 
     Parameters
     ----------
     value : float
         The number.
     unit : str
-        Its unit, "1" for a pure number, "%" for a part.
+        Its unit, "1" for a pure number, "%" for a share.
     sign : str
         "+" to write the sign of a positive number too.
     """

@@ -93,7 +93,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--figures", "slips"], "figure 'slips' is not known. Choose out of configuration, contact_forces"),
+        (["--figures", "slips"], "figure 'slips' is unknown. Choose from configuration, contact_forces"),
         (["--figures", "slip,"], "figure '' is not known"),
         (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Its pulleys are: driver, driven."),
         (["--figures", "tensioners"], "this drive has no tensioner that moves"),

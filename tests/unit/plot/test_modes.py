@@ -28,7 +28,7 @@ def test_a_shape(found: bd.Result) -> None:
 
 
 def test_an_unknown_mode(found: bd.Result) -> None:
-    with pytest.raises(ModelError, match="mode = 9 is none of this result, which has modes 1, 2, 3"):
+    with pytest.raises(ModelError, match="mode = 9 does not exist; this result has modes 1, 2, 3"):
         plot.mode_shape(found, 9)
 
 
@@ -43,5 +43,5 @@ def test_all_on_a_page_and_moving(found: bd.Result, tmp_path: Path) -> None:
 
 def test_other_results_have_no_modes(drive: Drive, tmp_path: Path) -> None:
     other = bd.build_result("natural", drive, {}, {})
-    with pytest.raises(ModelError, match="these results are of natural"):
+    with pytest.raises(ModelError, match="this is one of natural"):
         plot.animate_modes(other, tmp_path / "modes.gif")

@@ -39,7 +39,7 @@ def test_the_largest_effect_is_on_top_in_percent(result: Result) -> None:
     ax = plot.sensitivity(result)
     assert [text.get_text() for text in ax.get_yticklabels()] == ["three", "one", "two"]
     assert widths(ax) == pytest.approx([0.0, 0.1, -0.4])
-    assert ax.get_xlabel() == "efficiency = 90 %\nchange with 1 % or 1 mm more [%]"
+    assert ax.get_xlabel() == "efficiency = 90 %\nchange per 1 % or 1 mm [%]"
 
 
 def test_a_result_by_name(result: Result) -> None:

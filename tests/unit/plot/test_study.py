@@ -77,7 +77,7 @@ def test_many_numbers_are_parallel_axes(make: Make) -> None:
     ax = parallel_coordinates(result)
     assert len(ax.collections[0].get_paths()) == 6
     assert len(ax.get_xticks()) == 5
-    with pytest.raises(ModelError, match="contours need two numbers"):
+    with pytest.raises(ModelError, match="contours need two varying parameters"):
         study_contour(result)
     plt.close("all")
 

@@ -176,7 +176,7 @@ def test_what_a_drive_file_says_is_text(text: str) -> None:
 def test_limits_pass_and_fail(text: str) -> None:
     assert "✓ pass" in text
     assert "✗ fail" in text
-    assert "1 of 2 limits are kept" in text
+    assert "1 of 2 limits are met" in text
     assert "at most 1 %" in text
 
 
@@ -202,7 +202,7 @@ def test_several_runs_stand_side_by_side(limited: Run, run: Run, tmp_path: Path)
     text = write_report([limited, other], tmp_path / "two.html").read_text(encoding="utf-8")
     Page(text)
     assert "<code>belt.width</code>" in text
-    assert "+0.0% to the first" in text
+    assert "+0.0% relative to the first" in text
     assert data(text, "motions").keys() == {"motion-0", "motion-1"}
 
 
@@ -327,8 +327,8 @@ def test_a_report_has_what_matters(kind: str, reported: Reported) -> None:
     }.get(kind, [])
     kept = {"static": "0 of 1", **dict.fromkeys(("run", "sweep", "steady", "map", "duty"), "1 of 2")}
     limited = kept.get(kind)
-    assert ("limits are kept" in text) == (limited is not None)
-    assert limited is None or f"{limited} limits are kept" in text
+    assert ("limits are met" in text) == (limited is not None)
+    assert limited is None or f"{limited} limits are met" in text
     assert ('id="numbers"' in text) == (limited is not None or kind == "open")
     if 'id="numbers"' in text:
         loads = result.dataset["hub_load"].values if "hub_load" in result.dataset else _hub_loads(result)

@@ -17,9 +17,9 @@ def number(value: float, limit: float | None = None) -> KeyNumber:
 @pytest.mark.parametrize(
     ("limits", "said"),
     [
-        ({}, ("open", "No limit is judged")),
-        ({"largest_hub_load": 1e4}, ("pass", "The limit is kept")),
-        ({"largest_hub_load": 1e4, "least_margin": 99.0}, ("fail", "1 of 2 limits are kept")),
+        ({}, ("open", "No limits are given")),
+        ({"largest_hub_load": 1e4}, ("pass", "The limit is met")),
+        ({"largest_hub_load": 1e4, "least_margin": 99.0}, ("fail", "1 of 2 limits are met")),
     ],
 )
 def test_the_verdict(run: Run, limits: dict[str, float], said: tuple[str, str]) -> None:
@@ -33,14 +33,14 @@ def test_gross_slip_and_slack_at_any_time_fail(make_run: Callable[..., Run]) -> 
     sliding, tension = np.zeros((101, 2)), np.full((101, 2), 40.0)
     sliding[10:20, 1], tension[5, 0] = 0.5, -1.0
     for changed, words in (
-        ({"sliding_speed": sliding}, "All 2 limits are kept, but the belt was in gross slip on driven from"),
-        ({"span_tension": tension}, "All 2 limits are kept, but driver-driven went slack at"),
+        ({"sliding_speed": sliding}, "All 2 limits are met, but the belt was in gross slip on driven from"),
+        ({"span_tension": tension}, "All 2 limits are met, but driver-driven went slack at"),
     ):
         run = make_run(**changed)
         kind, said = verdict([Run(run.dataset, run.drive.replace(limits=KEPT))])
         assert kind == "fail"
         assert said.startswith(words)
-        assert verdict([run])[1].startswith("No limit is judged; ")
+        assert verdict([run])[1].startswith("No limits are given; ")
 
 
 def test_a_stop_qualifies(make_run: Callable[..., Run], drive: Drive) -> None:
@@ -54,7 +54,12 @@ def test_a_stop_qualifies(make_run: Callable[..., Run], drive: Drive) -> None:
 
 @pytest.mark.parametrize(
     ("first", "other", "words"),
-    [(100.0, 110.0, "+10.0% to the first"), (0.0, 2.0, "+2 N to the first"), (0.0, 0.0, ""), (float("nan"), 1.0, "")],
+    [
+        (100.0, 110.0, "+10.0% relative to the first"),
+        (0.0, 2.0, "+2 N relative to the first"),
+        (0.0, 0.0, ""),
+        (float("nan"), 1.0, ""),
+    ],
 )
 def test_differences(first: float, other: float, words: str) -> None:
     assert SideBySide("", "", [number(first), number(other)]).difference(1) == words

@@ -72,7 +72,7 @@ def test_a_file_whose_drive_is_none_is_refused(grip: Result, tmp_path: Path) -> 
 
 
 def test_its_figures_are_those_of_its_kind(grip: Result, run: Run, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="there is no figure of grip"):
+    with pytest.raises(ModelError, match="there is no figure for grip"):
         plot.save_all(grip, tmp_path)
     before = dict(FIGURES)
 
