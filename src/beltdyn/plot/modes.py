@@ -220,7 +220,7 @@ def animate_modes(result: Result, path: Path | str, frame_rate: int = 25, overwr
         be written or would replace one that is no animation of ours.
     """
     if result.kind != "modes":
-        raise ModelError(f"an animation of modes needs a result of `modes`; this is one of {result.kind}.")
+        raise ModelError(f"an animation of modes needs a result of `modes`, not of {result.kind}.")
     pictures = list[ModePicture]()
 
     def add(mode: int, *, ax: Axes) -> Axes:
