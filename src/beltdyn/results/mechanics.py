@@ -114,7 +114,7 @@ def recorded_kind(dataset: "xr.Dataset", drive: Drive) -> ElementKind:
     Returns
     -------
     ElementKind
-        The drive's, or that of a mesh that stays in place.
+        The drive's, or that of a staying mesh.
     """
     given, names = drive.element_kind, tuple(dataset["coordinate"].values.tolist())
     return next(kind for kind in (given, *ELEMENTS.values()) if kind.coordinates == names)

@@ -98,7 +98,7 @@ def begin_on(
     integrator, progress
         As for `simulate`.
     begin
-        Goes on from there to the state with which an analysis begins; by default, a mesh that travels settles in
+        Goes on from there to the state with which an analysis begins; by default, a travelling mesh settles in
         steady running if it begins so.
 
     Raises
@@ -119,7 +119,7 @@ def begin_on(
 
 
 def _travelling(mesh: Beginning, progress: Report | None) -> Beginning:
-    """The state in which a run on the mesh that travels begins."""
+    """The state in which a run on the travelling mesh begins."""
     drive = mesh.drive
     start = drive.simulation.start
     if drive.belt.installed_tension is None and start == "laid":

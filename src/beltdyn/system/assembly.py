@@ -4,7 +4,7 @@ M a + dU/de + dR/dv - Q_c(e, v, omega) - F + C^T lambda = 0        belt
 I domega/dt - moment - T_a = 0                              free bodies (Eq. 23)
 C a = 0                                                      joint, where the ring is closed by multipliers (Eq. 25)
 
-In a mesh that stays a is the acceleration of material points (`flowing_element`).
+In a staying mesh a is the acceleration of material points (`flowing_element`).
 """
 
 import numpy as np
@@ -143,7 +143,7 @@ _add_element = by_type({Travelling: _travelling_element, Flowing: flowing_elemen
 """Add inertia, losses and contact to residual and tangent of an element, which are those of its elasticity."""
 
 _hold_mesh = by_type({Travelling: hold_nothing, Flowing: hold_mesh}, "hold_mesh")
-"""Keep a mesh that stays in its place along the belt."""
+"""Keep a staying mesh in its place along the belt."""
 
 
 @kernel(inline=True)

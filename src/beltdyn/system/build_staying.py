@@ -1,4 +1,4 @@
-"""Arrays of a drive on a mesh that stays: quintic elements, contact at many points, and the frame of the mesh."""
+"""Arrays of a drive on a staying mesh: quintic elements, contact at many points, and the frame of the mesh."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ _STAYING_ELASTIC, _STAYING_CONTACT = 8, 12
 
 
 def staying_system(drive: Drive, lengths: FloatArray) -> System:
-    """Arrays of a drive with a closed belt on a mesh that stays, of quintic elements with hysteresis of their own.
+    """Arrays of a drive with a closed belt on a staying mesh, of quintic elements with hysteresis of their own.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def staying_system(drive: Drive, lengths: FloatArray) -> System:
 
 
 def on_other_mesh(drive: Drive, system: System, lengths: FloatArray) -> System:
-    """The same arrays of a drive with a belt on another mesh that stays.
+    """The same arrays of a drive with a belt on another staying mesh.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def on_other_mesh(drive: Drive, system: System, lengths: FloatArray) -> System:
 
 
 def _staying_belt(drive: Drive, elements: int) -> Belt:
-    """The belt of a drive on a mesh that stays; it has hysteresis of bending point by point, apart."""
+    """The belt of a drive on a staying mesh; it has hysteresis of bending point by point, apart."""
     return drive.completed.belt.replace(
         discretization=QUINTIC.name,
         elements=elements,
@@ -102,12 +102,12 @@ def without_hysteresis(system: System) -> System:
 
 
 def with_bending_loss(system: System, factor: float) -> System:
-    """The same drive with the hysteresis of bending on a mesh that stays times a factor."""
+    """The same drive with the hysteresis of bending on a staying mesh times a factor."""
     return _with_section(system, bending_hysteresis=factor * system.element.section.bending_hysteresis)
 
 
 def loses_in_bending(system: System) -> bool:
-    """Whether the belt has hysteresis of bending on a mesh that stays."""
+    """Whether the belt has hysteresis of bending on a staying mesh."""
     return bool(system.element.section.bending_hysteresis > 0.0)
 
 

@@ -60,7 +60,7 @@ def add_flow_forces(system: System, motion: Motion, element: int, factors: FlowF
     Parameters
     ----------
     system
-        A closed belt in a mesh that stays.
+        A closed belt in a staying mesh.
     motion
         The state.
     element

@@ -1,4 +1,4 @@
-"""An element of a mesh that stays while the belt flows through it at a speed that changes: its equations of motion.
+"""An element of a staying mesh while the belt flows through it at a speed that changes: its equations of motion.
 
 The material points have the acceleration a = d2e/dt2 + 2 c D de/dt + (dc/dt) D e + c^2 D D e with c = ds/dt, and M a
 is the force of inertia: on a closed belt the sum over all elements of M D D is minus that of C, the integral of
@@ -118,4 +118,4 @@ def hold_mesh(frame: Flowing, motion: Motion, factors: TangentFactors, matrix: R
 
 @kernel
 def hold_nothing(frame: Travelling, motion: Motion, factors: TangentFactors, matrix: RingMatrix) -> None:
-    """A mesh that travels with the belt is free."""
+    """A travelling mesh is free."""

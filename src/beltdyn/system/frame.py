@@ -1,6 +1,6 @@
 """How the mesh stands to the belt: it travels with the material, or stays in place while the belt flows through it.
 
-In a mesh that stays, the point r(sigma, t) of the centreline is that of the material point sigma - s(t), with s the
+In a staying mesh, the point r(sigma, t) of the centreline is that of the material point sigma - s(t), with s the
 length of unstretched belt that has passed.  Its velocity is dr/dt + (ds/dt) dr/dsigma.  Within an element the second
 term is a polynomial like r itself, so that vectors D e of the element's own carry it exactly; derivatives of second and
 third order, which jump from element to element, make these vectors differ from those of the neighbour.  Its
@@ -55,7 +55,7 @@ class Flowing(NamedTuple):
 
 
 def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
-    """Make the frame of a mesh that stays, with a belt at rest.
+    """Make the frame of a staying mesh, with a belt at rest.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def staying(control: FloatArray, length: FloatArray, mass: float) -> Staying:
 
 
 def flowing(given: Staying, mass: FloatArray, vectors: tuple[int, ...], place: int, direction: FloatArray) -> Flowing:
-    """Make the frame of a mesh that stays, for equations over time.
+    """Make the frame of a staying mesh, for equations over time.
 
     Parameters
     ----------

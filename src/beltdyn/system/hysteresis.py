@@ -7,7 +7,7 @@ Of an element with the reference length L it takes two strains, both of them mea
 beyond a strain eps_0 of reference, and the curvature kappa = (theta_j - theta_i) / L by the angles of the centreline
 at both ends.  Bending without tension shortens the centreline by b kappa^2, which is no stretch: it is added to eps.
 Means know no waves of the strain within an element, and a strain that passes from one element to the next loses the
-same on any mesh that travels.  In a mesh that stays nothing passes from element to element, and means would jump there:
+same on any travelling mesh.  In a staying mesh nothing passes from element to element, and means would jump there:
 bending is damped point by point (`elements.planar_curve_damping`), and rows are of stretch alone.
 """
 

@@ -1,4 +1,4 @@
-"""Equations of steady running in a mesh that stays: residual and exact tangent.
+"""Equations of steady running in a staying mesh: residual and exact tangent.
 
 dU/de + dR/dv - c^2 C e - Q_c(e, v, omega) - F = 0,   v = c D e     belt
 moment + T_a = 0                                             free bodies
@@ -43,7 +43,7 @@ def assemble_steady(system: System, motion: Motion, anchor: Anchor, wanted: bool
     Parameters
     ----------
     system
-        A closed belt in a mesh that stays; unknowns of its bodies are the speeds of pulleys and the places of
+        A closed belt in a staying mesh; unknowns of its bodies are the speeds of pulleys and the places of
         tensioners.
     motion
         The state; its nodes and tensioners have no velocity.

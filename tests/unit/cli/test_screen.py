@@ -31,7 +31,7 @@ def test_summary(run: Run, capsys: pytest.CaptureFixture[str]) -> None:
         "1.2 W: friction 1.08 W, contact damping 0.12 W",
         "driven-driver 60.00 60.00 60.00 0.9750",
         "energy balance closes within 1.0e-04 of the energy",
-        "time steps 1200, and 14 tried in vain; 101 outputs",
+        "time steps 1200 accepted, 14 rejected; 101 outputs",
     ):
         assert part in output
     assert "computing time 0.5 s (0.5 s per simulated second), plus 2.5 s of preparation" in output

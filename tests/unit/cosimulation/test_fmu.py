@@ -344,7 +344,7 @@ def test_what_cannot_be_written_is_told(short: Drive, tmp_path: Path, monkeypatc
     with pytest.raises(ModelError, match="supports only generalized_alpha"):
         fmu(short.with_({"simulation.integrator": "radau"}), file)
     monkeypatch.setattr("beltdyn.cosimulation.component.Simulator", _fails)
-    with pytest.raises(ConvergenceError, match="not a state"):
+    with pytest.raises(ConvergenceError, match="no state"):
         fmu(short, file)
     monkeypatch.setitem(sys.modules, "pythonfmu3", None)
     with pytest.raises(ModelError, match=r'pythonfmu3 is not installed.*pip install "beltdyn\[fmu\]"'):

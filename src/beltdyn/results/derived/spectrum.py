@@ -228,7 +228,7 @@ def orders(values: xr.DataArray, angle: xr.DataArray, largest: float = 20.0, rev
 def element_order(drive: Drive, pulley: int) -> float:
     """Order of a pulley's rotation at which elements pass: the elements per turn of the pulley.
 
-    What stands out there and at its multiples belongs to the mesh, not to the drive. On a mesh that stays no element
+    What stands out there and at its multiples belongs to the mesh, not to the drive. On a staying mesh no element
     passes: then it is infinite.
 
     Parameters

@@ -1,6 +1,6 @@
 """The first guess of a step of generalised-alpha.
 
-On a mesh that stays, A is expected to go on changing as it did over the last step, as far as that would have foretold
+On a staying mesh, A is expected to go on changing as it did over the last step, as far as that would have foretold
 the last step: fields that stay in space change slowly, and friction takes hold within a slip of some mm/s, less than
 speeds change by in a step.  Nodes that travel meet pulleys within a few steps; there A is guessed constant.
 """

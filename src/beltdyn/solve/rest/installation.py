@@ -135,7 +135,7 @@ def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
 
 
 def on_equal_elements(drive: Drive) -> Drive:
-    """Give the drive on the mesh that travels with the belt, on which equilibrium is found.
+    """Give the drive on the travelling mesh, on which equilibrium is found.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A belt at rest on a mesh that stays, and from one such mesh to another."""
+"""A belt at rest on a staying mesh, and from one such mesh to another."""
 
 from functools import partial
 from typing import NamedTuple
@@ -39,7 +39,7 @@ _SAMPLES = 16
 
 
 class Standing(NamedTuple):
-    """A drive at rest, without friction, on a mesh that stays."""
+    """A drive at rest, without friction, on a staying mesh."""
 
     drive: Drive
     system: System

@@ -1,4 +1,4 @@
-"""Where a run on a mesh that stays begins: at rest, or in the steady running of its first instant."""
+"""Where a run on a staying mesh begins: at rest, or in the steady running of its first instant."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -20,7 +20,7 @@ from beltdyn.system.build_staying import flowing_system, on_other_mesh
 from beltdyn.system.state import State
 
 DIRECTION = "mesh_direction"
-"""Attribute of results on a mesh that stays: the direction along which node 0 does not move, a unit vector."""
+"""Attribute of results on a staying mesh: the direction along which node 0 does not move, a unit vector."""
 
 
 class Beginning(NamedTuple):
@@ -37,7 +37,7 @@ class Beginning(NamedTuple):
 
 
 def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
-    """Find the state in which a run on a mesh that stays begins, and the mesh.
+    """Find the state in which a run on a staying mesh begins, and the mesh.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def begin_flowing(drive: Drive, progress: Report | None) -> Beginning:
 
 
 class _Meshed(NamedTuple):
-    """A state on a mesh that stays."""
+    """A state on a staying mesh."""
 
     rest: Standing
     """The belt at rest on that mesh, or on one from which it was refined."""
@@ -117,7 +117,7 @@ def _same_mesh(rest: Standing) -> MeshRule:
 
 
 def with_passage(system: System, state: State, speed: float) -> State:
-    """Add the length of belt that has passed, zero, and its speed (m/s) to a state on a mesh that stays."""
+    """Add the length of belt that has passed, zero, and its speed (m/s) to a state on a staying mesh."""
     at = system.first_body + system.bodies.size - system.tensioners.size
 
     vectors = zip((state.position, state.velocity, state.acceleration), (0.0, speed, 0.0), strict=True)

@@ -50,7 +50,7 @@ def find_steady(
     Parameters
     ----------
     system
-        A closed belt in a mesh that stays; the speed of its frame is changed in place.
+        A closed belt in a staying mesh; the speed of its frame is changed in place.
     motion
         The state, changed in place.
     anchor

@@ -57,7 +57,7 @@ class SteadySearch:
     Parameters
     ----------
     drive, system, state
-        The drive on a mesh that stays. The state is changed in place.
+        The drive on a staying mesh. The state is changed in place.
     time
         At which speeds, torques and schedules are taken, s.
 

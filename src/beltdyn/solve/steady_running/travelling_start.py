@@ -1,6 +1,6 @@
-"""Where a run on the mesh that travels begins in steady running.
+"""Where a run on the travelling mesh begins in steady running.
 
-Steady running is found on a mesh that stays. Its curve and motion, taken over by the nodes of the mesh that travels,
+Steady running is found on a staying mesh. Its curve and motion, taken over by the nodes of the travelling mesh,
 are close to a state of that mesh. A run at constant speeds and loads goes the rest of the way.
 """
 
@@ -32,7 +32,7 @@ _TURNS = 5
 
 
 def steady_state_on(rest: Rest) -> State:
-    """Steady running at the beginning of a run, as near as the mesh that travels comes to it.
+    """Steady running at the beginning of a run, as near as the travelling mesh comes to it.
 
     Parameters
     ----------

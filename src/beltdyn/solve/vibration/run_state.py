@@ -1,4 +1,4 @@
-"""The state of a run over time, at an instant at which its belt was recorded, on the mesh that stays."""
+"""The state of a run over time, at an instant at which its belt was recorded, on the staying mesh."""
 
 import numpy as np
 
@@ -39,7 +39,7 @@ def state_of(run: Run, time: float) -> tuple[System, State, float]:
     Parameters
     ----------
     run
-        A run on a mesh that stays.
+        A run on a staying mesh.
     time
         From `instant_of`, s.
 

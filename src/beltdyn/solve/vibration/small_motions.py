@@ -1,6 +1,6 @@
 """A drive about a state, linearised: (K + s C + s^2 M) x = 0 for small motions x exp(s t).
 
-The belt flows through a mesh that stays, so that steady running is a point at rest of the equations: the forces of
+The belt flows through a staying mesh, so that steady running is a point at rest of the equations: the forces of
 Coriolis and the centrifugal forces of the moving belt are in C and K.  Speeds, torques and schedules are held.
 """
 
@@ -42,7 +42,7 @@ class SmallMotions(NamedTuple):
 
     drive: Drive
     system: System
-    """Its belt flows through a mesh that stays."""
+    """Its belt flows through a staying mesh."""
     state: State
     stiffness: "csc_array"
     """K, shape (n, n): nodal coordinates, free bodies, the last of which is the length of belt that has passed."""
@@ -177,7 +177,7 @@ def about_instant(run: Run, time: float) -> SmallMotions:
     Parameters
     ----------
     run
-        On a mesh that stays.
+        On a staying mesh.
     time
         From `instant_of`, s.
     """
@@ -197,7 +197,7 @@ def _in_motion(drive: Drive, system: System, state: State, speed: float, *, all_
 
 
 def _linearised(drive: Drive, held: System, state: State, speed: float) -> SmallMotions:
-    """Linearise a drive with constant torques, on a mesh that stays, with the damping of its tensioners.
+    """Linearise a drive with constant torques, on a staying mesh, with the damping of its tensioners.
 
     Parameters
     ----------
