@@ -165,7 +165,7 @@ class Component:
             If it does not begin where the last one ended, is not above zero, ends after the stop, or an input cannot
             be set.
         ConvergenceError
-            If the simulation cannot go on.
+            If the simulation fails.
         """
         before = self.state()
         try:

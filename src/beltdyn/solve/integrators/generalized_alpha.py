@@ -147,7 +147,7 @@ class AlphaIntegration:
         Raises
         ------
         ConvergenceError
-            If it cannot go on.
+            If it fails.
         """
         budget = max(1, _STEPS_AT_ONCE // self.system.length.size)
         while self.state.clock.time < stop:

@@ -1,4 +1,4 @@
-"""Integrators made of a one-step method and a step control: each can be exchanged alone."""
+"""Integrators composed of a one-step method and a step control."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _SAFETY, _LEAST, _MOST = 0.9, 0.2, 5.0
 
 
 class StepError(Exception):
-    """A step has no solution; the message is the reason. A shorter one may have one."""
+    """A step without a solution; the message gives the reason. A shorter step may succeed."""
 
 
 class Method(Protocol):
@@ -34,7 +34,7 @@ class Method(Protocol):
 
     @property
     def order(self) -> int:
-        """Order p: the error of a step, as it is estimated, falls with the power p + 1 of its length."""
+        """Order p: the estimated error of a step scales with the power p + 1 of its length."""
 
     def step(self, equations: FirstOrder, time: float, y: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
         """Go one step from state to state.
@@ -63,26 +63,26 @@ class Method(Protocol):
 
 
 class Verdict(NamedTuple):
-    """What a step control makes of a step."""
+    """The decision of a step control on a step."""
 
     accepted: bool
     length: float
-    """Of the next step, or of another try, s."""
+    """Length of the next or repeated step, s."""
 
 
 class StepControl(Protocol):
-    """Decides how long steps are, and which ones count."""
+    """Chooses step lengths and accepts or rejects steps."""
 
     @property
     def first(self) -> float:
-        """Length of the first step, and of that after a jump or kink of what drives the system, s."""
+        """Length of the first step, and of that after a jump or kink of the excitation, s."""
 
     @property
     def missed(self) -> float:
-        """What a step may miss of what is prescribed inside it, over the velocity scale; infinite for any."""
+        """Excitation that a step may miss, over the velocity scale; infinite for any."""
 
     def judge(self, length: float, error: float, order: int) -> Verdict:
-        """Accept a step or not.
+        """Accept or reject a step.
 
         Parameters
         ----------
@@ -97,7 +97,7 @@ class StepControl(Protocol):
 
 @dataclass(frozen=True)
 class FixedSteps:
-    """Steps of one length, whatever their error.
+    """Steps of constant length.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class FixedSteps:
 
 @dataclass(frozen=True)
 class ErrorControl:
-    """Steps as long as a tolerance allows.
+    """Steps controlled by an error tolerance.
 
     Attributes
     ----------
@@ -150,11 +150,11 @@ class ErrorControl:
 
     @property
     def missed(self) -> float:
-        """As much as the error; see `StepControl`."""
+        """Equal to the error tolerance; see `StepControl`."""
         return self.rtol
 
     def judge(self, length: float, error: float, order: int) -> Verdict:
-        """Accept what keeps to the tolerance; see `StepControl.judge`."""
+        """Accept steps within the tolerance; see `StepControl.judge`."""
         ratio = error / self.rtol
         factor = _SAFETY * ratio ** (-1.0 / (order + 1)) if ratio > 0.0 else _MOST
         return Verdict(ratio <= 1.0, min(length * min(max(factor, _LEAST), _MOST), self.max_step))

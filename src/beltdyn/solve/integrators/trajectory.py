@@ -230,7 +230,7 @@ class Integrator(Protocol):
         Raises
         ------
         ConvergenceError
-            If the solver cannot go on.
+            If the solver fails.
         """
 
 

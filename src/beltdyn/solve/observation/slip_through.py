@@ -1,4 +1,4 @@
-"""Notices that a pulley slips through, and ends the run: what follows would not be what the drive is for."""
+"""Detection of gross slip, which ends the run: what follows would not be what the drive is for."""
 
 import numpy as np
 

@@ -67,7 +67,7 @@ class Rest(NamedTuple):
 
     @property
     def installation(self) -> Installation:
-        """What it gives in place of the estimates of `beltdyn.model.install`."""
+        """The computed values in place of the estimates of `beltdyn.model.install`."""
         seen, drive = self.seen, self.drive
         positions = self.state.position[self.state.position.size - self.system.tensioners.size :]
         depths = np.array([np.median(depth) for depth in _depths(drive, seen)])
@@ -90,28 +90,27 @@ At = TypeVar("At", bound=Tightened)
 
 
 def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
-    """Find the static equilibrium of a drive, with the installed tension that was asked for if one was.
+    """Find the static equilibrium of a drive with its installed tension, if given.
 
-    The closed form of `beltdyn.model.static_estimate`, from which the drive has its length, leaves out bending and
-    weight. The length, or the take-up where the length is given too, follows from the tension at rest by the secant
-    method.
+    The closed form of `beltdyn.model.static_estimate`, which gives the initial length, neglects bending and weight. The
+    length, or the take-up if the length is given, follows from the tension at rest by the secant method.
 
     Parameters
     ----------
     drive
         The drive.
     progress
-        Called with a `Progress` before kernels are compiled and before equilibrium is sought.
+        Called with a `Progress` before compilation and before the search.
 
     Returns
     -------
     Rest
-        Its drive is the one given, except for the length of the belt or the take-up.
+        Its drive is the given one, except for the belt length or the take-up.
 
     Raises
     ------
     ConvergenceError
-        If there is no equilibrium in which the belt touches every pulley, or none with the tension asked for.
+        If there is no equilibrium in which the belt touches every pulley, or none with the required tension.
 
     Examples
     --------

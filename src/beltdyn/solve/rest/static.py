@@ -30,7 +30,7 @@ _SMALLEST_LENGTH = 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A static equilibrium, and how it was found.
+    """A static equilibrium with its iterates.
 
     Parameters
     ----------
@@ -59,22 +59,21 @@ def find_equilibrium(
     method: Literal["globalised", "newton"] = "globalised",
     max_iterations: int = 500,
 ) -> Equilibrium:
-    """Find a static equilibrium of a belt from a start.
+    """Find a static equilibrium of a belt from an initial state.
 
-    Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, which then rub
-    the belt at rest.  Tensioners move.  Forces are in balance there; `tensioner_compliance` tells whether the balance
-    is stable.
+    Pulleys do not turn: the belt slides on them without friction, unless `start` gives them speeds, with which they rub
+    on the resting belt. Tensioners move. `tensioner_compliance` shows whether the equilibrium is stable.
 
     Parameters
     ----------
     system
         Belt, pulleys, supports.
     start
-        Where to begin; its belt must be at rest.
+        Initial state; its belt must be at rest.
     method
         "globalised", or "newton" for the plain iteration of the paper.
     max_iterations
-        Most iterations, 500 by default.
+        Largest number of iterations, by default 500.
 
     Returns
     -------
@@ -84,7 +83,7 @@ def find_equilibrium(
     Raises
     ------
     ConvergenceError
-        If the iteration does not end, or the stiffness is singular.
+        If the iteration does not converge, or the stiffness is singular.
     """
     search = _Search(system, start)
     shift = 0.0
