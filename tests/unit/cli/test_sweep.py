@@ -98,7 +98,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
         (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Its pulleys are: driver, driven."),
         (["--figures", "tensioners"], "this drive has no tensioner that moves"),
         (["--figures", "orders"], "orders need 16 or more"),
-        (["--figures", "waterfall", "--variable", "energy"], "Those are: pulley_speed, pulley_angle, shaft_speed"),
+        (["--figures", "waterfall", "--variable", "energy"], "Choose from: pulley_speed, pulley_angle, shaft_speed"),
     ],
 )
 def test_figures_that_cannot_be_drawn(refuse: Refuse, result_file: Path, options: list[str], message: str) -> None:

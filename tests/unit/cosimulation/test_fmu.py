@@ -306,7 +306,7 @@ def test_another_version_of_beltdyn_is_told(
     unit = fmu(short, tmp_path / "drive.fmu")
     monkeypatch.setattr("beltdyn.cosimulation.slave.__version__", "99.0")
     one = host(unit).begin()
-    assert one.logged[-1].endswith("and beltdyn 99.0 runs it.")
+    assert one.logged[-1].endswith("but runs with beltdyn 99.0.")
     one.step(0)
 
 

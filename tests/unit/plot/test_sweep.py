@@ -81,7 +81,7 @@ def test_files_hold_a_panel_for_each_span(run_up: Run, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"variable": "energy"}, "Those are: pulley_speed, pulley_angle, span_tension"),
+        ({"variable": "energy"}, "Choose from: pulley_speed, pulley_angle, span_tension"),
         ({"of": "driver"}, "Choose one of driver-driven, driven-driver"),
         ({"of": 2}, "Choose one of driver-driven, driven-driver"),
         ({"pulley": "idler"}, "Its pulleys are: driver, driven"),

@@ -108,7 +108,7 @@ def test_a_speed_that_fails_is_marked_and_others_stay(loaded: Drive) -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"count": 0}, "count = 0 modes are none"),
+        ({"count": 0}, "count = 0 must be 1 or more"),
         ({"dry_tensioners": "dry"}, "dry_tensioners = 'dry' is neither"),
         ({"orders": "first"}, "orders = 'first' must be"),
         ({"speed": "-1..100 rpm"}, "must not be negative"),

@@ -53,7 +53,7 @@ def test_a_point_that_fails_is_marked_and_others_stay(found: Result) -> None:
     said = [warning for warning in found.warnings if "no operating point" in warning]
     assert len(said) == 1
     assert said[0].startswith("at speed 573 rpm, load 3:")
-    assert said[0].endswith("So at 1 more point, up to speed 1146 rpm, load 3.")
+    assert said[0].endswith("The same applies at 1 more point, up to speed 1146 rpm, load 3.")
 
 
 def test_the_worst_of_each_pulley(found: Result) -> None:
@@ -143,4 +143,4 @@ def test_a_torque_over_the_angle_counts_with_its_mean_and_the_map_says_so(loaded
     said = [warning for warning in uneven.warnings if "steady running uses its mean over a cycle" in warning]
     assert len(said) == 1
     assert said[0].startswith("at speed 573 rpm: the load of driven")
-    assert said[0].endswith("So at 1 more point, up to speed 1146 rpm.")
+    assert said[0].endswith("The same applies at 1 more point, up to speed 1146 rpm.")

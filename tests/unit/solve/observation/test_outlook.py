@@ -13,7 +13,7 @@ from beltdyn.solve.observation.outlook import step_bound
     [
         ({}, 1000, 400, "29% of the time steps are rejected"),
         ({"max_step": 1e-4}, 2000, 0, "simulation.max_step = 0.0001 s"),
-        ({}, 100, 0, "output_interval than 0.001 s"),
+        ({}, 100, 0, "output_interval above 0.001 s"),
         ({}, 100_000, 10, "simulation.rtol = 0.0001"),
         ({}, 0, 3, ""),
     ],

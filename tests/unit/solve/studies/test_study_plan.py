@@ -81,7 +81,7 @@ def test_rows_of_a_table_are_points(drive: Drive, tmp_path: Path) -> None:
         (
             [{"path": f"pulley[{k}].center[{j}]", "values": "1..2 m", "steps": 90} for k in (1, 2) for j in (1, 2)],
             {},
-            "points, and 10,000,000 are the most",
+            "points, more than the limit of 10,000,000",
         ),
     ],
 )
