@@ -96,4 +96,4 @@ def test_the_command_takes_a_run(settled: bd.Run, tmp_path: Path, capsys: pytest
     with pytest.raises(SystemExit) as ended:
         main(["modes", str(path)])
     assert ended.value.code == 2
-    assert "holds results of modes, and no run" in " ".join(capsys.readouterr().err.split())
+    assert "holds results of modes, not of a run" in " ".join(capsys.readouterr().err.split())
