@@ -9,6 +9,7 @@ from beltdyn.model import Entry, read_catalogue
 from beltdyn.results import COORDINATES, VARIABLES, Variable
 
 sys.path.insert(0, str(Path(__file__).parent))
+from key_tables import KEYS
 
 project = "beltdyn"
 author = "The beltdyn developers"
@@ -69,6 +70,7 @@ myst_substitutions = {
     "variables": table(VARIABLES),
     "coordinates": table(COORDINATES),
     "catalogue": profiles(read_catalogue()),
+    "keys": KEYS,
 }
 napoleon_google_docstring = False
 autodoc_typehints = "description"

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import key_tables
 import mathml
 import matplotlib.pyplot as plt
 import pytest
@@ -16,12 +17,9 @@ import tomli_w
 
 from beltdyn.analyses import ANALYSES, RUN, STATIC
 from beltdyn.cli import main
-from beltdyn.machines.links import kinds as links
-from beltdyn.machines.loads import kinds as loads_
 from beltdyn.machines.profiles import kinds as profiles
-from beltdyn.machines.tensioners import kinds as tensioners
-from beltdyn.model import Belt, Contact, Harmonic, Limits, Pulley, Simulation, Steady, dumps, loads
-from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
+from beltdyn.model import Belt, Contact, Limits, Pulley, Simulation, Steady, dumps, loads
+from beltdyn.model.belt_form import Nominal, Sold
 from beltdyn.model.catalogue import Entry, read_catalogue
 from beltdyn.model.examples import example
 from beltdyn.model.pulley import Diameter
@@ -35,7 +33,7 @@ from beltdyn.solve.studies.measured_table import read_measured
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = ROOT / "docs" / "tutorial.md"
-MACHINES = ROOT / "docs" / "machines"
+MACHINES = ROOT / "docs" / "machines.md"
 DRIVE_FILE = ROOT / "docs" / "drive_file.md"
 CATALOGUE = ROOT / "docs" / "catalogue.md"
 RESULTS = ROOT / "docs" / "results"
@@ -44,12 +42,6 @@ RESULTS = ROOT / "docs" / "results"
 def kinds_of(family: ModuleType) -> list[type[Part]]:
     """The kinds that a family of machines has registered."""
     return [kind for kind in vars(family).values() if isinstance(kind, type)]
-
-
-PARTS: dict[Path, list[type[Part]]] = {
-    DRIVE_FILE: [Belt, Pulley, Contact, Simulation, Steady, Limits],
-    MACHINES: [Harmonic, *(kind for family in (loads_, links, tensioners) for kind in kinds_of(family))],
-}
 
 
 def pages(chapter: Path) -> list[Path]:
@@ -75,25 +67,63 @@ def test_the_readmes_drive_is_that_of_the_demo() -> None:
     assert loads(text) == example("fan_direct_start")
 
 
-@pytest.mark.parametrize(("document", "part"), [(file, part) for file, parts in PARTS.items() for part in parts])
-def test_every_key_is_documented(document: Path, part: type[Part]) -> None:
-    text = "".join(page.read_text(encoding="utf-8") for page in pages(document))
+@pytest.mark.parametrize(
+    ("part", "table"),
+    [
+        *(
+            (part, key_tables.KEYS[part.__name__.lower()])
+            for part in (Belt, Pulley, Contact, Simulation, Steady, Limits)
+        ),
+        *((Entry, key_tables.KEYS["catalogue"]), (Nominal, key_tables.KEYS["belt"]), (Sold, key_tables.KEYS["sold"])),
+        *((Stiffnesses, key_tables.KEYS["sold"] + key_tables.KEYS["belt"]), (Diameter, key_tables.KEYS["pulley"])),
+    ],
+)
+def test_tables_have_every_key(part: type[Part], name: str) -> None:
+    table = key_tables.KEYS[name]
     for key, field in part.model_fields.items():
-        description = re.escape(str(field.description)[1:])
-        assert key == "kind" or re.search(rf"\| `{key}` \| .{description} \|", text)
+        assert re.search(rf"^\| `{key}` \| .{re.escape(str(field.description)[1:])}.* \|$", table, re.MULTILINE), key
 
 
-@pytest.mark.parametrize("part", PARTS[MACHINES][1:])
-def test_every_key_of_a_machine_stands_under_its_kind(part: type[Part]) -> None:
-    """The keys that all loads share stand above their kinds."""
-    kind = part.model_json_schema()["properties"]["kind"]["const"]
-    fields = part.model_fields
-    group = "tensioners" if "pulley" in fields else "loads" if "harmonics" in fields else "hub_chains"
-    sections = (MACHINES / f"{group}.md").read_text(encoding="utf-8").split("\n## ")
-    (section,) = [text for text in sections if f'`kind = "{kind}"`' in text.splitlines()[0]]
-    missing = [key for key in part.model_fields if key != "kind" and f"| `{key}` |" not in section]
-    shared = [key for key in missing if f"| `{key}` |" in sections[0]]
-    assert missing == shared
+def test_tables_tell_defaults_choices_and_limits() -> None:
+    rows = key_tables.KEYS["contact"].splitlines()
+    assert next(row for row in rows if "`friction_law`" in row).endswith("`force_slope` | `relative_creep` |")
+    assert next(row for row in rows if "`stiffness`" in row).endswith("| chosen |")
+    assert "at least 1 and at most 64" in next(row for row in rows if "`quadrature_points`" in row)
+    assert "| required |" in next(row for row in key_tables.KEYS["belt"].splitlines() if "`width`" in row)
+
+
+def test_what_a_drive_chooses_is_told() -> None:
+    chosen = {f"{part.__name__.lower()}.{key}" for part, keys in key_tables.CHOSEN.items() for key in keys}
+    assert {choice.key for choice in example("alternator_drive").completed.choices} <= chosen
+
+
+def names_of(tables: dict[str, Any], above: str = "keys") -> list[str]:
+    """What pages call the tables of keys."""
+    found = []
+    for key, one in tables.items():
+        found += names_of(one, f"{above}.{key}") if isinstance(one, dict) else [f"{above}.{key}"]
+    return found
+
+
+def test_every_table_of_keys_stands_on_a_page() -> None:
+    """But those of profiles, which have one together, and of the smooth circle, which has no keys."""
+    text = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
+    shown = set(re.findall(r"^{{ (keys[\w.]+) }}$", text, re.MULTILINE))
+    assert shown == {
+        name
+        for name in names_of(key_tables.KEYS)
+        if not name.startswith("keys.profile.") and name != "keys.surface.circle"
+    }
+
+
+@pytest.mark.parametrize("family", ["load", "hub", "tensioner"])
+def test_every_kind_of_machine_has_a_section(family: str) -> None:
+    text = MACHINES.read_text(encoding="utf-8")
+    for kind in key_tables.KEYS[family]:
+        if kind != "shared":
+            section = text.split(f'\n### `kind = "{kind}"`\n')
+            assert len(section) == 2, kind
+            assert f"{{{{ keys.{family}.{kind} }}}}" in section[1].split("\n#")[0]
 
 
 @pytest.mark.parametrize("profile", kinds_of(profiles))
@@ -103,13 +133,6 @@ def test_every_key_of_a_profile_is_documented(profile: type[Part]) -> None:
     rows = [row for row in text.splitlines() if row.startswith(f'| `{{ kind = "{kind}",')]
     assert rows
     assert all(f"{key} = " in rows[0] for key in profile.model_fields)
-
-
-@pytest.mark.parametrize(
-    "key", [*Sold.model_fields, *Stiffnesses.model_fields, *Nominal.model_fields, *Diameter.model_fields]
-)
-def test_every_key_of_a_belt_as_sold_is_documented(key: str) -> None:
-    assert f"| `{key}` |" in DRIVE_FILE.read_text(encoding="utf-8")
 
 
 def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: Path) -> None:
@@ -129,7 +152,7 @@ def test_the_catalogue_of_the_document_has_every_key(new_drive: str, tmp_path: P
         assert loads(dumps(drive)) == drive
 
 
-@pytest.mark.parametrize("example", [block for page in pages(MACHINES) for block in blocks(page, "toml")])
+@pytest.mark.parametrize("example", blocks(MACHINES, "toml"))
 def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) -> None:
     """Their pulleys say only what differs; what a motor drives has no other torque."""
     data, changes = tomllib.loads(new_drive), tomllib.loads(example)
@@ -147,9 +170,8 @@ def test_examples_of_machines_fit_the_new_drive(example: str, new_drive: str) ->
             "README.md",
             "docs/fmu.md",
             "docs/index.md",
-            "docs/machines/loads.md",
-            "docs/step_by_step.md",
-            "docs/studies.md",
+            "docs/machines.md",
+            "docs/commands/designs.md",
         ),
         "docs/tutorial.md",
     ],

@@ -32,7 +32,7 @@ class CallsOf2:
 @pytest.fixture(scope="module")
 def page() -> dict[str, Any]:
     """What the program of the page defines."""
-    code = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[1]
+    code = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)[-1]
     names: dict[str, Any] = {}
     exec(compile(code, "docs/fmu.md", "exec"), names)
     return names

@@ -1,0 +1,144 @@
+"""Tables of the keys of drive files and studies, made from the fields that read them: `{{ keys.belt }}` on a page."""
+
+import json
+import typing
+from collections.abc import Iterable, Mapping
+from math import inf, tau
+from types import ModuleType
+from typing import Any, Literal
+
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic.fields import FieldInfo
+
+from beltdyn.machines.links import kinds as links
+from beltdyn.machines.loads import kinds as loads
+from beltdyn.machines.loads.load import Load
+from beltdyn.machines.profiles import kinds as profiles
+from beltdyn.machines.profiles.crank import CrankSpeed
+from beltdyn.machines.tensioners import kinds as tensioners
+from beltdyn.model import (
+    Belt,
+    Contact,
+    FixedEnd,
+    Harmonic,
+    Limits,
+    PulledEnd,
+    Pulley,
+    Simulation,
+    Steady,
+    WeightEnd,
+)
+from beltdyn.model.belt_form import Nominal, Sold, Stiffnesses
+from beltdyn.model.parameter_study import ParameterStudy, VariedNumber
+from beltdyn.model.pulley import Diameter
+from beltdyn.model.stretch_curve import StretchCurve
+from beltdyn.model.study import FreeNumber, Goal, Measurement, Obstacle, Order, Points, Requirement
+from beltdyn.model.surface import SURFACES
+from beltdyn.parts.part import Part
+
+CHOSEN = {
+    Belt: ("elements", "discretization"),
+    Contact: ("stiffness", "damping", "creep_ratio", "standstill_creep"),
+    Simulation: ("frame",),
+}
+"""Keys that a drive chooses where its file leaves them open."""
+
+
+def kinds_in(family: ModuleType) -> dict[str, type[Part]]:
+    """Parts of a family of machines by the names of their kinds."""
+    parts = [kind for kind in vars(family).values() if isinstance(kind, type)]
+    return {part.model_json_schema()["properties"]["kind"]["const"]: part for part in parts}
+
+
+def table(part: type[Part], *others: type[Part], without: Iterable[str] = ("kind",)) -> str:
+    """The keys of a part as a table in Markdown, with those that others take in their place."""
+    rows = {
+        field.alias or name: f"| `{field.alias or name}` | {_meaning(field)} | {_default(part, one, name, field)} |"
+        for one in (part, *others)
+        for name, field in one.model_fields.items()
+        if name not in without
+    }
+    return "\n".join(["| key | meaning | default |", "|---|---|---|", *rows.values()])
+
+
+def family(kinds: Mapping[str, type[Part]], shared: type[Part] | None = None) -> dict[str, str]:
+    """Tables of all kinds; what they share has a table of its own, `shared`."""
+    common = tuple(shared.model_fields) if shared else ()
+    tables = {name: table(part, without=("kind", *common)) for name, part in kinds.items()}
+    return {**tables, "shared": table(shared)} if shared else tables
+
+
+def _meaning(field: FieldInfo) -> str:
+    """Description, choices and limits."""
+    told = field.description or ""
+    words = [f"{told[0].upper()}{told[1:]}"]
+    choices = [one for one in _choices(field.annotation) if one not in told]
+    if choices:
+        words.append(f"one of {', '.join(f'`{one}`' for one in choices)}")
+    limits = [limit for one in field.metadata if (limit := _limit(one)) and limit not in told]
+    return "; ".join([*words, " and ".join(limits)] if limits else words)
+
+
+def _choices(annotation: Any) -> tuple[str, ...]:
+    """The words from which one is chosen."""
+    if typing.get_origin(annotation) is Literal:
+        return typing.get_args(annotation)
+    return next((found for one in typing.get_args(annotation) if (found := _choices(one))), ())
+
+
+def _limit(constraint: object) -> str:
+    """A limit in words; nothing of what goes without saying."""
+    match constraint:
+        case Gt(gt=limit) if limit:
+            return f"above {limit:g}"
+        case Ge(ge=limit) if limit:
+            return f"at least {limit:g}"
+        case Lt(lt=limit) if limit < inf:
+            return f"below {limit:g}"
+        case Le(le=limit):
+            return f"at most {limit:g}"
+    return ""
+
+
+def _default(part: type[Part], one: type[Part], name: str, field: FieldInfo) -> str:
+    """The value that holds where the key is open."""
+    if name in CHOSEN.get(one, ()):
+        return "chosen"
+    if field.is_required():
+        return "required" if one is part else ""
+    value = field.get_default()
+    if value in (None, ()) or field.default_factory:
+        return ""
+    if value == tau:
+        return "one turn"
+    return f"`{json.dumps(value) if isinstance(value, bool | tuple) else value}`"
+
+
+KEYS: dict[str, Any] = {
+    "belt": table(Belt, Nominal),
+    "sold": table(Stiffnesses, Sold, without=("width", "thickness")),
+    "stretch_curve": table(StretchCurve),
+    "pulley": table(Pulley, Diameter),
+    "surface": family(SURFACES),
+    "contact": table(Contact),
+    "simulation": table(Simulation),
+    "steady": table(Steady),
+    "limits": table(Limits),
+    "end": family({"fixed": FixedEnd, "pulled": PulledEnd, "weight": WeightEnd}),
+    "harmonic": table(Harmonic),
+    "crank": table(CrankSpeed),
+    "load": family(kinds_in(loads), Load),
+    "hub": family(kinds_in(links)),
+    "tensioner": family(kinds_in(tensioners)),
+    "profile": family(kinds_in(profiles)),
+    "study": table(ParameterStudy),
+    "study_number": table(VariedNumber),
+    "free_number": table(FreeNumber),
+    "points": table(Points),
+    "goal": table(Goal),
+    "requirement": table(Requirement),
+    "order": table(Order),
+    "obstacle": table(Obstacle),
+    "measurement": table(Measurement),
+}
+"""All tables, by the names that the pages give them."""
