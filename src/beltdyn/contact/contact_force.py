@@ -32,9 +32,9 @@ class ContactTotals(NamedTuple):
     damping_power: float
     """Power lost in the contact dampers: f_n without its elastic part times dd/dt, over the touching length, W."""
     friction_power: float
-    """Power that belt and pulley really lose in friction, -f_t (t . dr/dt - arm omega), W."""
+    """Friction power loss of belt and pulley, -f_t (t . dr/dt - arm omega), W."""
     compression_power: float
-    """Power lost as the belt is pressed in and comes out, -f_r (t . dr/dt), W."""
+    """Power lost by compression of the belt, -f_r (t . dr/dt), W."""
 
 
 class ContactFactors(NamedTuple):

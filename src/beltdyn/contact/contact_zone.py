@@ -1,4 +1,4 @@
-"""Where an element touches a pulley: the intervals of its centreline with d >= 0.
+"""Contact zones of an element on a pulley: the intervals of its centreline with d >= 0.
 
 The centreline of an element is a Bezier curve of degree p given by its control points, whatever the discretisation.
 The squared distance to a pulley's centre is then a polynomial of degree 2 p, and R^2 minus it, the overlap, has the
@@ -21,9 +21,9 @@ from beltdyn.kernel import by_type, kernel
 from beltdyn.records import blank, record
 
 _HALVINGS = 12
-"""A dip of an element over less than 2^-12 of its length is not seen; it is below a millionth of the radius deep."""
+"""A dip over less than 2^-12 of the element length is ignored; its depth is below a millionth of the radius."""
 _SAMPLES = 16
-"""Intervals of an element in which its contact with a shaped surface is looked for; shorter ones may not be seen."""
+"""Search intervals of an element for contact with a shaped surface; shorter contact may be missed."""
 _STEPS = 60
 _RESOLUTION = 1e-13
 
@@ -67,7 +67,7 @@ def zone_scratch(count: int) -> np.record:
 
 @kernel
 def out_of_reach(control: FloatArray, pulley: PulleyState) -> bool:
-    """Whether the convex hull of the control points lies beyond a line that the pulley does not cross.
+    """Whether a line separates the convex hull of the control points from the pulley.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Laws of the contact between belt and pulleys, and the state of one pulley as contact sees it."""
+"""The contact laws of belt and pulleys, and the state of a pulley as contact sees it."""
 
 from typing import NamedTuple
 
@@ -11,13 +11,13 @@ class ContactLaw(NamedTuple):
     """Laws of normal force and friction with their parameters, and how contact is integrated."""
 
     normal: NormalParameters
-    """Parameters of the law of the normal force; their type says which law it is."""
+    """Parameters of the law of the normal force; their type identifies the law."""
     friction: FrictionParameters
-    """Parameters of the friction law, alike."""
+    """Parameters of the friction law; their type identifies the law."""
     follow_zone: bool
-    """Integrate over the touching part of an element only; False is the published rule, over the whole element."""
+    """Integrate over the contact zone of an element only; False is the published rule, over the whole element."""
     arm_to_rim: bool = False
-    """Whether friction turns the pulley with the arm R; False is the published rule, R - d."""
+    """Whether the moment arm of friction is R; False is the published rule, R - d."""
 
 
 class PulleyState(NamedTuple):

@@ -14,7 +14,7 @@ from beltdyn.kernel import by_type, kernel
 
 
 class Approach(NamedTuple):
-    """How a belt point stands and moves against a pulley."""
+    """Position and motion of a belt point relative to a pulley."""
 
     penetration: float
     """d, the distance inside the surface, m; R - rho of a smooth circle, with rho = |r - O| (Eq. 18)."""
@@ -39,7 +39,7 @@ class Approach(NamedTuple):
 
 @kernel
 def approach(x: float, y: float, velocity_x: float, velocity_y: float, pulley: PulleyState) -> Approach:
-    """Place a centreline point against a pulley (Eqs. 18, 19 and 21).
+    """Position and motion of a centreline point relative to a pulley (Eqs. 18, 19 and 21).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Rolling resistance: what pressing a belt into a pulley and letting it out again takes, spread over the arc.
+"""Rolling resistance: the compression loss of the belt on a pulley, distributed over the arc.
 
 A belt that is pressed in meets a larger pressure as it goes in than as it comes out.  The resultant of that difference
 holds the belt back and goes through the shaft, so that it does not turn the pulley.  Along the arc it is a share rho of
@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 from beltdyn.kernel import kernel
 
 CREEPING: Final = 0.01
-"""v_0: speed of the belt below which rolling resistance fades away, m/s."""
+"""v_0: belt speed below which rolling resistance vanishes smoothly, m/s."""
 
 
 class RollingResistance(NamedTuple):

@@ -1,4 +1,4 @@
-"""Belt elements, a kind a file or a folder: energy, force and tangent, mass, and the curve that contact sees.
+"""Belt elements, one kind per file or folder: energy, force, tangent, mass, and the curve for contact.
 
 Importing a kind here puts it on the list.  `kind` says what a kind provides, and `dispatch` has the kernels of all
 kinds under one name each.

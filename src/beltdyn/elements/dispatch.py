@@ -1,4 +1,4 @@
-"""The kernels of all element kinds under one name each: the class of the first argument chooses the kind."""
+"""Compile-time dispatch of element kernels on the class of the first argument."""
 
 from beltdyn.elements import ELEMENTS
 from beltdyn.kernel import by_type
@@ -13,4 +13,4 @@ damping_force = by_type({kind.element: kind.damping for kind in ELEMENTS.values(
 """Damping force of an element with its tangent; see `ElementKind.damping`."""
 
 tension = by_type({kind.element: kind.tension for kind in ELEMENTS.values()}, "tension")
-"""Tension that results report; see `ElementKind.tension`."""
+"""Tension for results; see `ElementKind.tension`."""

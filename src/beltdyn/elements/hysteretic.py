@@ -1,4 +1,4 @@
-"""Hysteresis: stress that resists the rate of a strain by a share of the strain, at any speed.
+"""Rate-independent hysteresis: a stress against the strain rate, in proportion to the strain.
 
 Of a strain x with the rate dx/dt and the modulus c (N, or N m^2) the stress is
 
@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 from beltdyn.kernel import kernel
 
 CREEPING: Final = 0.1
-"""v_0: speed of the belt below which hysteresis turns into damping in proportion to the rate, m/s."""
+"""v_0: belt speed below which hysteresis becomes viscous damping, m/s."""
 
 
 class Hysteretic(NamedTuple):

@@ -1,4 +1,4 @@
-"""What an element kind provides: the contract of `beltdyn.elements`."""
+"""The contract of an element kind."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from beltdyn.records import record
 
 
 class Element(Protocol):
-    """What the kernels of an element kind get as first argument, a named tuple whose class stands for the kind."""
+    """First argument of the kernels of an element kind, a named tuple whose class identifies the kind."""
 
     @property
     def section(self) -> Section:
@@ -23,7 +23,7 @@ class Element(Protocol):
 
     @property
     def elastic(self) -> Quadrature:
-        """Where elastic forces are evaluated along an element."""
+        """Integration points of elastic forces along an element."""
 
 
 class DampingFactors(NamedTuple):
@@ -49,7 +49,7 @@ def no_damping(
     factors: DampingFactors,
     work: np.record,
 ) -> tuple[float, float]:
-    """Add nothing: the `damping` of kinds that have none."""
+    """Add nothing: the `damping` of undamped kinds."""
     return 0.0, 0.0
 
 
@@ -60,7 +60,7 @@ def as_cubic(angle: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class ElementKind:
-    """A belt element between two nodes, as models, systems, results and figures see it; made, it is in `ELEMENTS`.
+    """A belt element between two nodes, registered in `ELEMENTS`.
 
     A node has n coordinates, those of an element are e, shape (2 n,): of its first node, then of its second.  Part of
     them are v vectors of two components that carry the centreline, which consists of one or several Bezier curves.
@@ -141,22 +141,22 @@ class ElementKind:
 
     @property
     def dof(self) -> int:
-        """Coordinates of a node, n."""
+        """Number of coordinates of a node, n."""
         return self.points * len(self.coordinates)
 
     @property
     def curves(self) -> int:
-        """Curves of the centreline of an element."""
+        """Number of centreline curves of an element."""
         return len(self.control(1.0))
 
     @property
     def is_damped(self) -> bool:
-        """Whether its material can be damped."""
+        """Whether its material can have damping."""
         return self.damping is not no_damping
 
     @property
     def workspace(self) -> np.dtype[np.void]:
-        """Kind of the rows in which `force` and `damping` work and leave what they find."""
+        """Record type of the scratch and result rows of `force` and `damping`."""
         size = 2 * self.dof
         return record(gradient=f"{size}f8", by_flow=f"{size}f8", tangent=f"({size},{size})f8", **self.scratch)
 

@@ -233,7 +233,7 @@ def quintic_damping(
 
 QUINTIC = ElementKind(
     name="quintic",
-    meaning="for smooth contact a quintic centreline without shear",
+    meaning="a quintic centreline without shear, for smooth contact",
     element=Quintic,
     coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "d2r_x/dx2", "d2r_y/dx2"),
     vectors=(0, 2, 4, 6, 8, 10),

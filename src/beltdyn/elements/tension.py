@@ -41,5 +41,5 @@ def damping_tension(metric: float, metric_rate: float, section: Section) -> floa
 
 @kernel
 def axial_tension(element: "Element", metric: float, metric_rate: float) -> float:
-    """Tension of an element that stretches by the law of its section, N: both parts."""
+    """Tension of an element by the stretch law of its section, N: both parts."""
     return axial_force(element.section.stretch, metric) + damping_tension(metric, metric_rate, element.section)

@@ -62,7 +62,7 @@ def _control(length: FloatArray | float) -> FloatArray:
 
 THREE_NODE_BEAM = ElementKind(
     name="three-node-beam",
-    meaning="for comparison pairs of links with torsional springs",
+    meaning="pairs of links with torsional springs, for comparison",
     element=ThreeNodeBeam,
     coordinates=("r_x", "r_y"),
     points=LINKS,

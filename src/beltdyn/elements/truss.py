@@ -1,4 +1,4 @@
-"""Truss element of Leamy and Wasfy: a straight link between two points, which stretches by the belt's law."""
+"""Truss element of Leamy and Wasfy: a straight link between two points, with the belt's stretch law."""
 
 from typing import NamedTuple
 
@@ -103,13 +103,13 @@ def straight_control(length: FloatArray | float) -> FloatArray:
 
 
 def link_cubic_angle(angle: FloatArray) -> FloatArray:
-    """Angle over which a cubic misses a circle as much as a link does over a given one, rad."""
+    """Angle of a cubic with the same deviation from a circle as a link over a given angle, rad."""
     return np.sqrt(angle) * _CIRCLE**0.25
 
 
 TRUSS = ElementKind(
     name="truss",
-    meaning="for comparison straight links without bending stiffness",
+    meaning="straight links without bending stiffness, for comparison",
     element=Truss,
     coordinates=("r_x", "r_y"),
     vectors=(0, 2),

@@ -1,4 +1,4 @@
-"""Compiled code: the decorator of kernels and the folder that keeps their machine code."""
+"""Compiled code: the decorator of kernels and the cache of their machine code."""
 
 from beltdyn.kernel.by_type import by_type
 from beltdyn.kernel.cache import CACHE_VARIABLE, PACKAGE, KernelCacheWarning, holds_kernels, kernel_cache, source_hash

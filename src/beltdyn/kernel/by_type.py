@@ -1,4 +1,4 @@
-"""Kernels of which the type of the first argument chooses one, when their callers are compiled."""
+"""Compile-time dispatch on the first argument's type."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -8,7 +8,7 @@ from beltdyn.kernel.version import compiles_quickly
 
 
 class ByType:
-    """Several kernels under one name.
+    """Several kernels with one name.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ class ByType:
     """
 
     unregistered: ClassVar[list["ByType"]] = []
-    """Those that plain compilation has not heard of."""
+    """Kernels not yet registered with plain compilation."""
 
     def __init__(self, kernels: Mapping[type, Callable[..., Any]], name: str) -> None:
         self.kernels: dict[Any, Any] = dict(kernels)
@@ -31,7 +31,7 @@ class ByType:
         return self.kernels[type(subject)](subject, *rest)
 
     def kernel_for(self, subject: Any, *_rest: Any) -> Any:
-        """The kernel for a first argument of a type of Numba."""
+        """The kernel for a Numba type of the first argument."""
         chosen = self.kernels.get(getattr(subject, "instance_class", None))
         if chosen is None:
             known = ", ".join(kind.__name__ for kind in self.kernels)
@@ -53,7 +53,7 @@ class ByType:
 
 
 def by_type(kernels: Mapping[type, Callable[..., Any]], name: str) -> Callable[..., Any]:
-    """Put several kernels under one name: the type of the first argument chooses.
+    """Combine several kernels under one name, chosen by the type of the first argument.
 
     Where a kernel calls it, the choice is made as the caller is compiled, for the types of its arguments; it costs
     nothing at run time, and what is not chosen is not compiled.

@@ -1,4 +1,4 @@
-"""The folder of the compiled kernels, which cannot go stale.
+"""The cache folder of compiled kernels, keyed by their sources.
 
 Numba's own cache watches the file of the compiled function only.  A kernel that calls a law from another file would
 keep the old physics after that law was edited.  Here the cache lives in a folder named by a hash of every source
@@ -34,12 +34,12 @@ _WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
 class KernelCacheWarning(UserWarning):
-    """Compiled kernels that cannot be kept, or cannot be used again."""
+    """Compiled kernels cannot be kept or reused."""
 
 
 @cache
 def kernel_cache() -> Path:
-    """Folder of the compiled kernels of exactly these sources, made if need be.
+    """Folder of the compiled kernels of exactly these sources, created if needed.
 
     Returns
     -------
@@ -56,7 +56,7 @@ def kernel_cache() -> Path:
     if not fault:
         return chosen / name
     warnings.warn(
-        f"The kernel cache {chosen} is not used, and every start compiles the kernels again: {fault}. "
+        f"The kernel cache {chosen} is not usable: {fault}. Kernels are compiled again at every start. "
         f"Correct this, or set {CACHE_VARIABLE} to a folder of your own.",
         KernelCacheWarning,
         stacklevel=3,
@@ -90,7 +90,7 @@ def _prepare(chosen: Path, name: str) -> str:
 
 
 def holds_kernels(folder: Path) -> bool:
-    """Whether any kernel was compiled into a folder of kernels."""
+    """Whether a folder has any compiled kernel."""
     return any(path.suffix in (ENTRY, *NUMBA_FILES) for path in folder.rglob("*"))
 
 

@@ -1,4 +1,4 @@
-"""Functions of a user, called by kernels through their addresses, which kernels take as numbers."""
+"""User functions, called by kernels through their addresses."""
 
 import ctypes
 import time
@@ -10,16 +10,16 @@ from typing import Any
 _C_FUNCTION = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_double)
 _TRIALS = 200
 _kept: list[Any] = []
-"""Machine code stays where it is as long as the process runs."""
+"""Machine code keeps its address while the process runs."""
 
 
 class SlowFunctionWarning(UserWarning):
-    """A function that Numba does not compile."""
+    """A function that Numba cannot compile."""
 
 
 @cache
 def address_of(function: Callable[[float, float, float], float]) -> int:
-    """Make a function of three numbers callable for kernels.
+    """Make a function of three numbers callable from kernels.
 
     Parameters
     ----------
@@ -58,8 +58,8 @@ def _address_of_python(function: Callable[[float, float, float], float], reason:
         callback(0.0, 0.0, 0.0)
     cost = (time.perf_counter() - begin) / _TRIALS
     warnings.warn(
-        f"{_name(function)} is run by Python, {1e6 * cost:.2g} microseconds a call and some calls a time step, as "
-        f"Numba does not compile it ({reason}). Use numbers and functions of math only to make it fast.",
+        f"Numba cannot compile {_name(function)} ({reason}): Python runs it, {1e6 * cost:.2g} microseconds per call "
+        "and several calls per time step. To make it fast, use only numbers and functions of math.",
         SlowFunctionWarning,
         stacklevel=4,
     )
@@ -78,7 +78,7 @@ def _name(function: Callable[..., Any]) -> str:
 
 
 class CallAt:
-    """What kernels and Python call with an address and three numbers."""
+    """The call of an address with three numbers, for kernels and Python."""
 
     def __call__(self, address: int, first: float, second: float, third: float) -> float:
         """Call the function at an address."""

@@ -1,4 +1,4 @@
-"""A kernel that hands a row of a table to the function of the row's kind."""
+"""A kernel that dispatches a row of a table to the function of its kind."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -7,7 +7,7 @@ from beltdyn.kernel.decorator import kernel
 
 
 def choice(name: str, functions: Mapping[str, Callable[..., Any]], others: Sequence[str]) -> Callable[..., Any]:
-    """Make a kernel that calls one of several.
+    """Make a kernel that calls one of several by kind.
 
     Parameters
     ----------

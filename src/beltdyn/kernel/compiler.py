@@ -1,4 +1,4 @@
-"""Compilation by Numba: its public decorator, or a quicker way where its internals are known."""
+"""Compilation by Numba: its public decorator, or a quicker way through known internals."""
 
 import functools
 import warnings
@@ -20,11 +20,11 @@ OPTIONS = {"nogil": True, "error_model": "numpy", "fastmath": {"contract", "nsz"
 
 
 class PlainCompilationWarning(UserWarning):
-    """Kernels are compiled in the plain way, which takes longer."""
+    """Kernels are compiled by Numba's public decorator, which takes longer."""
 
 
 def new_dispatcher(function: Callable[..., Any], inline: bool) -> Any:
-    """Make what compiles a function at its first call, and calls it.
+    """Make a dispatcher that compiles a function at its first call.
 
     Parameters
     ----------
@@ -90,8 +90,8 @@ def _say_once() -> None:
     if holds_kernels(kernel_cache()):
         return
     warnings.warn(
-        f"Numba {numba.__version__} compiles the kernels of beltdyn in the plain way: the first start takes some "
-        "minutes, later ones as long as ever, and results are the same.",
+        f"Kernels are compiled by the public decorator of Numba {numba.__version__}: the first start takes some "
+        "minutes. Later starts and results are not affected.",
         PlainCompilationWarning,
         stacklevel=4,
     )

@@ -20,7 +20,7 @@ _DIGEST_SIZE = hashlib.sha256().digest_size
 
 
 def read_sealed(path: Path) -> bytes | None:
-    """Content of a file by `write_sealed`, or None where there is none.
+    """Content of a file by `write_sealed`, or None without one.
 
     One that is damaged, or cannot be read, counts as none, with a warning.
     """
@@ -46,7 +46,7 @@ def write_sealed(path: Path, content: bytes) -> None:
 
 
 class SealedFolder:
-    """A folder whose files Numba's own cache reads and writes, with a checksum in a file beside each.
+    """A folder of Numba's own cache, with a checksum file beside each file.
 
     Numba reads a file whenever it likes.  So all are looked through before it reads the first, and what it adds is
     sealed after each compilation.  A file that nobody has sealed was written by a process that did not end in order.
@@ -72,7 +72,7 @@ class SealedFolder:
             warn_of_damage(folder)
 
     def seal(self) -> None:
-        """Seal what was written since."""
+        """Seal files written since."""
         for path in self._files():
             with suppress(OSError):  # another process may replace it meanwhile
                 stamp = _stamp(path)
@@ -123,10 +123,8 @@ def _remove(path: Path) -> None:
 
 @cache
 def warn_of_damage(folder: Path) -> None:
-    """Say once that kernels in a folder are compiled again."""
-    warnings.warn(
-        f"Compiled kernels in {folder} are damaged, and are compiled again.", KernelCacheWarning, stacklevel=3
-    )
+    """Warn once that kernels in a folder are compiled again."""
+    warnings.warn(f"Compiled kernels in {folder} are damaged and are compiled again.", KernelCacheWarning, stacklevel=3)
 
 
 @cache

@@ -1,4 +1,4 @@
-"""Settings of Numba, changed for a while."""
+"""Temporary settings of Numba."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ import numba
 
 @contextmanager
 def setting(name: str, value: Any) -> Iterator[None]:
-    """Change a setting of Numba for a while; other packages keep theirs.
+    """Change a setting of Numba temporarily; other packages keep theirs.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Which way kernels are compiled: quickly where Numba's internals are known, or by its public decorator."""
+"""The way of compilation: quick for known versions of Numba, otherwise by its public decorator."""
 
 import os
 from functools import cache

@@ -1,4 +1,4 @@
-"""The machines around a belt: what drives and loads shafts, couples them with pulleys, and tensions the belt.
+"""The machines around a belt: loads and motors, hub chains, tensioners, prescribed functions of time.
 
 A kind of machine is a file: the class that a user's keys make, a record of its constants, and kernels that give its
 force with exact derivatives.  Each family has a module `kinds`, which imports its kinds, one a line; all else that

@@ -1,4 +1,4 @@
-"""Kinds of one family of machines, such as all loads: found in the module that imports them."""
+"""The kinds of a family of machines, such as loads, collected from the module that imports them."""
 
 from collections.abc import Mapping
 from types import ModuleType
@@ -11,7 +11,7 @@ from beltdyn.parts.part import Part
 
 
 def kinds_in(module: ModuleType) -> dict[str, Any]:
-    """Find the kinds that a module imports.
+    """Collect the kinds that a module imports.
 
     Parameters
     ----------
@@ -35,10 +35,10 @@ def _kind(part: type[Part]) -> str:
 
 
 def any_of(kinds: Mapping[str, Any]) -> Any:
-    """Type of a field that takes any of some kinds."""
+    """Type of a field for any of some kinds."""
     return Annotated[Union[tuple(kinds.values())], Field(discriminator="kind")]  # noqa: UP007
 
 
 def constants_of(kinds: Mapping[str, Any]) -> dict[str, np.dtype[np.void]]:
-    """Fields of a row that has the constants of any of some kinds."""
+    """Fields of a row for the constants of any of some kinds."""
     return {name: kind.constants for name, kind in kinds.items()}

@@ -1,4 +1,4 @@
-"""What a user describes: the drive, validated and immutable, and its file."""
+"""The drive: validated, immutable, read from and written to drive files."""
 
 from beltdyn.machines import (
     AngleSpeedTable,

@@ -1,4 +1,4 @@
-"""Warnings about a drive that is valid, but perhaps not meant."""
+"""Warnings about a drive that is valid but probably not intended."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -18,16 +18,16 @@ _MOST_TENSION_LOST = 0.02
 _DEEPEST_PENETRATION = 0.1
 _LARGEST_STRAIN = 0.1
 _LONG = 60.0
-"""Computing time whose cause is told, s."""
+"""Computing time above which the cause is named, s."""
 _DEFAULT_RTOL = 1e-4
 _STEP = 1.7
-"""Elements that an axial wave passes in a step at the default tolerance: 0.5 to 5 in the examples."""
+"""Elements passed by an axial wave per step at the default tolerance: 0.5 to 5 in the examples."""
 _ELEMENT_TIME = 6e-6
-"""Computing time of a step for each element, s: 4.4e-6 to 7.5e-6 in the examples, on one core of 3 GHz."""
+"""Computing time per step and element, s: 4.4e-6 to 7.5e-6 in the examples, on one core at 3 GHz."""
 
 
 def advise(drive: Drive, installation: Installation) -> list[str]:
-    """Say what a user should know before simulating a drive.
+    """Warn of problems of a drive before it is simulated.
 
     Parameters
     ----------
@@ -61,20 +61,20 @@ def advise(drive: Drive, installation: Installation) -> list[str]:
 
 
 def unstable_balance(names: Sequence[str]) -> Finding:
-    """Say that the tensioners of some pulleys are not in stable balance at rest."""
+    """Tensioners at rest in an unstable equilibrium."""
     return Finding(
-        f"at rest the balance of the tensioner of {listing(names)} is not stable: a small push drives it away.",
-        "No real drive stays there: tensions and positions at rest, and what a run starts from, are of no use.",
-        "Turn its arm or direction away from its dead centre, raise the rate of its spring, or give stops.",
+        f"at rest the equilibrium of the tensioner of {listing(names)} is unstable: a small disturbance moves it away.",
+        "A real drive does not stay there: tensions and positions at rest, and the start of a run, are meaningless.",
+        "Turn its arm or direction away from the dead centre, increase its spring rate, or give stops.",
     )
 
 
 def off_the_stop(stop: str) -> str:
-    """Say what keeps a tensioner from its lower or upper stop; what changes its tension comes last."""
-    belt, side, tension = ("Shorten", "towards", "lower") if stop == "upper" else ("Lengthen", "away from", "raise")
+    """Remedies against a tensioner on its lower or upper stop; a change of tension comes last."""
+    belt, side, preload = ("Shorten", "towards", "reduce") if stop == "upper" else ("Lengthen", "away from", "increase")
     return (
-        f"{belt} the belt, move the tensioner {side} the belt, or give it more range by its stops; at last, for "
-        f"{'less' if stop == 'upper' else 'more'} tension, {tension} its preload."
+        f"{belt} the belt, move the tensioner {side} the belt, or widen the range between its stops; for "
+        f"{'less' if stop == 'upper' else 'more'} tension, {preload} its preload."
     )
 
 
@@ -83,22 +83,22 @@ def _strain(drive: Drive, installation: Installation) -> list[Finding]:
     if drive.belt.stretch_curve is not None:
         measured = drive.belt.stretch_curve.strains[-1]
         finding = Finding(
-            f"the belt at rest is stretched by {strain:.2%}, and belt.stretch_curve ends at {measured:.2%}.",
-            f"Its tension of {tension:.4g} N is a guess: beyond the last point the curve goes on as a straight line.",
-            "Measure farther, lengthen the belt, or lower the installed tension.",
+            f"the belt at rest is stretched by {strain:.2%}, but belt.stretch_curve ends at {measured:.2%}.",
+            f"Its tension of {tension:.4g} N is extrapolated by a straight line from the last point of the curve.",
+            "Extend the measured curve, lengthen the belt, or reduce the installed tension.",
         )
         return [finding] if strain > measured else []
     finding = Finding(
         f"the belt at rest is stretched by {strain:.1%}, more than {_LARGEST_STRAIN:.0%}.",
-        f"Its tension of {tension:.4g} N is taken from a constant axial stiffness, which few belts have so far.",
-        "Lengthen the belt, move the pulleys together, lower the installed tension, or give a measured "
+        f"Its tension of {tension:.4g} N assumes a constant axial stiffness, which few belts have at this strain.",
+        "Lengthen the belt, move the pulleys closer together, reduce the installed tension, or give a measured "
         "belt.stretch_curve.",
     )
     return [finding] if strain > _LARGEST_STRAIN else []
 
 
 def _lift_off(drive: Drive, installation: Installation) -> list[Finding]:
-    """Compare the largest prescribed speed with that from which a belt on fixed centres no longer presses on pulleys.
+    """Compare the largest prescribed speed with the speed of lift-off of a belt on fixed centres.
 
     Its length between them stays, and so does its tension T, of which m v^2 is taken to bend the moving belt. A spring
     follows the belt and keeps up its pressure.
@@ -114,17 +114,17 @@ def _lift_off(drive: Drive, installation: Installation) -> list[Finding]:
     return [
         Finding(
             f"at {fastest:.4g} m/s, the largest speed of {name}, the belt lifts off all pulleys: "
-            f"it takes a tension of {mass * fastest**2:.4g} N to bend it around them, and it has {tension:.4g} N.",
-            f"It transmits next to nothing from {limit:.4g} m/s on ({rpm:.4g} rpm of {name}), and "
-            "less and less on the way there: at half of that speed 75% of what it does at low speed.",
-            f"Raise the installed tension above {mass * fastest**2:.3g} N and what the load needs, lower the speed, "
-            "take a lighter belt, or a tensioner with a spring, which keeps the belt on.",
+            f"its centrifugal tension is {mass * fastest**2:.4g} N, its tension only {tension:.4g} N.",
+            f"From {limit:.4g} m/s on ({rpm:.4g} rpm of {name}) it transmits almost no torque; at half of that speed "
+            "it transmits 75% of the torque at low speed.",
+            f"Increase the installed tension above {mass * fastest**2:.3g} N plus what the load needs, reduce the "
+            "speed, choose a lighter belt, or add a spring-loaded tensioner, which keeps the belt on.",
         )
     ]
 
 
 def _tension(drive: Drive, installation: Installation) -> list[Finding]:
-    """Compare the tension with that on hard pulleys, where no spring makes up for what is lost."""
+    """Compare the tension with that on rigid pulleys, without a spring to compensate the loss."""
     lost = 1 - installation.tension / installation.laid_tension
     if lost <= _MOST_TENSION_LOST or installation.tensioner_positions.size:
         return []
@@ -132,28 +132,28 @@ def _tension(drive: Drive, installation: Installation) -> list[Finding]:
     if drive.belt.installed_tension is None:
         return [
             Finding(
-                f"the contact of belt and pulleys is so soft that it takes {lost:.1%} of the belt's tension, more than "
-                f"{_MOST_TENSION_LOST:.0%}.",
-                f"Tensions and hub loads are lower by as much: by hand {tension:.4g} N, not {laid:.4g} N as on hard "
-                "pulleys.",
-                f"Raise {_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}.",
+                f"the contact between belt and pulleys is so soft that it reduces the belt tension by {lost:.1%}, more "
+                f"than {_MOST_TENSION_LOST:.0%}.",
+                f"Tensions and hub loads are too low by that share: about {tension:.4g} N instead of {laid:.4g} N on "
+                "rigid pulleys.",
+                f"Increase {_remedy(drive, installation, (1 - _MOST_TENSION_LOST) * laid, laid)}.",
             )
         ]
     remedy = _remedy(drive, installation, tension, tension / (1 - _MOST_TENSION_LOST))
     shorter = installation.path.length / float(drive.belt.stretch_parameters.stretch(tension)) - drive.belt_length
     return [
         Finding(
-            f"the contact of belt and pulleys is so soft that the belt must be {1e3 * shorter:.3g} mm shorter for "
-            f"{tension:.4g} N than on hard pulleys.",
-            f"Its length of {drive.belt_length:.5g} m is wrong by as much; the tension is right, after a loss of "
-            f"{lost:.1%}.",
-            f"Where its length matters, raise {remedy}.",
+            f"the contact between belt and pulleys is so soft that the belt must be {1e3 * shorter:.3g} mm shorter for "
+            f"{tension:.4g} N than on rigid pulleys.",
+            f"Its length of {drive.belt_length:.5g} m is too short by that amount; the tension is correct, after a "
+            f"loss of {lost:.1%}.",
+            f"If the length matters, increase {remedy}.",
         )
     ]
 
 
 def _remedy(drive: Drive, installation: Installation, tension: float, laid: float) -> str:
-    """Say which contact leaves a tension, N, of what the belt is laid with; rounded to two digits, to the safe side.
+    """The contact that leaves a given tension, N, of the tension as laid; rounded to two digits, on the safe side.
 
     The stiffness is that with which the penetration, T g / (R k_p) along each arc, shortens the path by as much as the
     belt is stretched less.
@@ -183,7 +183,7 @@ def _stops(drive: Drive, installation: Installation) -> list[Finding]:
             found.append(
                 Finding(
                     f"the tensioner of {tensioner.pulley} rests on its {which} stop, at {tensioner.written(position)}.",
-                    f"There the length of the belt and not its spring sets the tension, {installation.tension:.4g} N.",
+                    f"On the stop the belt length, not the spring, sets the tension ({installation.tension:.4g} N).",
                     off_the_stop(which),
                 )
             )
@@ -191,16 +191,16 @@ def _stops(drive: Drive, installation: Installation) -> list[Finding]:
 
 
 def _other_balances(drive: Drive, installation: Installation) -> list[Finding]:
-    """Tell of other stable balances, to which a blow may drive a tensioner."""
+    """Other stable equilibria, to which a shock may move a tensioner."""
     found = []
     for tensioner, balances in zip(drive.moving_tensioners, tensioner_balances(drive, installation), strict=True):
         others = [tensioner.written(balance.position) for balance in balances if balance.stable and not balance.here]
         if others:
             found.append(
                 Finding(
-                    f"the tensioner of {tensioner.pulley} is in stable balance at {listing(others)} too.",
-                    "A blow may drive it there, and tensions are others then.",
-                    "Give stops that keep it from there.",
+                    f"the tensioner of {tensioner.pulley} has other stable equilibria, at {listing(others)}.",
+                    "A shock may move it there, with different tensions.",
+                    "Give stops that exclude these positions.",
                 )
             )
     return found
@@ -212,21 +212,21 @@ def _penetration(drive: Drive, installation: Installation) -> list[Finding]:
     if not deep.any():
         return []
     sinks = [
-        f"{share:.0%} of the radius into {pulley.name}"
+        f"into {pulley.name} by {share:.0%} of its radius"
         for pulley, share, is_deep in zip(drive.pulleys, shares, deep, strict=True)
         if is_deep
     ]
     return [
         Finding(
             f"at rest the belt sinks {listing(sinks)}, more than {_DEEPEST_PENETRATION:.0%}.",
-            f"Torque arms, wrap angles and tensions are those of pulleys up to {shares.max():.0%} smaller.",
-            "Raise contact.stiffness.",
+            f"Torque arms, wrap angles and tensions are those of pulleys smaller by up to {shares.max():.0%}.",
+            "Increase contact.stiffness.",
         )
     ]
 
 
 def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
-    """Judge the mesh as that of a drive that runs slowly with the tension at rest."""
+    """Assess the mesh for slow running with the tension at rest."""
     if not installation.tension > 0 or drive.frame.stays:
         return []
     running = Running(installation.tension)
@@ -235,18 +235,18 @@ def _mesh(drive: Drive, installation: Installation) -> list[Finding]:
 
 
 def other_creep(drive: Drive, factor: float) -> str:
-    """Say what to set for friction that takes hold within a slip which is larger by a factor, or smaller."""
+    """The setting for friction that saturates at a slip velocity larger or smaller by a factor."""
     chosen = LAWS[drive.contact.friction_law]
     if any(parameter.found for parameter in chosen.parameters):
         ratio = drive.completed.contact.given("creep_ratio")
-        verb = "raise" if factor > 1.0 else "lower"
-        return f"{verb} contact.creep_ratio = {ratio:.1e} to {factor * ratio:.0e}"
+        verb = "increase" if factor > 1.0 else "reduce"
+        return f"{verb} contact.creep_ratio from {ratio:.1e} to {factor * ratio:.0e}"
     keys = " and ".join(f"contact.{key}" for key in ("friction_law", *(one.name for one in chosen.parameters)))
-    return f"leave out {keys}: the friction law that is chosen without them creeps with the speed of the belt"
+    return f"omit {keys}: the default friction law scales its creep with the belt speed"
 
 
 def describe_time(drive: Drive) -> str:
-    """Say about how long a run will take, and what makes it so where that is long; empty where nothing is known."""
+    """Estimate the computing time of a run, and the cause if it is long; empty if unknown."""
     settings, belt = drive.simulation, drive.belt
     if settings.integrator != "generalized_alpha" or drive.frame.stays:
         return ""
@@ -261,14 +261,9 @@ def describe_time(drive: Drive) -> str:
     cause = max(rates, key=rates.__getitem__)
     steps = settings.duration * rates[cause]
     seconds = steps * drive.elements * _ELEMENT_TIME
-    about = f"about {_spoken(seconds)}, a fifth or four times as much"
+    size, unit = (1.0, "s") if seconds < _LONG else (60.0, "min") if seconds < 120 * 60 else (3600.0, "h")
+    middle, least, most = (f"{float(f'{factor * seconds / size:.2g}'):g}" for factor in (1.0, 0.2, 4.0))
+    about = f"about {middle} {unit} ({least} to {most} {unit})"
     if seconds < _LONG:
         return about
-    return f"{about}: {settings.duration:g} s in {float(f'{steps:.1g}'):,.0f} steps, as short as {cause} asks for"
-
-
-def _spoken(seconds: float) -> str:
-    """A time in the unit in which one speaks of it."""
-    if seconds < _LONG:
-        return f"{seconds:.2g} s"
-    return f"{seconds / 60:.2g} minutes" if seconds < 120 * 60 else f"{seconds / 3600:.2g} hours"
+    return f"{about}: {settings.duration:g} s in {float(f'{steps:.1g}'):,.0f} steps, limited by {cause}"

@@ -41,7 +41,7 @@ from beltdyn.stretch import LAWS, StretchParameters
 
 _MEANINGS = ", ".join(f'"{kind.name}" ({kind.meaning})' for kind in ELEMENTS.values())
 _NORMAL_SECTIONS = 20.0
-"""Shear stiffness S over EA that holds sections normal: slip on small pulleys errs by about (T / S) EI / EA R^2."""
+"""Shear stiffness S over EA that keeps sections normal: slip on small pulleys errs by about (T / S) EI / EA R^2."""
 _LAWS = ", ".join(f'"{law.name}" ({law.meaning})' for law in LAWS.values())
 
 if TYPE_CHECKING:
@@ -57,18 +57,18 @@ _SIDES = MappingProxyType(dict.fromkeys(("back", "backside", "flat", "smooth"), 
 
 
 def read_side(given: Any) -> Any:
-    """The name of a side in a drive file, for another word that is said for it."""
+    """The name of a side in a drive file for a synonym."""
     return _SIDES.get(given.strip().lower(), given) if isinstance(given, str) else given
 
 
 Side = Annotated[
     Literal["inside", "outside"], BeforeValidator(read_side, json_schema_input_type=Literal["inside", "outside"])
 ]
-"""The side of the belt that touches a pulley; the outside is the belt's back."""
+"""The side of the belt that touches a pulley; the outside is the back of the belt."""
 
 
 class Belt(Part):
-    """A belt of rectangular section, made of equal elements; closed, unless the drive gives it ends.
+    """A belt of rectangular cross-section; closed, unless the drive has ends.
 
     The width points out of the plane of the drive, the thickness lies in it. Arguments are in SI units,
     or text such as ``"25 mm"``. With `installed_tension` in place of `length` the latter is open, None: the drive that
@@ -96,7 +96,7 @@ class Belt(Part):
 
     length: Length | None = Field(None, gt=0, description="the unstretched length of the belt, in m")
     installed_tension: Force | None = Field(
-        None, gt=0, description="the tension of the belt at rest in the drive, in place of its length, in N"
+        None, gt=0, description="the tension of the belt at rest in the drive, instead of its length, in N"
     )
     width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in the plane of the drive, in m")
@@ -104,95 +104,91 @@ class Belt(Part):
     youngs_modulus: Stress = Field(gt=0, description="Young's modulus of the belt, in Pa")
     poissons_ratio: Ratio = Field(gt=-1, lt=0.5, description="Poisson's ratio of the belt")
     pitch_offset: Length = Field(
-        0.0, ge=0, description="the distance from the inside surface to the line that carries the tension, in m"
+        0.0, ge=0, description="the distance from the inside surface to the tension line, in m"
     )
-    back_offset: Length = Field(
-        0.0, ge=0, description="the distance from the back surface to the line that carries the tension, in m"
-    )
+    back_offset: Length = Field(0.0, ge=0, description="the distance from the back to the tension line, in m")
     measuring_force: Force | None = Field(
         None,
         ge=0,
-        description="the force that pulls two equal pulleys apart while nominal_length is measured, two strands of the "
-        "belt together; without it that length is taken as unstretched, in N",
+        description="the total force of both strands on two equal pulleys while nominal_length is measured, in N; by "
+        "default nominal_length is unstretched",
     )
     largest_tension: Force | None = Field(
         None,
         gt=0,
-        description="the tension below which the belt is used, all ribs together, of which `check` warns, in N",
+        description="the rated tension of the belt, all ribs together, above which `check` warns, in N",
     )
     smallest_diameter: Length | None = Field(
-        None, gt=0, description="the smallest diameter of a pulley for the belt, as pulleys are sold, in m"
+        None, gt=0, description="the smallest recommended pulley diameter, as pulleys are sold, in m"
     )
-    crossed: Flag = Field(False, description="whether spans of the belt cross each other")
+    crossed: Flag = Field(False, description="whether spans of the belt cross")
     wedge_angle: Angle | None = Field(
         None,
         gt=0,
         le=pi,
-        description="the angle between the flanks of a V-belt, or of the ribs, in their grooves, in rad; "
-        "none for a flat belt",
+        description="the angle between the flanks of a V-belt or of ribs, in rad; not given for a flat belt",
     )
     friction: Ratio | None = Field(
         None,
         ge=0,
-        description="the coefficient of friction of the belt, without the wedge, where contact gives none",
+        description="the coefficient of friction of the belt, without the wedge effect, unless contact gives one",
     )
     contact_stiffness: LineStiffness | None = Field(
         None,
         gt=0,
-        description="the normal force per metre of belt and metre by which it is pressed into a pulley, where it is "
-        "known, in N/m^2",
+        description="the normal force per metre of belt and metre of compression, if known, in N/m^2",
     )
     stretch_law: StretchLawName = Field("green", description=f"the law of tension over stretch: {_LAWS}")
     stretch_curve: StretchCurve | None = Field(
-        None, description="the measured curve of tension over strain, in place of the axial stiffness"
+        None, description="the measured curve of tension over strain, instead of the axial stiffness"
     )
     stretch_damping_time: Time = Field(
-        0.0, ge=0, description="the time that multiplies the rate of strain in the tension, in s"
+        0.0, ge=0, description="the damping time of stretch, a factor on the strain rate, in s"
     )
     bending_damping_time: Time = Field(
-        0.0, ge=0, description="the time that multiplies the rate of curvature in the bending moment, in s"
+        0.0, ge=0, description="the damping time of bending, a factor on the curvature rate, in s"
     )
     stretch_loss_factor: Ratio = Field(
         0.0,
         ge=0,
         le=1,
-        description="the loss factor (tan delta) of stretch: hysteresis whatever the speed, "
-        "in place of stretch_damping_time",
+        description="the loss factor (tan delta) of stretch: hysteresis independent of speed, "
+        "instead of stretch_damping_time",
     )
     bending_loss_factor: Ratio = Field(
         0.0,
         ge=0,
         le=1,
-        description="the loss factor (tan delta) of bending: hysteresis whatever the speed, "
-        "in place of bending_damping_time",
+        description="the loss factor (tan delta) of bending: hysteresis independent of speed, "
+        "instead of bending_damping_time",
     )
     compression_loss_factor: Ratio = Field(
         0.0,
         ge=0,
         le=2,
-        description="the loss factor of the belt as pulleys press it in and it comes out; needs contact_stiffness",
+        description="the loss factor of compression by the pulleys; needs contact_stiffness",
     )
     axial_factor: Ratio = Field(1.0, gt=0, description="the factor α₁ on the axial stiffness")
     bending_factor: Ratio = Field(1.0, gt=0, description="the factor α₂ on the bending and shear stiffness")
     shear_correction: Ratio | None = Field(
         None,
         gt=0,
-        description="the shear correction factor, on the mesh that travels; by default sections stay normal to the "
-        "centreline, as on the mesh that stays",
+        description="the shear correction factor on a travelling mesh; by default sections stay normal to the "
+        "centreline, as on a staying mesh",
     )
     elements: Count | None = Field(None, ge=3, le=10_000, description="the number of belt elements")
     discretization: ElementName | None = Field(
         None,
-        description=f"the kind of elements: {_MEANINGS}; by default quintic on a mesh that stays, and ancf on one that "
-        "travels",
+        description=f"the kind of elements: {_MEANINGS}; by default quintic on a staying mesh, ancf on a travelling "
+        "mesh",
     )
     integration: Literal["full", "reduced"] = Field(
         "full",
-        description="the integration of the elastic forces: over Gauss points, or over three Lobatto points, "
-        "which lets a coarse mesh stretch less",
+        description="the integration of the elastic forces: over Gauss points, or over three Lobatto points, which "
+        "reduces the stretch of a coarse mesh",
     )
     quadrature_points: Count = Field(
-        4, ge=1, le=10, description="the number of Gauss points an element for the elastic forces in full integration"
+        4, ge=1, le=10, description="the number of Gauss points per element for the elastic forces in full integration"
     )
 
     _section: dict[str, Any] | None = PrivateAttr(None)
@@ -200,7 +196,7 @@ class Belt(Part):
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
-        """Arguments in place of the material, see `beltdyn.model.belt_form`."""
+        """Arguments instead of the material, see `beltdyn.model.belt_form`."""
         return FORMS
 
     def value_of(self, key: str) -> Any:
@@ -260,8 +256,8 @@ class Belt(Part):
             if value > 0 and not self.element_kind.is_damped:
                 unit = " s" if key in DAMPING_TIMES else ""
                 raise ValueError(
-                    f'{key} = {value:g}{unit} does not fit discretization = "{self.discretization}", which has no '
-                    f'damping. Set {key} = 0, or set discretization = "ancf"'
+                    f'{key} = {value:g}{unit} is incompatible with discretization = "{self.discretization}", which has '
+                    f'no damping. Set {key} = 0, or set discretization = "ancf"'
                 )
         return self
 
@@ -269,19 +265,19 @@ class Belt(Part):
     def _has_what_its_law_of_stretch_needs(self) -> Self:
         if LAWS[self.stretch_law].from_points and self.stretch_curve is None:
             raise ValueError(
-                f'stretch_law = "{self.stretch_law}" needs the curve. Give [belt.stretch_curve] with strains and '
+                f'stretch_law = "{self.stretch_law}" needs a curve. Give [belt.stretch_curve] with strains and '
                 "tensions, or a file"
             )
         if self.stretch_curve is None:
             return self
         if not LAWS[self.stretch_law].from_points:
             raise ValueError(
-                f'stretch_curve does not fit stretch_law = "{self.stretch_law}". Remove it, or set '
+                f'stretch_curve is incompatible with stretch_law = "{self.stretch_law}". Remove it, or set '
                 'stretch_law = "measured"'
             )
         if self.axial_factor != 1:
             raise ValueError(
-                f"axial_factor = {self.axial_factor:g} does not fit stretch_curve, which is that of the whole belt. "
+                f"axial_factor = {self.axial_factor:g} is incompatible with stretch_curve, which is of the whole belt. "
                 "Remove axial_factor"
             )
         return self
@@ -292,7 +288,7 @@ class Belt(Part):
             if getattr(self, time) > 0 and getattr(self, factor) > 0:
                 raise ValueError(
                     f"{time} = {getattr(self, time):g} s and {factor} = {getattr(self, factor):g} exclude each other: "
-                    "a loss grows with the speed, or it does not. Keep one of them"
+                    "losses grow with the speed, or are independent of it. Keep one of them"
                 )
         return self
 
@@ -300,69 +296,66 @@ class Belt(Part):
     def _has_what_compression_needs(self) -> Self:
         if self.compression_loss_factor > 0 and self.contact_stiffness is None:
             raise ValueError(
-                f"compression_loss_factor = {self.compression_loss_factor:g} needs contact_stiffness, how hard the "
-                "belt is: without it the energy of compression is not known. Give it, or set "
-                "compression_loss_factor = 0"
+                f"compression_loss_factor = {self.compression_loss_factor:g} needs contact_stiffness, which gives the "
+                "energy of compression. Give it, or set compression_loss_factor = 0"
             )
         return self
 
     @model_validator(mode="after")
     def _has_length_or_tension(self) -> Self:
         if self.length is None and self.installed_tension is None:
-            raise ValueError(
-                "length is missing. Give the unstretched length, or nominal_length or installed_tension in its place"
-            )
+            raise ValueError("length is missing. Give the unstretched length, nominal_length or installed_tension")
         return self
 
     @property
     def given_length(self) -> float:
-        """The length that is given, m.
+        """The given length, m.
 
         Raises
         ------
         ModelError
-            If it is left open: the drive finds it, `Drive.belt_length`.
+            If it is left open: the drive computes it, `Drive.belt_length`.
         """
         if self.length is None:
             raise ModelError(
-                f"belt.length is open: a drive finds it for installed_tension = {self.installed_tension:g} N. "
-                "Take belt_length of the drive, or give length."
+                f"belt.length is open; the drive computes it for installed_tension = {self.installed_tension:g} N. "
+                "Use drive.belt_length, or give length."
             )
         return self.length
 
     @property
     def given_elements(self) -> int:
-        """The number of elements that is given.
+        """The given number of elements.
 
         Raises
         ------
         ModelError
-            If it is left open: the drive finds it, `Drive.elements`.
+            If it is left open: the drive chooses it, `Drive.elements`.
         """
         if self.elements is None:
-            raise ModelError("belt.elements is open: a drive finds it. Take elements of the drive, or give them.")
+            raise ModelError("belt.elements is open; the drive chooses it. Use drive.elements, or give elements.")
         return self.elements
 
     @property
     def nominal_length(self) -> float | None:
-        """The length by which it is sold, m, where the belt is given so."""
+        """The nominal length, m, if the belt is given by it."""
         return self._nominal_length
 
     @property
     def measured_stretch(self) -> float:
-        """Stretch of the belt under its measuring force, of which each of two strands carries half."""
+        """Stretch of the belt under its measuring force, half of it in each of two strands."""
         return float(self.stretch_parameters.stretch(0.5 * (self.measuring_force or 0.0)))
 
     def nominal_length_of(self, length: float) -> float:
-        """Length by which a closed belt of an unstretched length is sold, m."""
+        """Nominal length of a closed belt of a given unstretched length, m."""
         return length * self.measured_stretch - 2.0 * pi * self.pitch_offset
 
     def offset(self, side: Side) -> float:
-        """Distance from a surface to the line that carries the tension, m: what the belt adds to a pulley's radius."""
+        """Distance from a surface to the tension line, m, which the belt adds to the radius of a pulley."""
         return self.pitch_offset if side == "inside" else self.back_offset
 
     def bent_strain(self, radius: FloatArray) -> FloatArray:
-        """Strain of the line that carries the tension, where the belt lies on circles without tension.
+        """Strain of the tension line of a belt on circles without tension.
 
         Parameters
         ----------
@@ -374,7 +367,7 @@ class Belt(Part):
 
     @property
     def element_kind(self) -> ElementKind:
-        """The elements: `discretization` by its name, or the paper's; `Drive.element_kind` knows those of the mesh."""
+        """The element kind by `discretization`, or the paper's; `Drive.element_kind` is that of the mesh used."""
         return ELEMENTS[self.discretization or ANCF.name]
 
     @property
@@ -404,26 +397,26 @@ class Belt(Part):
 
     @property
     def shear_stiffness(self) -> float:
-        """Shear stiffness k_s G A α₂, N; without a correction factor so large that sections stay normal."""
+        """Shear stiffness k_s G A α₂, N; by default large enough to keep sections normal."""
         if self.shear_correction is None:
             return _NORMAL_SECTIONS * self.axial_stiffness
         return self.shear_correction * self.shear_modulus * self.area * self.bending_factor
 
     @property
     def axial_stiffness(self) -> float:
-        """Axial stiffness E A α₁, or the slope of the measured curve without strain, N."""
+        """Axial stiffness E A α₁, or the initial slope of the measured curve, N."""
         return self.stretch_parameters.stiffness
 
     @cached_property
     def stretch_parameters(self) -> StretchParameters:
-        """Parameters of the law of stretch, which know tension over stretch and stretch over tension."""
+        """Parameters of the law of stretch, with tension over stretch and its inverse."""
         if self.stretch_curve is not None:
             return self.stretch_curve.parameters
         made: StretchParameters = LAWS[self.stretch_law].make(self.youngs_modulus * self.area * self.axial_factor)
         return made
 
     def local_stiffness(self, tension: float) -> float:
-        """Rate dN/dg at which the tension grows with the stretch, where it is `tension`, N."""
+        """Tangent stiffness dN/dg at a tension, N."""
         law = self.stretch_parameters
         return float(law.tangent_stiffness(law.stretch(max(tension, 0.0))))
 
@@ -439,15 +432,15 @@ class Belt(Part):
 
     @property
     def mass_per_length(self) -> float:
-        """Mass of a metre of unstretched belt, ρ A, kg/m."""
+        """Mass per length of the unstretched belt, ρ A, kg/m."""
         return self.density * self.area
 
     @property
     def wave_speed(self) -> float:
-        """Speed of stretch waves along a belt without strain, √(E A α₁ / ρ A), m/s."""
+        """Longitudinal wave speed of the unstrained belt, √(E A α₁ / ρ A), m/s."""
         return sqrt(self.axial_stiffness / self.mass_per_length)
 
     @property
     def rotary_inertia(self) -> float:
-        """Rotary inertia of a metre of unstretched belt, ρ I, kg m."""
+        """Rotary inertia per length of the unstretched belt, ρ I, kg m."""
         return self.density * self.second_moment

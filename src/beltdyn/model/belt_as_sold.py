@@ -1,4 +1,4 @@
-"""What a belt made of a profile remembers of it, so that its size can be changed as it was given."""
+"""The profile and size of a belt as sold, kept so that its size can be changed in the same form."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -7,14 +7,14 @@ from typing import Any
 from beltdyn.model.belt_form import DAMPING_TIMES, LOSS_FACTORS, MATERIAL, OWN, STRETCH, TAKEN_OVER, Sold
 
 SIZES = ("ribs", "diameter", "width")
-"""By what belts are sold."""
+"""Measures by which belts are sold."""
 
 _SECTION = (*MATERIAL, *OWN, "width", "thickness", "contact_stiffness", *TAKEN_OVER, *STRETCH)
-"""What a profile gives, or what takes its place."""
+"""Values of a profile, or their replacements."""
 
 
 def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
-    """What was given of a belt's section, in the place of its material.
+    """The section of a belt as given, instead of its material.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def as_sold(data: Any, belt: Any, base: Path | None) -> dict[str, Any] | None:
 
 
 def changes_as_sold(section: Mapping[str, Any], changes: Mapping[str, Any]) -> bool:
-    """Whether changes leave a belt one of its profile, whose catalogue is still there."""
+    """Whether a changed belt is still one of its profile, and the catalogue still exists."""
     if any(key in changes for key in MATERIAL):
         return False
     return section.get("catalogue") is None or Path(section["catalogue"]).is_file()
@@ -79,5 +79,5 @@ def section_with(section: Mapping[str, Any], changes: Mapping[str, Any]) -> dict
 
 
 def without_section(arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of a belt without those that a profile gives."""
+    """Arguments of a belt without those of a profile."""
     return {key: value for key, value in arguments.items() if key not in _SECTION}

@@ -1,4 +1,4 @@
-"""The forms in which a belt's section and length are given, and the one into which they are turned.
+"""The forms in which the section and length of a belt can be given, and their conversion.
 
 A belt is made of a material: density, Young's modulus, and the factors on axial and bending stiffness. What a user
 knows are often the stiffnesses and the mass of a metre, or the name of a profile in the catalogue. Its length is that
@@ -33,11 +33,11 @@ _POWERS: dict[str, dict[str, int]] = {
         "bending_stiffness": 4,
     },
 }
-"""Powers of a belt's size with which the values of a profile grow, by what it is sold by; others do not grow."""
+"""Exponents of the size in values of a profile, by the measure of the size; other values are constant."""
 
 DAMPING_TIMES = ("stretch_damping_time", "bending_damping_time")
 LOSS_FACTORS = ("stretch_loss_factor", "bending_loss_factor")
-"""In the order of `DAMPING_TIMES`: of each strain a belt has the one or the other."""
+"""In the order of `DAMPING_TIMES`; each strain has one or the other."""
 LOSSES = (*DAMPING_TIMES, *LOSS_FACTORS, "compression_loss_factor")
 
 STRETCH = ("stretch_law", "stretch_curve")
@@ -45,33 +45,33 @@ TAKEN_OVER = ("pitch_offset", "back_offset", "wedge_angle", "friction", *_FORCES
 
 
 class Stiffnesses(Part):
-    """A belt's section by its stiffnesses."""
+    """The section of a belt by its stiffnesses."""
 
     width: Length = Field(gt=0, description="the width of the belt, out of the plane of the drive, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in the plane of the drive, in m")
     axial_stiffness: AxialStiffness = Field(gt=0, description="the axial stiffness E A of the belt, in N")
     bending_stiffness: BendingStiffness = Field(gt=0, description="the bending stiffness E I of the belt, in N*m^2")
-    mass_per_length: MassPerLength = Field(gt=0, description="the mass of a metre of the belt, in kg/m")
+    mass_per_length: MassPerLength = Field(gt=0, description="the mass per length of the belt, in kg/m")
 
 
 class Sold(Part):
-    """A belt's section as it is sold."""
+    """The section of a belt as sold."""
 
     profile: str = Field(description="the name of the belt's profile in the catalogue, as text")
     ribs: Count | None = Field(
         None, ge=1, le=1000, description="the number of ribs of the profile, or of V-belts side by side"
     )
     diameter: Length | None = Field(None, gt=0, description="the diameter of a round belt, in m")
-    catalogue: str | None = Field(None, description="the path of a catalogue of your own, a TOML file, as text")
+    catalogue: str | None = Field(None, description="the path of your own catalogue, a TOML file, as text")
 
 
 class Nominal(Part):
-    """A belt's length as it is sold."""
+    """The length of a belt as sold."""
 
     nominal_length: Length = Field(
         gt=0,
-        description="the length by which a closed belt is sold, under measuring_force, in place of length: datum "
-        "length of a V-belt, effective length of a V-ribbed belt, inside length of another, in m",
+        description="the nominal length of a closed belt as sold, under measuring_force, instead of length: datum "
+        "length of a V-belt, effective length of a V-ribbed belt, inside length of any other, in m",
     )
 
 
@@ -84,7 +84,7 @@ FORMS = MappingProxyType(
 
 
 def to_material(data: Any, base: Path | None) -> Any:
-    """Turn a belt given by a profile, by stiffnesses or by its nominal length into one given by material and length.
+    """Convert a belt given by profile, stiffnesses or nominal length to material and length.
 
     Parameters
     ----------
@@ -138,8 +138,8 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
     both = [key for key in MATERIAL if key in data]
     if both:
         raise ValueError(
-            f"{given[0]} and {both[0]} exclude each other: a belt is given by a profile, or by its stiffnesses and its "
-            "mass per length, or by its material. Keep one of the forms"
+            f"{given[0]} and {both[0]} exclude each other: a belt is given by a profile, or by stiffnesses and mass "
+            "per length, or by its material. Keep one of the forms"
         )
     values: dict[str, Any] = {**law, **data}
     if any(key in data for key in Sold.model_fields):
@@ -160,7 +160,7 @@ def _by_material(data: Mapping[str, Any], base: Path | None) -> Mapping[str, Any
 
 
 def in_new_form(arguments: Mapping[str, Any], changes: Mapping[str, Any], own: Mapping[str, float]) -> dict[str, Any]:
-    """Let the arguments of a changed belt give it in one form: that of the changes.
+    """Reduce the arguments of a changed belt to one form, that of the changes.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def _section(sold: Sold, width: object, base: Path | None) -> dict[str, Any]:
     try:
         entry = find_entry(read_catalogue(sold.catalogue, base), sold.profile)
     except LookupError as error:
-        raise ValueError(f'{error.args[0]}; a catalogue of your own extends it: catalogue = "file.toml"') from None
+        raise ValueError(f'{error.args[0]}. Or extend the catalogue with your own: catalogue = "file.toml"') from None
     size, powers = _size(sold, entry, width), _POWERS[entry.sold_by]
     values = {key: getattr(entry, key) for key in (*Stiffnesses.model_fields, "contact_stiffness", *TAKEN_OVER)}
     found = {key: value * size ** powers.get(key, 0) for key, value in values.items() if value is not None}
@@ -229,8 +229,8 @@ def _size(sold: Sold, entry: Entry, width: object) -> float:
     for key in ("ribs", "diameter"):
         if given[key] is not None and key != entry.sold_by:
             raise ValueError(
-                f'{key} = {given[key]:g} does not fit profile "{sold.profile}", which is sold by {entry.sold_by}. '
-                f"Give {entry.sold_by} in its place"
+                f'{key} = {given[key]:g} is incompatible with profile "{sold.profile}", which is sold by '
+                f"{entry.sold_by}. Give {entry.sold_by} instead"
             )
     if given[entry.sold_by] is None:
         each = f", each {1e3 * entry.width:.3g} mm wide" if entry.sold_by == "ribs" else ""
@@ -248,7 +248,7 @@ class _Width(Part):
 
 
 def describe_forms(schema: dict[str, Any]) -> None:
-    """Add the keys of the other forms, which are replaced by those of the material on reading, to the JSON schema."""
+    """Add the keys of the other forms, which are converted to the material on reading, to the JSON schema."""
     forms = (Sold.model_json_schema(), Stiffnesses.model_json_schema(), Nominal.model_json_schema())
     for form in forms:
         schema["properties"] = form["properties"] | schema["properties"]

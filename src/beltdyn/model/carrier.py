@@ -37,12 +37,12 @@ class Carrier:
         return np.array([center.x, center.y]), np.array([center.dx, center.dy])
 
     def force(self, position: float) -> float:
-        """What spring and stops press with at a position (m, rad): N, or N m of an arm."""
+        """Force of spring and stops at a position (m, rad): N, or N m for an arm."""
         return float(interpreted(type(self.tensioner).force_at)(self.row[self.tensioner.kind], position, 0.0).force)
 
 
 def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Path) -> list[Carrier]:
-    """Put spring-loaded tensioners and the pulleys that they carry together.
+    """Pair spring-loaded tensioners with the pulleys that they carry.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def carriers_of(tensioners: Sequence[Tensioner], names: Sequence[str], path: Pat
 
 
 def moved(path: Path, carriers: Sequence[Carrier], positions: FloatArray) -> Path:
-    """Path with the tensioners at other positions, shape (K,), m or rad; that at zero is given."""
+    """Path with the tensioners at other positions, shape (K,), m or rad, from that at zero."""
     if not carriers:
         return path
     centers = path.centers.copy()
@@ -78,7 +78,7 @@ def moved(path: Path, carriers: Sequence[Carrier], positions: FloatArray) -> Pat
 
 
 def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley], path: Path) -> None:
-    """Check that tensioners carry the pulleys of a drive, and can tension its belt.
+    """Check that tensioners carry pulleys of the drive and can tension its belt.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley],
             )
         if carried.count(name) > 1:
             raise ValueError(
-                f'pulley "{name}" is carried by {carried.count(name)} tensioners, and one can carry it. '
+                f'pulley "{name}" is carried by {carried.count(name)} tensioners; only one can carry it. '
                 "Remove the others"
             )
         if isinstance(item, MovingTensioner):
@@ -111,6 +111,6 @@ def check_tensioners(tensioners: Sequence[Tensioner], pulleys: Sequence[Pulley],
             item.leverage(center, path.gradient(number))
             if item.moved_inertia(center, pulleys[number].mass) == 0:
                 raise ValueError(
-                    f'the tensioner of "{name}" moves nothing that has inertia. Give the pulley\'s mass, or that of '
+                    f'the tensioner of "{name}" has no moving mass. Give the mass of the pulley, or that of '
                     "the tensioner"
                 )

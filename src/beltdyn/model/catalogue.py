@@ -1,4 +1,4 @@
-"""The catalogue: belts as they are sold, by the name of their profile."""
+"""The catalogue of belts as sold, by profile."""
 
 from collections.abc import Mapping
 from difflib import get_close_matches
@@ -30,7 +30,7 @@ from beltdyn.stretch import LAWS
 
 
 class Entry(Part):
-    """A profile of the catalogue: a belt of one rib, or of a certain width or diameter.
+    """A profile of the catalogue, for one rib or for a certain width or diameter.
 
     A profile sold by ribs gives the values of one rib or one V-belt, and one sold by width those of a belt that is
     `width` wide. A belt of n ribs, or n times as wide, has n times the stiffnesses (that of contact too) and the mass.
@@ -45,30 +45,30 @@ class Entry(Part):
     """
 
     title: str = Field(description="the name of the profile in words, as text")
-    kind: str = Field("Other belts", description="the kind of belt, by which a list is grouped, as text")
+    kind: str = Field("Other belts", description="the kind of belt, for grouping in lists, as text")
     sold_by: Literal["ribs", "width", "diameter"] = Field(
-        "ribs", description="the measure of a belt's size: ribs, width or diameter"
+        "ribs", description="the measure of size: ribs, width or diameter"
     )
-    width: Length = Field(gt=0, description="the width of a rib, or of the belt that the values belong to, in m")
+    width: Length = Field(gt=0, description="the width of a rib, or of the belt to which the values apply, in m")
     thickness: Length = Field(gt=0, description="the thickness of the belt, in m")
     axial_stiffness: AxialStiffness = Field(gt=0, description="the axial stiffness E A, in N")
     stretch_curve: StretchCurve | None = Field(
-        None, description="the measured curve of tension over strain, in place of the axial stiffness"
+        None, description="the measured curve of tension over strain, instead of the axial stiffness"
     )
     bending_stiffness: BendingStiffness = Field(gt=0, description="the bending stiffness E I, in N*m^2")
-    mass_per_length: MassPerLength = Field(gt=0, description="the mass of a metre, in kg/m")
+    mass_per_length: MassPerLength = Field(gt=0, description="the mass per length, in kg/m")
     pitch_offset: Length = Field(
         0.0, ge=0, description="the distance from the inside surface to the tension line, in m"
     )
     back_offset: Length = Field(0.0, ge=0, description="the distance from the back surface to the tension line, in m")
     wedge_angle: Angle | None = Field(None, gt=0, le=pi, description="the angle between the flanks, in rad")
     friction: Ratio | None = Field(
-        None, ge=0, description="the coefficient of friction on the usual pulley, without the wedge"
+        None, ge=0, description="the coefficient of friction on the usual pulley, without the wedge effect"
     )
     contact_stiffness: LineStiffness | None = Field(
         None,
         gt=0,
-        description="the normal force per metre of belt and metre by which it is pressed into a pulley, in N/m^2",
+        description="the normal force per metre of belt and metre of compression, in N/m^2",
     )
     stretch_damping_time: Time = Field(0.0, ge=0, description="the damping time of stretch, in s")
     bending_damping_time: Time = Field(0.0, ge=0, description="the damping time of bending, in s")
@@ -78,21 +78,19 @@ class Entry(Part):
     measuring_force: Force | None = Field(
         None,
         ge=0,
-        description="the force that pulls two equal pulleys apart while the nominal length is measured, in N",
+        description="the total force of both strands on two equal pulleys while the nominal length is measured, in N",
     )
-    largest_tension: Force | None = Field(None, gt=0, description="the tension below which the belt is used, in N")
+    largest_tension: Force | None = Field(None, gt=0, description="the rated tension, in N")
     pulley_diameter: Literal["datum", "effective", "outside"] = Field(
-        "outside", description="which diameter is twice the radius of a pulley: datum, effective or outside"
+        "outside", description="the diameter that is twice the radius of a pulley: datum, effective or outside"
     )
-    smallest_diameter: Length | None = Field(
-        None, gt=0, description="the smallest recommended diameter of a pulley, in m"
-    )
-    generic: bool = Field(False, description="whether the values are typical of a profile, not those of a product")
+    smallest_diameter: Length | None = Field(None, gt=0, description="the smallest recommended pulley diameter, in m")
+    generic: bool = Field(False, description="whether the values are typical of a profile, not of a product")
     source: str = Field(min_length=1, description="the source of the values, as text")
 
     @property
     def measured_stretch(self) -> float:
-        """Stretch of the belt while its nominal length is measured, half of the force in each strand."""
+        """Stretch of the belt while its nominal length is measured, with half of the force in each strand."""
         curve = self.stretch_curve
         law = LAWS["linear"].make(self.axial_stiffness) if curve is None else curve.parameters
         return float(law.stretch(0.5 * (self.measuring_force or 0.0)))
@@ -104,7 +102,7 @@ class Entry(Part):
 
 
 def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, Entry]:
-    """Read the catalogue of the package, and that of a user over it.
+    """Read the catalogue of the package, extended by that of a user.
 
     Parameters
     ----------
@@ -135,10 +133,10 @@ def read_catalogue(name: object = None, base: Path | None = None) -> dict[str, E
     try:
         text = read_text((base or Path()) / name, LONGEST_TOML)
     except UnicodeDecodeError as error:
-        raise ValueError(f'catalogue = "{shorten(name)}" is not a text in UTF-8. A catalogue is TOML') from error
+        raise ValueError(f'catalogue = "{shorten(name)}" is not UTF-8 text. A catalogue is a TOML file') from error
     except (OSError, ValueError) as error:
         raise ValueError(
-            f'catalogue = "{shorten(name)}" cannot be read: {reason(error)}. A relative path starts at the folder of '
+            f'catalogue = "{shorten(name)}" cannot be read: {reason(error)}. Relative paths start at the folder of '
             "the drive file"
         ) from error
     return _shipped() | _entries(text, str(name), base)
@@ -183,7 +181,7 @@ def _entries(text: str, name: str, base: Path | None = None) -> dict[str, Entry]
         tables = parse_toml(text)
     except ValueError as error:
         raise ValueError(
-            f'catalogue = "{shorten(name)}" is not valid TOML: {shorten(error, 200)}. Correct the file there'
+            f'catalogue = "{shorten(name)}" is not valid TOML: {shorten(error, 200)}. Correct the file'
         ) from error
     return {profile: _entry(profile, table, name, base) for profile, table in tables.items()}
 

@@ -1,4 +1,4 @@
-"""Where a path would cross itself, or run through a pulley or through belt that lies on one."""
+"""Collisions of a path with itself, with pulleys and with the belt on them."""
 
 from typing import Literal, NamedTuple
 
@@ -10,19 +10,19 @@ from beltdyn.model.path import Path
 
 
 class Obstacle(NamedTuple):
-    """A pulley that a piece of belt would run through."""
+    """A pulley that a piece of belt collides with."""
 
     piece: Literal["span", "arc"]
     number: int
-    """Of the span or of the pulley of the arc."""
+    """Number of the span, or of the pulley of the arc."""
     pulley: int
 
 
 class Surroundings(NamedTuple):
-    """What a path must keep away from, and what the belt needs on its two sides."""
+    """Obstacles of a path, and the thickness of the belt on its two sides."""
 
     radii: FloatArray
-    """Radii of the pulleys themselves, shape (n,), m."""
+    """Geometric radii of the pulleys, shape (n,), m."""
     inside: float
     """Distance from the path to the inside surface of the belt, m."""
     back: float
@@ -30,7 +30,7 @@ class Surroundings(NamedTuple):
 
 
 def crossings(path: Path) -> list[tuple[int, int]]:
-    """Pairs of spans that cross each other.
+    """Pairs of crossing spans.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def crossings(path: Path) -> list[tuple[int, int]]:
 
 
 def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
-    """Find a pulley, or belt that lies on it, in the way of a span or of an arc on another pulley.
+    """Find a pulley, or belt on it, that a span or an arc on another pulley collides with.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def obstacle(path: Path, around: Surroundings) -> Obstacle | None:
 
 
 def distance_from_belt(path: Path, around: Surroundings, center: ArrayLike, radius: float) -> float:
-    """Least distance of a round part from the surfaces of the belt, m; below zero where they overlap.
+    """Least distance of a round part from the surfaces of the belt, m; negative for an overlap.
 
     Parameters
     ----------

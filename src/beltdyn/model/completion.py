@@ -1,4 +1,4 @@
-"""What follows from a drive whose belt is laid out: the length of the belt, the numbers of computation."""
+"""Completion of a laid-out drive: belt length and default numerical parameters."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -37,24 +37,24 @@ _SMALLEST_STRAIN = 1e-10
 
 
 class Completed(NamedTuple):
-    """The same with nothing left open, and what follows."""
+    """The parts of a drive with all open values filled in."""
 
     belt: Belt
-    """With its length and its number of elements."""
+    """With its length and number of elements."""
     pulleys: tuple[Pulley, ...]
-    """Where fixed tensioners hold them, and spring-loaded ones at zero."""
+    """As positioned by fixed tensioners, with spring-loaded tensioners at zero."""
     contact: Contact
-    """With its stiffness, its damping and the parameters of its friction law."""
+    """With stiffness, damping and friction-law parameters."""
     tensioners: tuple[Tensioner, ...]
     """With their take-up."""
     path: Path
     """Around these pulleys."""
     choices: tuple[Choice, ...] = ()
-    """Numbers of computation that were left open, as they are chosen, with their reasons."""
+    """Default numerical parameters, with their reasons."""
 
 
 def complete(layout: Layout) -> Completed:
-    """Find what a drive leaves open.
+    """Fill in the open values of a drive.
 
     A belt with an installed tension gets its length, if its layout has not settled that; an allowed penetration becomes
     a stiffness of contact. The numbers of computation that are not given are chosen by `beltdyn.model.defaults`.
@@ -134,13 +134,13 @@ def _with_stiffness(contact: Contact, stiffness: float) -> Contact:
         return contact.replace(stiffness=stiffness)
     except ModelError as error:
         raise ValueError(
-            f"contact.allowed_penetration = {contact.allowed_penetration:g} m takes a stiffness that cannot be given: "
-            f"{error} Allow more"
+            f"contact.allowed_penetration = {contact.allowed_penetration:g} m needs an invalid contact stiffness: "
+            f"{error} Increase it"
         ) from error
 
 
 def take_up(completed: Completed, distance: float) -> tuple[Tensioner, ...]:
-    """Take up more by the one fixed tensioner, so that the path becomes longer by a small distance.
+    """Increase the take-up of the fixed tensioner so that the path lengthens by a small distance.
 
     Parameters
     ----------
@@ -163,22 +163,22 @@ def _check_estimate(given: Given, pulleys: tuple[Pulley, ...], estimate: StaticE
     if wanted is not None and not 0 < path <= (1 + LARGEST_STRAIN) * length:
         raise ValueError(
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt and press it into the pulleys by more "
-            f"than {LARGEST_STRAIN:.0%} of its length. Lower it, or give a belt of more axial stiffness than "
+            f"than {LARGEST_STRAIN:.0%} of its length. Reduce it, or give the belt an axial stiffness above "
             f"{given.belt.axial_stiffness:.3g} N"
         )
     least = _SMALLEST_STRAIN * given.belt.axial_stiffness
     if wanted is not None and wanted < least:
         raise ValueError(
             f"belt.installed_tension = {wanted:.5g} N would stretch the belt by less than {_SMALLEST_STRAIN:.0e} of "
-            f"its length, which is lost in rounding. Give at least {least:.1g} N"
+            f"its length, which is below rounding. Give at least {least:.1g} N"
         )
     check_length(length, path, tensioned=given.has_springs)
     if given.has_springs:
         _check_place(given, pulleys, estimate.path)
     if not estimate.tension > 0:
         raise ValueError(
-            f"the belt loses all tension, since it sinks into the pulleys: it is only {1e3 * (path - length):.3g} mm "
-            "shorter than its path. Shorten it, or leave out contact.stiffness so that it is chosen"
+            f"the belt sinks into the pulleys and loses all tension: it is only {1e3 * (path - length):.3g} mm "
+            "shorter than its path. Shorten it, or omit contact.stiffness to use the default"
         )
 
 
@@ -191,6 +191,6 @@ def _check_place(given: Given, pulleys: tuple[Pulley, ...], path: Path) -> None:
         given.path_around(moved)
     except ValueError as error:
         raise ValueError(
-            f"the tensioners balance the belt only where no belt can run: {error}. Change the preload or the belt's "
+            f"the tensioners are in equilibrium only where no belt can run: {error}. Change the preload or the belt "
             "length, or give stops"
         ) from error

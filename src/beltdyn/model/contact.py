@@ -16,7 +16,7 @@ from beltdyn.parts.quantity import Count, Length, LineDamping, LineStiffness, Ra
 
 
 class Penalty(Part):
-    """Stiffness and damping of contact, which every law of the normal force has."""
+    """Contact stiffness and damping, common to all laws of the normal force."""
 
     either = ("stiffness", "allowed_penetration")
 
@@ -26,10 +26,10 @@ class Penalty(Part):
     allowed_penetration: Length | None = Field(
         None,
         gt=0,
-        description="the depth to which the belt at rest may sink in anywhere, in place of stiffness, in m",
+        description="the largest penetration of the belt at rest, instead of stiffness, in m",
     )
     damping: LineDamping | None = Field(
-        None, ge=0, description="the normal force per metre of belt and m/s of penetration, in N*s/m^2"
+        None, ge=0, description="the normal force per metre of belt and penetration rate in m/s, in N*s/m^2"
     )
 
 
@@ -50,7 +50,7 @@ def _field(parameter: Parameter) -> Any:
     return number | None, Field(None, gt=parameter.above, description=meaning)
 
 
-_NORMAL = "the normal force: never pulling, or as published, which may pull where the belt leaves"
+_NORMAL = "the normal force: never tensile, or as published, which may be tensile where the belt leaves"
 _Laws: Any = create_model(
     "_Laws",
     __base__=Penalty,
@@ -58,7 +58,9 @@ _Laws: Any = create_model(
     **_keys(NORMAL_LAWS),
     friction=(
         Ratio | None,
-        Field(None, ge=0, description="the coefficient of friction, without the wedge; by default that of the belt"),
+        Field(
+            None, ge=0, description="the coefficient of friction, without the wedge effect; by default that of the belt"
+        ),
     ),
     friction_law=_choice(FRICTION_LAWS, "relative_creep", "the friction law"),
     **_keys(FRICTION_LAWS),
@@ -92,19 +94,19 @@ class Contact(_Laws, Penalty):
 
     moment_arm: Literal["rim", "point"] = Field(
         "rim",
-        description="the arm of friction about the shaft: the effective radius, with which friction never gives "
-        "energy, or to the belt's point, as published",
+        description="the moment arm of friction about the shaft: the effective radius, for which friction never "
+        "generates energy, or the distance of the belt point, as published",
     )
     sampling: Literal["distributed", "nodal"] = Field(
         "distributed",
-        description="the places of contact: all along an element, or for comparison its end nodes only",
+        description="the sampling of contact: distributed along the element, or, for comparison, at its nodes only",
     )
     integration: Literal["zone", "fixed"] = Field(
         "zone",
-        description="the place where distributed contact is integrated: the touching zone, or the whole element",
+        description="the range of integration of distributed contact: the contact zone, or the whole element",
     )
     quadrature_points: Count = Field(
-        5, ge=1, le=64, description="the number of Gauss points an element for distributed contact forces"
+        5, ge=1, le=64, description="the number of Gauss points per element for distributed contact forces"
     )
 
     @model_validator(mode="after")
@@ -126,34 +128,34 @@ class Contact(_Laws, Penalty):
                     )
             for key, parameter in own.items():
                 if getattr(self, key) is None and parameter.default is None and not parameter.found:
-                    raise ValueError(f'{key} is missing: the {kind} law "{chosen}" needs it. Give {key}')
+                    raise ValueError(f'{key} is missing, but the {kind} law "{chosen}" needs it. Give {key}')
         return self
 
     @property
     def open_keys(self) -> tuple[str, ...]:
-        """Keys of the numbers that are left open, and that a drive finds."""
+        """Keys of open values, which the drive chooses."""
         laws = NORMAL_LAWS[self.normal_law], FRICTION_LAWS[self.friction_law]
         found = [parameter.name for law in laws for parameter in law.parameters if parameter.found]
         return tuple(key for key in ("stiffness", "damping", *found) if getattr(self, key) is None)
 
     def given(self, key: str) -> float:
-        """A number that is given.
+        """A given number.
 
         Raises
         ------
         ModelError
-            If it is left open: the drive finds it.
+            If it is left open: the drive chooses it.
         """
         number: float | None = getattr(self, key)
         if number is None:
             raise ModelError(
-                f"contact.{key} is open. Take the contact that a drive completes, drive.completed.contact."
+                f"contact.{key} is open; the drive chooses it. Use drive.completed.contact, or give {key}."
             )
         return number
 
     @property
     def normal_parameters(self) -> NormalParameters:
-        """Parameters of the law of the normal force, whose type says which law it is."""
+        """Parameters of the law of the normal force; their type identifies the law."""
         law = NORMAL_LAWS[self.normal_law]
         given = self.given("stiffness"), self.given("damping")
         parameters: NormalParameters = law.record(*given, *self._values(law.parameters))
@@ -161,7 +163,7 @@ class Contact(_Laws, Penalty):
 
     @property
     def friction_parameters(self) -> FrictionParameters:
-        """Parameters of the friction law, whose type says which law it is, and which know where it saturates."""
+        """Parameters of the friction law, with its saturation; their type identifies the law."""
         law = FRICTION_LAWS[self.friction_law]
         parameters: FrictionParameters = law.record(*self._values(law.parameters))
         return parameters

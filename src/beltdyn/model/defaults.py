@@ -1,4 +1,4 @@
-"""Numbers of computation that a drive leaves open: those of contact, and the number of elements.
+"""Default numerical parameters of a drive: those of contact, and the number of elements.
 
 Contact is a penalty, and the creep of friction a regularisation: both belong to the computation, unless the belt's
 own compressibility is known.  They are chosen so that a result does not show them, and no run pays for more.
@@ -18,31 +18,31 @@ from beltdyn.model.pulley import Pulley
 from beltdyn.model.resolution import PRESSURES, Running, elements_needed, fewest, layer_lengths
 
 TENSION_LOST = 0.005
-"""Part of the tension that penetration may take."""
+"""Share of the tension lost by penetration."""
 DEPTH_OF_THICKNESS, DEPTH_OF_RADIUS = 0.02, 0.001
 """Largest penetrations at rest over the belt's thickness and over the effective radius."""
 DAMPING_RATIO = 0.5
-"""Damping of contact over the critical one, which steadies a belt where it slides."""
+"""Contact damping over the critical damping, which stabilises a sliding belt."""
 STANDSTILL = 0.05
-"""Part of the largest speed below which the creep velocity no longer falls: steeper friction spoils the start."""
+"""Share of the largest speed below which the creep velocity is constant: steeper friction spoils the start."""
 CREEP_LENGTHS = 16.0
-"""Lengths over which a slip velocity grows e-fold that the smallest gripping arc has at the tension at rest."""
+"""Length of the smallest adhesion arc at the tension at rest, over the length of e-fold growth of slip velocity."""
 RESOLVED = {"tension": 0.005, "slip": 0.015}
-"""What the mesh resolves, and the largest estimates of its errors; pressures at the ends of arcs need more elements."""
+"""Quantities that the mesh resolves, and their largest estimated errors; pressures at arc ends need more elements."""
 FEWEST, MOST = 40, 2000
-"""Numbers of elements that are chosen at least and at most."""
+"""Least and largest default number of elements."""
 
 
 class Choice(NamedTuple):
-    """A number that a drive leaves open, as it is chosen."""
+    """A default chosen for an open value."""
 
     key: str
     """Its key in a drive file, such as "contact.stiffness"."""
     value: float
     unit: str
-    """SI unit, empty for a ratio or a number."""
+    """SI unit, empty for a dimensionless number."""
     reason: str
-    """Why it is chosen so, in a few words."""
+    """The reason in a few words."""
 
     @property
     def words(self) -> str:
@@ -51,7 +51,7 @@ class Choice(NamedTuple):
 
 
 class OnPath(NamedTuple):
-    """A belt on its path, which `beltdyn.model.resolution` asks for its mesh."""
+    """A belt on its path, for `beltdyn.model.resolution`."""
 
     belt: Belt
     belt_length: float
@@ -63,7 +63,7 @@ class OnPath(NamedTuple):
 
 
 def stiffness_for_tension(path: Path, belt: Belt) -> float:
-    """Stiffness of contact with which penetration takes `TENSION_LOST`, N/m^2.
+    """Contact stiffness for the loss of tension `TENSION_LOST` by penetration, N/m^2.
 
     A belt under T sinks by d = T / (R k_p), which shortens its path by the wrap angle times d, and it loses the tension
     E A / L times that.
@@ -78,7 +78,7 @@ def stiffness_for_tension(path: Path, belt: Belt) -> float:
 
 
 def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
-    """Choose the stiffness of contact: the belt's own where it is known and hard enough.
+    """Choose the contact stiffness: that of the belt if known and hard enough.
 
     Slip is taken at the rim, and penetration does not change the radius at which a belt runs: a soft one spoils slip.
 
@@ -92,17 +92,17 @@ def choose_stiffness(path: Path, belt: Belt, tension: float) -> Choice:
     radius = float(np.min(np.abs(path.radii)))
     shallow, thin = DEPTH_OF_RADIUS * radius, DEPTH_OF_THICKNESS * belt.thickness
     reasons = {
-        f"penetration takes {TENSION_LOST:.1%} of the tension": stiffness_for_tension(path, belt),
-        f"the belt sinks in by {DEPTH_OF_RADIUS:.1%} of the smallest radius": tension / (radius * shallow),
-        f"the belt sinks in by {DEPTH_OF_THICKNESS:.0%} of its thickness": tension / (radius * thin),
-        "the belt's own compressibility": belt.contact_stiffness or 0.0,
+        f"penetration reduces the tension by {TENSION_LOST:.1%}": stiffness_for_tension(path, belt),
+        f"penetration is {DEPTH_OF_RADIUS:.1%} of the smallest radius": tension / (radius * shallow),
+        f"penetration is {DEPTH_OF_THICKNESS:.0%} of the belt thickness": tension / (radius * thin),
+        "compressibility of the belt": belt.contact_stiffness or 0.0,
     }
     reason = max(reasons, key=lambda name: reasons[name])
     return Choice("contact.stiffness", reasons[reason], "N/m^2", reason)
 
 
 def critical_damping(stiffness: float, mass_per_length: float) -> float:
-    """Damping 2 sqrt(k_p m) of contact with which a belt pressed on a pulley does not swing, N s/m^2.
+    """Critical damping 2 sqrt(k_p m) of a belt pressed on a pulley, N s/m^2.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def critical_damping(stiffness: float, mass_per_length: float) -> float:
 
 
 def choose_damping(stiffness: float, belt: Belt) -> Choice:
-    """Choose the damping of contact of a stiffness, N/m^2."""
+    """Choose the contact damping for a stiffness, N/m^2."""
     critical = critical_damping(stiffness, belt.mass_per_length)
     return Choice("contact.damping", DAMPING_RATIO * critical, "N*s/m^2", f"{DAMPING_RATIO:.0%} of critical")
 
@@ -137,9 +137,7 @@ def choose_creep_ratio(pulleys: Sequence[Pulley], grips: FloatArray, strain: flo
     """
     working = np.array([bool(one.speed or one.torque or one.load or one.hub) for one in pulleys])
     grip = float(np.min(grips[working & (grips > 0.0)], initial=math.pi))
-    return Choice(
-        "contact.creep_ratio", grip * strain / CREEP_LENGTHS, "", "adds less than 3% to the slip of elastic creep"
-    )
+    return Choice("contact.creep_ratio", grip * strain / CREEP_LENGTHS, "", "adds less than 3% to elastic creep")
 
 
 def choose_standstill_creep(creep_ratio: float, speed: float) -> Choice:
@@ -152,7 +150,7 @@ def choose_standstill_creep(creep_ratio: float, speed: float) -> Choice:
     speed : float
         Largest speed of the rims, m/s.
     """
-    reason = f"that of {STANDSTILL:.0%} of the largest speed, {speed:.3g} m/s"
+    reason = f"as at {STANDSTILL:.0%} of the largest speed, {speed:.3g} m/s"
     return Choice("contact.standstill_creep", STANDSTILL * creep_ratio * speed, "m/s", reason)
 
 
@@ -171,9 +169,9 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
     reason = (
         f"estimated error of {name} {RESOLVED[name]:.1%}"
         if number == needed[name]
-        else f"{needed[name]} would do for speeds and tensions"
+        else f"{needed[name]} would resolve speeds and tensions"
         if number == FEWEST
-        else f"no more; {needed[name]} would resolve {name}"
+        else f"upper limit; {needed[name]} would resolve {name}"
     )
     finer = max(elements_needed(belt, Running(tension))[name] for name in PRESSURES)
     more = f"; contact pressures need {finer}" if finer > number else ""
@@ -181,7 +179,7 @@ def choose_elements(belt: OnPath, tension: float) -> Choice:
 
 
 def choose_graded_elements(belt: OnPath, path: Path, tension: float) -> Choice:
-    """Choose the number of elements of a mesh that stays in place.
+    """Choose the number of elements of a staying mesh.
 
     Parameters
     ----------
@@ -194,5 +192,5 @@ def choose_graded_elements(belt: OnPath, path: Path, tension: float) -> Choice:
     layer = layer_length(*layer_lengths(belt, tension))
     arcs = Laid.on(path, belt.belt_length, path.longest_span).arcs()
     number = graded_mesh(belt.belt_length, arcs, layer).size
-    reason = f"a mesh that stays in place, with short ones within {1e3 * layer:.2g} mm of the ends of arcs"
-    return Choice("belt.elements", min(number, MOST), "", reason if number <= MOST else f"no more; {reason}")
+    reason = f"a staying mesh with short elements within {1e3 * layer:.2g} mm of the ends of arcs"
+    return Choice("belt.elements", min(number, MOST), "", reason if number <= MOST else f"upper limit; {reason}")

@@ -1,4 +1,4 @@
-"""The drive: a belt, its pulleys, their contact, and how to simulate them."""
+"""The drive: belt, pulleys, contact and settings of the simulation."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -38,7 +38,7 @@ from beltdyn.parts.text_file import parse_toml
 
 
 class Drive(Part):
-    """A belt drive: what is given, checked, and what follows from it.
+    """A belt drive, validated, with all derived values.
 
     The constructor's arguments are `belt`, `pulley` (a list of pulleys, counter-clockwise), `contact`, `tensioner` and
     `end` (lists), `simulation`, `steady` and `limits`, each a part or a mapping of its arguments, `gravity`, and `name`
@@ -60,22 +60,22 @@ class Drive(Part):
     fills_a_file: ClassVar[bool] = True
 
     name: Title | None = Field(
-        None, description="the name of the drive, which titles and summaries show, in place of that of a file"
+        None, description="the name of the drive, for titles and summaries, instead of the file name"
     )
-    description: Words | None = Field(None, description="what the drive is, for who reads the file or looks at it")
+    description: Words | None = Field(None, description="a description of the drive, for readers of the file")
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(
-        alias="pulley", max_length=1000, description="the groups [[pulley]], counter-clockwise"
+        alias="pulley", max_length=1000, description="the groups [[pulley]], in counter-clockwise belt order"
     )
     contact: Contact = Field(default_factory=Contact, description="the group [contact]")
     tensioners: tuple[AnyTensioner, ...] = Field((), alias="tensioner", description="the groups [[tensioner]]")
     ends: tuple[AnyEnd, ...] = Field(
-        (), alias="end", description="the groups [[end]], first and second, of a belt that is not closed"
+        (), alias="end", description="the groups [[end]], first and second, of an open belt"
     )
     simulation: Simulation = Field(description="the group [simulation]")
     steady: Steady = Field(default_factory=Steady, description="the group [steady], the mesh of steady running")
     limits: Limits = Field(
-        default_factory=Limits, description="the group [limits], what results are judged by; nothing is by default"
+        default_factory=Limits, description="the group [limits], limits of results for reports; none by default"
     )
     gravity: tuple[Acceleration, Acceleration] = Field(
         (0.0, 0.0), description="the acceleration of gravity as [x, y], in m/s^2"
@@ -84,7 +84,7 @@ class Drive(Part):
 
     def __reduce__(self) -> tuple[Callable[[str], "Drive"], tuple[str]]:
         """Travel between processes as a drive file, which holds no functions of Python."""
-        refuse_functions(self, "a drive goes to other processes as a text, without functions", "run it in this process")
+        refuse_functions(self, "other processes get a drive as text, without functions", "run it in this process")
         return drive_of_text, (self.text,)
 
     @model_validator(mode="after")
@@ -101,8 +101,9 @@ class Drive(Part):
     def _joint_fits_the_belt(self) -> Self:
         if self.simulation.joint == "multipliers" and not self.element_kind.has_ends:
             raise ValueError(
-                f'simulation.joint = "multipliers" does not fit belt.discretization = "{self.element_kind.name}": '
-                'its elements have no ends to tie. Choose joint = "shared_node", or discretization = "ancf".'
+                'simulation.joint = "multipliers" is incompatible with belt.discretization = '
+                f'"{self.element_kind.name}", whose elements have no ends to join. '
+                'Choose joint = "shared_node", or discretization = "ancf".'
             )
         return self
 
@@ -110,11 +111,11 @@ class Drive(Part):
     def _ends_fit_the_belt(self) -> Self:
         kind = f'belt.discretization = "{self.element_kind.name}"'
         if self.ends and self.simulation.joint == "multipliers":
-            raise ValueError('simulation.joint = "multipliers" ties the ends of a belt that has [[end]]. Remove one')
+            raise ValueError('simulation.joint = "multipliers" closes the belt, but [[end]] opens it. Remove one')
         if self.ends and not self.element_kind.has_ends:
-            raise ValueError(f'[[end]] does not fit {kind}, whose elements have no ends. Choose "ancf"')
+            raise ValueError(f'[[end]] is incompatible with {kind}, whose elements have no ends. Choose "ancf"')
         if any(end.turning_held for end in self.ends) and self.element_kind.turned < 0:
-            raise ValueError(f'end.clamped does not fit {kind}, whose nodes do not turn. Choose "ancf"')
+            raise ValueError(f'end.clamped is incompatible with {kind}, whose nodes have no rotation. Choose "ancf"')
         return self
 
     @model_validator(mode="after")
@@ -122,19 +123,19 @@ class Drive(Part):
         tolerance, frame = self.simulation.force_tolerance, self.frame
         if tolerance is not None and not frame.stays:
             raise ValueError(
-                f"simulation.force_tolerance = {tolerance:g} does not fit a mesh that travels, as this one does, "
-                f"{frame.reason}: it is not refined. Remove one of them"
+                f"simulation.force_tolerance = {tolerance:g} is incompatible with a travelling mesh, which is not "
+                f"refined; the mesh of this drive travels, {frame.reason}. Remove one of the two"
             )
         if self.ends and frame.stays:
             raise ValueError(
-                'simulation.frame = "staying" does not fit an open belt: no belt flows past its ends. Set '
-                'simulation.frame = "travelling", or leave it out'
+                'simulation.frame = "staying" is incompatible with an open belt: no belt flows past its ends. Set '
+                'simulation.frame = "travelling", or omit it'
             )
         return self
 
     @property
     def title(self) -> str:
-        """Its name, or what it is."""
+        """Its name, or "Belt drive"."""
         return self.name or "Belt drive"
 
     def number_of(self, pulley: object) -> int:
@@ -152,12 +153,12 @@ class Drive(Part):
         """
         names = [one.name for one in self.pulleys]
         if pulley not in names:
-            raise ModelError(f"pulley = {pulley!r} is not in this drive. Its pulleys are: {', '.join(names)}.")
+            raise ModelError(f"pulley = {pulley!r} is not in this drive. Choose one of {', '.join(names)}.")
         return names.index(str(pulley))
 
     @property
     def driver(self) -> int | None:
-        """Number of the pulley that drives: the first whose speed is prescribed, or else the first with a motor."""
+        """Number of the driver: the first pulley with prescribed speed, or else the first with a motor."""
         for drives in (lambda one: one.prescribed, lambda one: any(load.driven_speed for load in one.load)):
             found = [number for number, one in enumerate(self.pulleys) if drives(one)]
             if found:
@@ -166,7 +167,7 @@ class Drive(Part):
 
     @property
     def running_sense(self) -> int:
-        """Sense in which the belt runs, 1 from pulley to pulley as they are listed and -1 back, by what drives it."""
+        """Running sense of the belt by its driver: 1 in the listed order of the pulleys, -1 against it."""
         driver = None if self.driver is None else self.pulleys[self.driver]
         speed = None if driver is None else driver.speed
         if driver is None or speed is None:
@@ -177,49 +178,49 @@ class Drive(Part):
 
     @property
     def reference(self) -> int:
-        """Number of the pulley that slip is told against: the driver, or the first pulley where nothing drives."""
+        """Number of the reference pulley of slip: the driver, or the first pulley without a driver."""
         return self.driver or 0
 
     @property
     def path_ends(self) -> tuple[PathEnd, ...]:
-        """The ends of an open belt as its path needs them."""
+        """The ends of an open belt as its path sees them."""
         return ends_on_path(self.ends, self.gravity)
 
     @property
     def spans(self) -> tuple[tuple[str, str], ...]:
-        """Names of what each span leaves and reaches, pulleys or ends; the last span reaches the first pulley."""
+        """Names of the pulleys or ends at both ends of each span; the last span leads to the first pulley."""
         return tuple(span_names(self.pulleys, self.ends))
 
     @property
     def loaded_belt(self) -> Belt:
-        """The belt, with the tension at rest where a pulled end gives it one."""
+        """The belt, with its tension at rest if a pulled end sets it."""
         return loaded(self.completed.belt, self.path_ends)
 
     @cached_property
     def frame(self) -> Frame:
-        """On which mesh the drive is simulated over time, and why."""
+        """The mesh of runs over time, with the reason."""
         return choose_frame(self.simulation, self.belt, self.contact, bool(self.ends))
 
     @property
     def element_kind(self) -> ElementKind:
-        """The elements of that mesh."""
+        """The element kind of that mesh."""
         return ELEMENTS[element_of(self.belt, self.frame)]
 
     @cached_property
     def layout(self) -> Layout:
-        """The belt laid around its pulleys, before anything is computed of its state."""
+        """The belt laid around its pulleys, before its state is computed."""
         graded = self.frame.stays and self.simulation.mesh == "auto"
         belt = self.belt.replace(discretization=self.element_kind.name)
         return lay_out(Given(belt, self.pulleys, self.contact, self.tensioners, self.path_ends, graded))
 
     @cached_property
     def completed(self) -> Completed:
-        """The parts with nothing left open, as an analysis takes them."""
+        """The parts with all open values filled in, as used by analyses."""
         return complete(self.layout)
 
     @property
     def belt_length(self) -> float:
-        """Unstretched length of the belt, m: as given, or such that the belt has its installed tension.
+        """Unstretched length of the belt, m: as given, or for its installed tension.
 
         The latter is an estimate without bending, weight and mesh, until `bring_to_rest` has found the length itself.
         """
@@ -227,42 +228,42 @@ class Drive(Part):
 
     @property
     def contact_stiffness(self) -> float:
-        """Normal force per metre of belt and metre of penetration, N/m^2: as given or chosen, or by a penetration."""
+        """Contact stiffness, N/m^2: given, by a given penetration, or chosen."""
         return self.completed.contact.given("stiffness")
 
     @property
     def contact_damping(self) -> float:
-        """Normal force per metre of belt and m/s of penetration, N s/m^2: as given, or chosen."""
+        """Contact damping, N s/m^2: given, or chosen."""
         return self.completed.contact.given("damping")
 
     @property
     def critical_damping(self) -> float:
-        """Damping of contact with which a belt pressed on a pulley does not swing, N s/m^2."""
+        """Critical contact damping of the belt pressed on a pulley, N s/m^2."""
         return critical_damping(self.contact_stiffness, self.belt.mass_per_length)
 
     @property
     def friction_parameters(self) -> FrictionParameters:
-        """Parameters of the friction law, as given or chosen."""
+        """Parameters of the friction law, given or chosen."""
         return self.completed.contact.friction_parameters
 
     @property
     def elements(self) -> int:
-        """Number of belt elements: as given, or chosen."""
+        """Number of belt elements, given or chosen."""
         return self.completed.belt.given_elements
 
     @property
     def path(self) -> Path:
-        """The path of the line that carries the belt's tension, with spring-loaded tensioners at zero."""
+        """The path of the tension line, with spring-loaded tensioners at zero."""
         return self.layout.path
 
     @cached_property
     def radii(self) -> FloatArray:
-        """Effective radii, shape (n,), m: those of the pulleys, and the belt's offset on the side that touches."""
+        """Effective radii, shape (n,), m: radii of the pulleys plus the offset of the belt on its contact side."""
         return radii(self.pulleys, self.belt)
 
     @cached_property
     def rolling_radii(self) -> FloatArray:
-        """Radii R / (1 + e) at which a bent belt without tension rolls on the pulleys, shape (n,), m.
+        """Rolling radii R / (1 + e) of the bent belt without tension, shape (n,), m.
 
         Bending shortens it by the strain e of `Belt.bent_strain`, so that a rim takes more of it along.
         """
@@ -270,7 +271,7 @@ class Drive(Part):
 
     @property
     def centers(self) -> FloatArray:
-        """Centers of the pulleys, shape (n, 2), m: where fixed tensioners hold them, spring-loaded ones at zero."""
+        """Centers of the pulleys, shape (n, 2), m, with the take-up of fixed tensioners, spring-loaded ones at zero."""
         return self.path.centers
 
     def _repr_html_(self) -> str:
@@ -280,17 +281,17 @@ class Drive(Part):
 
     @property
     def moving_tensioners(self) -> tuple[MovingTensioner, ...]:
-        """The tensioners that move while the drive runs."""
+        """The spring-loaded tensioners."""
         return tuple(one for one in self.tensioners if isinstance(one, MovingTensioner))
 
     @cached_property
     def carriers(self) -> list[Carrier]:
-        """The same with the pulleys that they carry."""
+        """The spring-loaded tensioners with their pulleys."""
         return carriers_of(self.tensioners, [pulley.name for pulley in self.pulleys], self.path)
 
     @cached_property
     def balance(self) -> tuple[StaticEstimate, FloatArray]:
-        """Estimate of the belt at rest, and where springs hold the tensioners; see `balance_tensioners`."""
+        """Estimate of the belt and the tensioners at rest; see `balance_tensioners`."""
         return balance_tensioners(self.path, self.loaded_belt, self.completed.contact, self.carriers)
 
     @property
@@ -299,22 +300,22 @@ class Drive(Part):
         return self.balance[0].tension
 
     def carried(self, tensioner: Tensioner) -> int:
-        """Tell the number of the pulley that a tensioner carries."""
+        """Number of the pulley of a tensioner."""
         return [pulley.name for pulley in self.pulleys].index(tensioner.pulley)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants of kinks and jumps in what is prescribed over time, s, ascending."""
+        """Instants of kinks and jumps in prescribed functions of time, s, ascending."""
         profiles = [profile for pulley in self.pulleys for profile in pulley.profiles]
         return tuple(sorted({float(t) for profile in profiles for t in profile.breakpoints()}))
 
     @cached_property
     def frictions(self) -> FloatArray:
-        """Coefficients of friction of the pulleys, with the wedge factor on those that touch the inside; shape (n,)."""
+        """Friction coefficients of the pulleys, with the wedge factor on those on the inside; shape (n,)."""
         return np.array([friction_on(pulley, self.belt, self.contact) for pulley in self.pulleys])
 
     def with_(self, changes: Mapping[str, Any]) -> "Drive":
-        """Make a copy with numbers changed by their paths, all at once, and validate it.
+        """Make a validated copy with values changed by their paths, all at once.
 
         Parameters
         ----------
@@ -343,7 +344,7 @@ class Drive(Part):
         return Drive(**changed_arguments(self, changes))
 
     def tightened(self, distance: float) -> "Drive":
-        """Settle what an installed tension leaves open: the length, or, where that is given, the take-up.
+        """Compute the length for an installed tension, or the take-up if the length is given.
 
         Parameters
         ----------
@@ -371,18 +372,18 @@ class Drive(Part):
 
     @cached_property
     def text(self) -> str:
-        """The TOML text that the drive came from, or one that gives the same drive."""
+        """The TOML text of the drive, original or equivalent."""
         return self._source or tomli_w.dumps(self.data, multiline_strings=False)
 
     @property
     def data(self) -> dict[str, Any]:
-        """The groups and keys of a drive file, in SI units and with every default spelled out; without empty groups."""
+        """The groups and keys of a drive file, in SI units, with all defaults, without empty groups."""
         data = self.model_dump(mode="json", by_alias=True, exclude_none=True)
         return {key: value for key, value in data.items() if value != {}}
 
 
 def drive_of_text(text: str) -> Drive:
-    """The drive of a text that `Drive.text` gave."""
+    """The drive of a text by `Drive.text`."""
     drive = Drive.model_validate(parse_toml(text))
     drive._source = text
     return drive

@@ -1,4 +1,4 @@
-"""The state of an earlier run, in which a run begins: its result file, and an instant."""
+"""The state of an earlier run as initial state: its result file, and an instant."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -11,13 +11,13 @@ from beltdyn.parts.quantity import Time
 
 
 class EarlierRun(Part):
-    """The state of an earlier run, in which a run begins: where its belt and bodies are, and how they move."""
+    """The state of an earlier run as initial state: positions and velocities of belt and bodies."""
 
-    file: str = Field(description="the result file of the earlier run; a relative path starts at the drive file")
+    file: str = Field(description="the result file of the earlier run, relative to the folder of the drive file")
     time: Time | None = Field(
         None,
         ge=0,
-        description="the instant of the earlier run at which its belt was recorded, in s; by default the last one",
+        description="the instant of a field output of the earlier run, in s; by default the last one",
     )
 
     def __str__(self) -> str:
@@ -44,4 +44,4 @@ Start = Annotated[
     Annotated[Literal["equilibrium", "laid", "steady"], Tag("string")] | Annotated[EarlierRun, Tag("EarlierRun")],
     Discriminator(_which),
 ]
-"""The state in which a run begins: by a name, or that of an earlier run."""
+"""The initial state of a run: a name, or an earlier run."""

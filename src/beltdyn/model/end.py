@@ -12,19 +12,19 @@ from beltdyn.parts.quantity import Coordinate, Flag, Force, Mass, Name
 
 
 class PathEnd(NamedTuple):
-    """What the path of a belt needs to know of an end."""
+    """An end as the path of the belt sees it."""
 
     name: str
     point: FloatArray | None
-    """Where it is fixed, m, shape (2,); none for an end that is pulled."""
+    """Its fixed point, m, shape (2,); None for a pulled end."""
     pull: FloatArray | None
-    """Force that pulls it at rest, N, shape (2,); none for an end that is fixed."""
+    """The pulling force at rest, N, shape (2,); None for a fixed end."""
 
 
 class End(Part):
     """An end of an open belt."""
 
-    name: Name = Field(description="the name of the end, in the names of spans")
+    name: Name = Field(description="the name of the end, used in the names of spans")
 
     if TYPE_CHECKING:  # the field that tells the kinds apart
         kind: str
@@ -41,7 +41,7 @@ class End(Part):
 
     @property
     def force(self) -> tuple[float, float]:
-        """Constant force on the end beside weight, N."""
+        """Constant force on the end, besides weight, N."""
         return 0.0, 0.0
 
     @property
@@ -50,7 +50,7 @@ class End(Part):
         return 0.0
 
     def on_path(self, gravity: tuple[float, float]) -> PathEnd:
-        """What the path needs to know of the end.
+        """The end as the path sees it.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class End(Part):
         pull = np.array(self.force) + self.attached_mass * np.array(gravity)
         if not np.any(pull):
             raise ValueError(
-                f'nothing pulls end "{self.name}": gravity = [0, 0] leaves its mass without weight. '
+                f'no force pulls end "{self.name}": gravity = [0, 0] gives its mass no weight. '
                 "Give gravity, such as [0, -9.81]"
             )
         return PathEnd(self.name, None, pull)
@@ -83,7 +83,7 @@ class FixedEnd(End):
     kind: Literal["fixed"] = Field(description="the kind of end")
     point: tuple[Coordinate, Coordinate] = Field(description="the point at which the belt is fixed, as [x, y], in m")
     clamped: Flag = Field(
-        False, description="whether the belt cannot turn there: its section stays square to the straight span"
+        False, description="whether the belt is clamped: its section stays square to the straight span"
     )
 
     @property
@@ -97,12 +97,12 @@ class FixedEnd(End):
         return self.clamped
 
     def on_path(self, gravity: tuple[float, float]) -> PathEnd:
-        """What the path needs to know of the end."""
+        """The end as the path sees it."""
         return PathEnd(self.name, np.array(self.point), None)
 
 
 class PulledEnd(End):
-    """An end that a constant force pulls.
+    """An end pulled by a constant force.
 
     Examples
     --------
@@ -116,12 +116,12 @@ class PulledEnd(End):
 
     @property
     def force(self) -> tuple[float, float]:
-        """Constant force on the end beside weight, N."""
+        """Constant force on the end, besides weight, N."""
         return self.tension * self.direction[0], self.tension * self.direction[1]
 
 
 class WeightEnd(End):
-    """An end at which a weight hangs.
+    """An end loaded by a hanging weight.
 
     Examples
     --------
@@ -130,7 +130,7 @@ class WeightEnd(End):
     """
 
     kind: Literal["weight"] = Field(description="the kind of end")
-    mass: Mass = Field(gt=0, description="the mass that hangs at the end, which gravity pulls, in kg")
+    mass: Mass = Field(gt=0, description="the hanging mass, in kg")
 
     @property
     def attached_mass(self) -> float:
@@ -145,7 +145,7 @@ else:
 
 
 def ends_on_path(ends: tuple[End, ...], gravity: tuple[float, float]) -> tuple[PathEnd, ...]:
-    """What the path of a belt needs to know of its ends.
+    """The ends of a belt as its path sees them.
 
     Parameters
     ----------
@@ -161,17 +161,17 @@ def ends_on_path(ends: tuple[End, ...], gravity: tuple[float, float]) -> tuple[P
     """
     if len(ends) not in (0, 2):
         raise ValueError(
-            f"the number of [[end]] is {len(ends)}: a closed belt has none, and an open belt has two, in the order in "
-            "which it runs. Give both, or none"
+            f"the number of [[end]] is {len(ends)}; a closed belt has no ends, an open belt has two, in running order. "
+            "Give both, or remove them"
         )
     if ends and not any(end.held for end in ends):
         raise ValueError(
-            f'ends "{ends[0].name}" and "{ends[1].name}" are both pulled: at rest, without friction, one would pull '
-            'the belt away from the other. Give one of them kind = "fixed"'
+            f'ends "{ends[0].name}" and "{ends[1].name}" are both pulled; at rest, without friction, there is no '
+            'equilibrium. Set kind = "fixed" for one of them'
         )
     return tuple(end.on_path(gravity) for end in ends)
 
 
 def pulling(ends: tuple[PathEnd, ...]) -> float | None:
-    """Tension that a pulled end gives the belt at rest, N; None without such an end."""
+    """Tension at rest by a pulled end, N; None without one."""
     return next((float(np.linalg.norm(end.pull)) for end in ends if end.pull is not None), None)

@@ -1,4 +1,4 @@
-"""On which mesh a drive is simulated over time: one that stays in place, or one that travels with the belt."""
+"""The mesh of runs over time: staying in place, or travelling with the belt."""
 
 from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
@@ -9,7 +9,7 @@ from beltdyn.model.contact import Contact
 from beltdyn.model.simulation import Simulation
 
 FrameName = Literal["staying", "travelling"]
-"""How a mesh stands to the belt."""
+"""The kind of mesh: staying or travelling."""
 
 
 class Frame(NamedTuple):
@@ -26,12 +26,12 @@ class Frame(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The name, with the reason."""
+        """The name and the reason."""
         return f"{self.name}, {self.reason}" if self.reason else self.name
 
 
 def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, is_open: bool) -> Frame:
-    """Choose the mesh of a run: it stays, unless the drive asks for what only a mesh that travels has.
+    """Choose the mesh of a run: staying, unless the drive needs features of the travelling mesh.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def choose_frame(simulation: Simulation, belt: Belt, contact: Contact, is_open: 
 
 
 def element_settings(belt: Belt, contact: Contact) -> Iterator[tuple[str, str, Any]]:
-    """Settings of elements and their quadrature that a mesh that stays does not use: group, key and value."""
+    """Settings of elements and quadrature without effect on a staying mesh: group, key and value."""
     if belt.discretization not in (None, QUINTIC.name):
         yield "belt", "discretization", belt.discretization
     for group, part, keys in (

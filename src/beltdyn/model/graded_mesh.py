@@ -1,4 +1,4 @@
-"""A mesh graded towards the ends of arcs, where the belt takes the curvature of a pulley within short layers.
+"""A mesh graded towards the ends of arcs, where the curvature changes within boundary layers.
 
 Nodes stand at the ends of arcs, and at the kinks of friction on them: within an element all is smooth.
 
@@ -16,26 +16,26 @@ from beltdyn.arrays import FloatArray
 from beltdyn.model.path import Path
 
 FINENESS = 1.4
-"""Of the mesh of a run over time, unless the number of elements is given."""
+"""Fineness of the mesh of a run without a given number of elements."""
 _FIRST = 1.5
-"""First element, over the length of the layers."""
+"""First element over the layer length."""
 _GROWTH = 0.7
 """Growth of elements away from the end of an arc, over the distance from there."""
 _WIDEST = pi / 3.0
 """Angle of an element on an arc, rad, at most."""
 _FEWEST = 3
-"""Elements of a span, if its layers do not ask for more."""
+"""Least elements per span."""
 _ENOUGH = 0.2
-"""Length to resolve, over sqrt(T / k_p), where that of bending is shorter: it matters by the square of their ratio."""
+"""Length to resolve over sqrt(T / k_p), if the bending length is shorter: its effect goes with their ratio squared."""
 _KINK = 0.1
 """Length of the elements at a kink, over the radius."""
 _SAMPLES = 400
 _MOST = 10_000
-"""Elements of a piece of belt, at most: a centre given in wrong units would ask for more than fit in memory."""
+"""Limit of elements on a piece of belt: a centre in wrong units would need more memory than there is."""
 
 
 class Arc(NamedTuple):
-    """Where a belt lies on a pulley."""
+    """An arc of the belt on a pulley."""
 
     start: float
     """On the unstretched belt, m."""
@@ -43,25 +43,25 @@ class Arc(NamedTuple):
     radius: float
     """m."""
     kinks: tuple[float, ...] = ()
-    """Where in between friction begins or ends to be fully used, in ascending order; forces have a kink there."""
+    """Points in between where sliding begins or ends, ascending; forces have kinks there."""
 
 
 class Laid(NamedTuple):
-    """A belt laid on the path of a drive; its coordinate is zero in the middle of a span."""
+    """A belt on the path of a drive; its coordinate is zero in the middle of a span."""
 
     path: Path
     start: float
-    """Place of the coordinate zero along the path, m."""
+    """Arc length of the coordinate zero on the path, m."""
     stretch: float
     """Length of the path over that of the belt."""
 
     @classmethod
     def on(cls, path: Path, length: float, span: int) -> "Laid":
-        """Lay a belt of an unstretched length (m) on a path, from the middle of a span on."""
+        """Lay a belt of an unstretched length (m) on a path, from the middle of a span."""
         return cls(path, path.span_start(span) + 0.5 * float(path.span_lengths[span]), path.length / length)
 
     def arcs(self) -> list[Arc]:
-        """Where the belt lies on pulleys, in the order in which they follow each other along the belt."""
+        """Arcs of the belt on pulleys, in order along the belt."""
         found = list[Arc]()
         for p, (radius, wrap) in enumerate(zip(self.path.radii, self.path.wrap_angles, strict=True)):
             size = abs(float(radius))
@@ -77,7 +77,7 @@ class Laid(NamedTuple):
 
 
 def layer_length(bending: float, sinking: float) -> float:
-    """Length over which the belt takes the curvature of a pulley, m.
+    """Length over which the belt adopts the curvature of a pulley, m.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Numbers of contact that are set by hand, and spoil results or cost time: judged by those that a drive chooses."""
+"""Contact parameters set by hand that spoil results or cost time, compared with the default choice."""
 
 from collections.abc import Iterator
 
@@ -13,21 +13,21 @@ from beltdyn.model.pulley import fastest_rim
 from beltdyn.parts.finding import Finding
 
 _SOFT, _HARD = 10.0, 30.0
-"""How many times softer or harder than chosen contact may be."""
+"""Limits of softer or harder contact, as multiples of the default."""
 _STEADIES = 0.2
-"""Damping over the critical one below which belts flutter where they slide."""
+"""Damping ratio below which sliding belts flutter."""
 _TAKES = 4.0
-"""Damping over the critical one from which on its own losses show: it took 3% of a fast drive's small load."""
+"""Damping ratio above which contact damping distorts losses: it dissipated 3% of a fast drive's small load."""
 _GENTLE, _STEEP = 4.0, 30.0
-"""How many times the slip at full friction may be larger or smaller than chosen."""
+"""Limits of the slip at full friction, as multiples of the default."""
 _ADDED, _AT, _POWER = 0.14, 3.0, 1.75
-"""Part of slip that friction adds with three creep lengths on an arc, and how it falls with their number."""
+"""Share of slip added by friction with three creep lengths on an arc, and its decay with their number."""
 _ARM = 0.005
-"""Part of the radius that the belt may sink in where friction acts at its point."""
+"""Largest penetration over the radius if friction acts at the belt's point."""
 
 
 def judge_contact(drive: Drive, installation: Installation, *, soft: bool = False) -> Iterator[Finding]:
-    """Find what is wrong with numbers of contact that are given, and which results that spoils.
+    """Check given contact parameters, and the results that they spoil.
 
     Parameters
     ----------
@@ -64,17 +64,17 @@ def _stiffness(drive: Drive, chosen: Drive, installation: Installation) -> Itera
     said = f"contact.{key} = {getattr(drive.contact, key):.3g}"
     if given < usual / _SOFT:
         yield Finding(
-            f"{said} makes contact {usual / given:.0f} times softer than what the drive chooses, {usual:.2g} N/m^2: at "
-            f"rest the belt sinks {1e3 * depth:.2g} mm into {name}, {depth / drive.radii[deepest]:.2%} of the radius.",
-            "Slip is wrong by up to 20% of itself, and contact damping takes power that no belt loses.",
-            f"Leave out contact.{key}.",
+            f"{said} makes contact {usual / given:.0f} times softer than the default of {usual:.2g} N/m^2: at rest the "
+            f"belt sinks {1e3 * depth:.2g} mm into {name}, {depth / drive.radii[deepest]:.2%} of the radius.",
+            "Slip has a relative error of up to 20%, and contact damping dissipates power that no belt loses.",
+            f"Omit contact.{key}.",
         )
     elif given > usual * _HARD:
         yield Finding(
-            f"{said} makes contact {given / usual:.0f} times harder than what the drive chooses, {usual:.2g} N/m^2.",
-            "No result gets better; layers at the ends of arcs get short, so that meshes and steps must be fine, or no "
-            "equilibrium is found.",
-            f"Leave out contact.{key}.",
+            f"{said} makes contact {given / usual:.0f} times harder than the default of {usual:.2g} N/m^2.",
+            "No result improves; boundary layers at the ends of arcs become short and need fine meshes and steps, or "
+            "no equilibrium is found.",
+            f"Omit contact.{key}.",
         )
 
 
@@ -82,25 +82,25 @@ def _damping(drive: Drive) -> Iterator[Finding]:
     given, critical = drive.contact.damping, drive.critical_damping
     if given is None:
         return
-    remedy = f"Leave out contact.damping: {DAMPING_RATIO:.0%} of critical is chosen, {DAMPING_RATIO * critical:.2g}."
+    remedy = f"Omit contact.damping: the default is {DAMPING_RATIO:.0%} of critical, {DAMPING_RATIO * critical:.2g}."
     if given < _STEADIES * critical:
         yield Finding(
             f"contact.damping = {given:.3g} N s/m^2 is {given / critical:.1%} of critical: the belt may flutter "
             "where it slides.",
-            "Contact forces vibrate then, and losses and slip with them; tensions in the mean are not concerned.",
+            "Contact forces, losses and slip then vibrate; mean tensions are not affected.",
             remedy,
         )
     elif given > _TAKES * critical:
         yield Finding(
             f"contact.damping = {given:.3g} N s/m^2 is {given / critical:.3g} times critical.",
-            "It takes power where the belt meets and leaves pulleys, which no belt loses: most in fast drives under "
-            "little load. A run tells how much.",
+            "It dissipates power where the belt enters and leaves pulleys, which no belt loses, most in fast drives "
+            "under little load. The energy balance of a run shows how much.",
             remedy,
         )
 
 
 def _friction(drive: Drive, chosen: Drive, installation: Installation) -> Iterator[Finding]:
-    """Judge at which slip, over the speed, friction is fully used, next to what is chosen."""
+    """Compare the relative slip at full friction with the default."""
     law = LAWS[drive.contact.friction_law]
     keys = [one.name for one in law.parameters if getattr(drive.contact, one.name) is not None]
     speed, rough = fastest_rim(drive.pulleys, drive.radii), drive.frictions > 0.0
@@ -112,23 +112,22 @@ def _friction(drive: Drive, chosen: Drive, installation: Installation) -> Iterat
     )
     factor = float(np.max(slips / usual))
     said = " and ".join(f"contact.{key} = {getattr(drive.contact, key):.3g}" for key in keys)
-    remedy = f"Leave out {'contact.friction_law, ' * (law.name != chosen.contact.friction_law)}" + ", ".join(
+    remedy = f"Omit {'contact.friction_law, ' * (law.name != chosen.contact.friction_law)}" + ", ".join(
         f"contact.{key}" for key in keys
     )
     if factor > _GENTLE:
         lengths = CREEP_LENGTHS / factor
         added = _ADDED * (_AT / lengths) ** _POWER
-        how = f"by up to {added:.0%}" if added < 1.0 else "several times"
+        how = f"by up to {added:.0%}" if added < 1.0 else "by a multiple"
         yield Finding(
-            f"{said} lets friction build up {factor:.0f} times more slowly with slip than what the drive chooses.",
-            f"Under load slip is too large, {how}, and friction loses more; tensions change little.",
+            f"with {said} friction builds up {factor:.0f} times more slowly with slip than by default.",
+            f"Under load slip is too large, {how}, as are friction losses; tensions change little.",
             f"{remedy}.",
         )
     elif factor < 1.0 / _STEEP:
         yield Finding(
-            f"{said} lets friction build up {1.0 / factor:.0f} times more steeply with slip than what the drive "
-            "chooses.",
-            "No result gets better by 3%; steps get short, and steady running may not be found.",
+            f"with {said} friction builds up {1.0 / factor:.0f} times more steeply with slip than by default.",
+            "No result improves by 3%; time steps become short, and steady running may not be found.",
             f"{remedy}.",
         )
 
@@ -137,9 +136,9 @@ def _moment_arm(drive: Drive, installation: Installation) -> Iterator[Finding]:
     share = float(np.max(installation.penetrations / drive.radii))
     if drive.contact.moment_arm == "point" and share > _ARM:
         yield Finding(
-            'contact.moment_arm = "point" lets friction act where the belt is, and it has sunk in by '
+            'with contact.moment_arm = "point" friction acts at the belt, which has sunk in by '
             f"{share:.1%} of a radius.",
-            f"Torques of friction are too small by as much, and friction may give power: losses are wrong by up to "
-            f"{share:.1%} of the power.",
-            'Set contact.moment_arm = "rim", or raise contact.stiffness.',
+            f"Friction torques are too small by that share, and friction may generate power: losses are wrong by up "
+            f"to {share:.1%} of the power.",
+            'Set contact.moment_arm = "rim", or increase contact.stiffness.',
         )

@@ -1,4 +1,4 @@
-"""How the strains of a belt pass along its drive, as its hysteresis needs to know them."""
+"""The history of strains along the belt of a drive, as needed for hysteresis."""
 
 from typing import NamedTuple
 
@@ -26,10 +26,10 @@ _LEAST_FRICTION = 0.1
 
 
 class Passing(NamedTuple):
-    """Strains on the way of the belt."""
+    """Strains along the belt."""
 
     strain: float
-    """Strain of reference."""
+    """Reference strain."""
     stretch_length: float
     """Length over which slow changes of the stretch are smoothed, m."""
     bending_length: float
@@ -50,7 +50,7 @@ class BendingAtPoints(NamedTuple):
 
 
 def bending_at_points(drive: Drive) -> BendingAtPoints:
-    """Give the hysteresis of bending on a mesh that stays, where curvatures have no waves of the mesh.
+    """Bending hysteresis on a staying mesh, where curvatures have no waves of the mesh.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def bending_at_points(drive: Drive) -> BendingAtPoints:
 
 
 def passing_strains(drive: Drive) -> Passing:
-    """Give how strains pass along the belt of a drive.
+    """The history of strains along the belt of a drive.
 
     With fixed centres the stretch of the whole belt stays as it was at rest, and tensions lie as far above as below
     it; where a spring or an end holds a tension, the slack side stays at it.  The tension changes over R / mu, the
@@ -85,7 +85,7 @@ def passing_strains(drive: Drive) -> Passing:
 
 
 def bending_resistance(drive: Drive) -> float:
-    """Give the force that hysteresis of bending holds the belt of a drive back with on all pulleys, N.
+    """Resisting force of bending hysteresis on all pulleys of a drive, N.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def bending_resistance(drive: Drive) -> float:
 
 
 def rolling_resistances(drive: Drive) -> FloatArray:
-    """Give the coefficients of rolling resistance that take what compression of the belt loses.
+    """Coefficients of rolling resistance equivalent to the compression losses of the belt.
 
     Per metre of belt, rho times the normal force along an arc of the angle phi takes rho phi T.  T is that at rest.
 
@@ -115,7 +115,7 @@ def rolling_resistances(drive: Drive) -> FloatArray:
 
 
 def compression_losses(drive: Drive) -> FloatArray:
-    """Give the force that compression holds the belt of a drive back with on each pulley, at the tension at rest, N.
+    """Resisting force of compression on each pulley of a drive, at the tension at rest, N.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What to expect of a belt at rest on its pulleys: estimates by hand, or what static equilibrium gives."""
+"""The belt at rest on its pulleys: closed-form estimates, or static equilibrium."""
 
 from dataclasses import dataclass
 
@@ -56,7 +56,7 @@ class Installation:
 
 
 def install(drive: Drive) -> Installation:
-    """Estimate tension, penetration and the place of tensioners for the belt at rest.
+    """Estimate tension, penetration and tensioner positions for the belt at rest.
 
     `beltdyn.model.static_estimate` and `beltdyn.model.tensioner_balance` have the equations, which leave out bending
     stiffness and weight; `beltdyn.solve.bring_to_rest` finds static equilibrium.
@@ -112,7 +112,7 @@ def describe(
 
 
 def tensioner_balances(drive: Drive, installation: Installation) -> tuple[tuple[TensionerBalance, ...], ...]:
-    """Find every place in which a spring-loaded tensioner balances the belt, the others held where they stand.
+    """Find all equilibrium positions of each spring-loaded tensioner, with the others held.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Output instants: counted, and never listed as a whole."""
+"""Output instants, counted but never listed as a whole."""
 
 from dataclasses import dataclass
 
@@ -7,12 +7,12 @@ import numpy as np
 from beltdyn.arrays import BoolArray, FloatArray, IntArray
 
 SAME = 1e-11
-"""Instants nearer to each other than this are one, s."""
+"""Instants closer than this coincide, s."""
 
 
 @dataclass(frozen=True)
 class Instants:
-    """Multiples of an interval from a beginning on, and the end; at every few of them fields along the belt are kept.
+    """Multiples of an interval from the start, and the end; fields along the belt are kept at some of them.
 
     Attributes
     ----------
@@ -33,18 +33,18 @@ class Instants:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """The number of instants."""
         length = self.end - self.begin
         multiples = int(np.floor(length / self.interval * (1.0 + 1e-12)))
         return multiples + 1 + (length - multiples * self.interval > 1e-9 * self.end)
 
     @property
     def fields(self) -> int:
-        """At how many of them fields are recorded."""
+        """The number of field outputs."""
         return (self.count - 1) // self.stride + 1 + ((self.count - 1) % self.stride > 0)
 
     def has_fields(self, numbers: IntArray) -> BoolArray:
-        """Whether fields are recorded at some of them, by their numbers."""
+        """Whether fields are recorded at instants, by their numbers."""
         return np.asarray((numbers % self.stride == 0) | (numbers == self.count - 1))
 
     def __getitem__(self, numbers: IntArray) -> FloatArray:
@@ -52,11 +52,11 @@ class Instants:
         return np.where(numbers < self.count - 1, self.begin + self.interval * numbers, self.end)
 
     def until(self, time: float) -> int:
-        """How many lie before a time (s) or on it."""
+        """The number of instants up to a time (s)."""
         return int(self.counts_until(np.array([time]))[0])
 
     def counts_until(self, times: FloatArray) -> IntArray:
-        """How many lie before each of several times (s) or on it."""
+        """The number of instants up to each of several times (s)."""
         multiples = np.floor((times - self.begin + SAME) / self.interval) + 1.0
         before_end = np.clip(multiples, 0.0, self.count - 1.0).astype(np.int64)
         return np.where(times >= self.end - SAME, self.count, before_end)

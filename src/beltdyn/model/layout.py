@@ -1,4 +1,4 @@
-"""Where the pulleys of a drive stand and how its belt runs around them: path, and take-up of fixed tensioners."""
+"""The layout of a drive: path of the belt, and take-up of fixed tensioners."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -26,7 +26,7 @@ _MOST_STEPS = 60
 
 
 class Given(NamedTuple):
-    """Parts of a drive, as a user gives them."""
+    """Parts of a drive as given."""
 
     belt: Belt
     pulleys: tuple[Pulley, ...]
@@ -34,10 +34,10 @@ class Given(NamedTuple):
     tensioners: tuple[Tensioner, ...]
     ends: tuple[PathEnd, ...] = ()
     graded: bool = False
-    """Whether the mesh is to be graded towards the ends of arcs, and stays in place."""
+    """Whether the mesh is a staying one, graded towards the ends of arcs."""
 
     def path_around(self, pulleys: Sequence[Pulley]) -> Path:
-        """The path of the belt around pulleys, checked."""
+        """The checked path of the belt around pulleys."""
         return lay_path(pulleys, self.belt, self.ends)
 
     def estimate(self, path: Path) -> StaticEstimate:
@@ -52,7 +52,7 @@ class Given(NamedTuple):
 
     @property
     def is_settled(self) -> bool:
-        """Whether the belt's length and the place of all pulleys are given."""
+        """Whether the belt length and the positions of all pulleys are given."""
         return loaded(self.belt, self.ends).installed_tension is None and not self.has_springs
 
     @property
@@ -80,7 +80,7 @@ class Layout(NamedTuple):
     path: Path
     """Around these pulleys."""
     choices: tuple[Choice, ...] = ()
-    """Numbers of computation that had to be chosen for it."""
+    """Numerical parameters chosen for it."""
 
 
 def loaded(belt: Belt, ends: tuple[PathEnd, ...]) -> Belt:
@@ -124,7 +124,7 @@ def lay_out(given: Given) -> Layout:
 
 
 def with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice, ...]]:
-    """The same with a stiffness of contact, if neither this nor a penetration is given."""
+    """The same with a contact stiffness, if neither this nor a penetration is given."""
     belt, contact = loaded(given.belt, given.ends), given.contact
     if contact.stiffness is not None or contact.allowed_penetration is not None:
         return given, ()
@@ -137,15 +137,15 @@ def with_chosen_stiffness(given: Given, path: Path) -> tuple[Given, tuple[Choice
 
 
 def with_chosen(contact: Contact, belt: Belt, chosen: Mapping[str, Any]) -> Contact:
-    """Contact with numbers that are left open, as they follow from the belt and its path."""
+    """Contact with its open parameters from the belt and its path."""
     try:
         return contact.replace(**chosen)
     except ModelError as error:
         numbers = ", ".join(f"contact.{key} = {value:.4g}" for key, value in chosen.items())
         raise ValueError(
-            f"{numbers} would follow from the belt and the pulleys, since the file leaves it open, and cannot be "
-            f"computed with. Correct belt.axial_stiffness = {belt.axial_stiffness:.4g} N, belt.mass_per_length = "
-            f"{belt.mass_per_length:.4g} kg/m or the radii, or give these numbers"
+            f"the default {numbers}, from the belt and the pulleys, is not usable. Correct belt.axial_stiffness = "
+            f"{belt.axial_stiffness:.4g} N, belt.mass_per_length = {belt.mass_per_length:.4g} kg/m or the radii, or "
+            "give the value"
         ) from error
 
 
@@ -155,12 +155,12 @@ def fixed_tensioner(tensioners: tuple[Tensioner, ...]) -> FixedTensioner:
 
 
 def leverage(path: Path, pulley: int, tensioner: FixedTensioner) -> float:
-    """How much longer the path becomes by a metre of take-up, m."""
+    """Change of the path length per metre of take-up, m."""
     return float(path.gradient(pulley) @ np.array(tensioner.direction))
 
 
 def with_take_up(tensioners: tuple[Tensioner, ...], distance: float) -> tuple[Tensioner, ...]:
-    """The same with another take-up of the one fixed tensioner, m."""
+    """The same with another take-up of the fixed tensioner, m."""
     fixed = fixed_tensioner(tensioners)
     return tuple(one.replace(take_up=distance) if one is fixed else one for one in tensioners)
 
@@ -177,17 +177,17 @@ def _moved(pulleys: tuple[Pulley, ...], tensioner: FixedTensioner) -> tuple[Pull
 
 
 def _check_take_up_is_open(tensioners: tuple[Tensioner, ...]) -> None:
-    """Refuse a belt of given length and tension without the one fixed tensioner whose take-up is to be computed."""
+    """Refuse a belt of given length and tension without a single fixed tensioner of open take-up."""
     fixed = [tensioner for tensioner in tensioners if isinstance(tensioner, FixedTensioner)]
     if len(fixed) != 1:
         raise ValueError(
-            f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners: one of them "
-            'takes up what is missing. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
+            f"belt.length and belt.installed_tension are both given, with {len(fixed)} fixed tensioners; the take-up "
+            'needs exactly one. Give one [[tensioner]] of kind = "fixed", or remove length or installed_tension'
         )
     if fixed[0].take_up != 0:
         raise ValueError(
-            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, which belt.length and '
-            "belt.installed_tension determine. Remove one of the three"
+            f'the fixed tensioner of "{fixed[0].pulley}" has take_up = {fixed[0].take_up:g} m, but belt.length and '
+            "belt.installed_tension determine it. Remove one of the three"
         )
 
 
@@ -216,29 +216,29 @@ def _tightened(given: Given, path: Path) -> Given:
         except ValueError as error:
             raise _no_take_up(given, fixed, str(error)) from error
         here, step = here + step, 1.3 * step
-    raise _no_take_up(given, fixed, f"not within {abs(here):.3g} m")
+    raise _no_take_up(given, fixed, f"none was found within {abs(here):.3g} m")
 
 
 def _no_take_up(given: Given, tensioner: FixedTensioner, reason: str) -> ValueError:
     return ValueError(
-        f'no take-up of "{tensioner.pulley}" brings a belt of {given.belt.length:.5g} m to '
+        f'no take-up of "{tensioner.pulley}" gives a belt of {given.belt.length:.5g} m a tension of '
         f"{given.belt.installed_tension:.5g} N: {reason}. Change belt.length, or the direction of the tensioner"
     )
 
 
 def check_length(length: float, path: float, tensioned: bool = False) -> None:
-    """Refuse a belt that is too long or too short for its path, with moving tensioners where they stand."""
-    where = "the path around the pulleys" + ", where its tensioners put them" * tensioned
+    """Refuse a belt that is too long or too short for its path, with moving tensioners at rest."""
+    where = "the path around the pulleys" + ", as placed by the tensioners" * tensioned
     if length >= path:
         given, room = apart(length, path)
         raise ValueError(
             f"belt.length = {given} m is {'as long as' if length == path else 'longer than'} {where} ({room} m): "
             "the belt would hang slack. "
-            f"Shorten it, or {'raise the preload' if tensioned else 'move the pulleys apart'}."
+            f"Shorten it, or {'increase the preload' if tensioned else 'move the pulleys apart'}."
         )
     if path / length - 1 > LARGEST_STRAIN:
         raise ValueError(
             f"belt.length = {length:.5g} m is too short for {where} ({path:.5g} m): "
-            f"it would be stretched by {path / length - 1:.0%}, and {LARGEST_STRAIN:.0%} is the limit. "
-            f"Lengthen it, or {'lower the preload' if tensioned else 'move the pulleys together'}."
+            f"it would be stretched by {path / length - 1:.0%}; the limit is {LARGEST_STRAIN:.0%}. "
+            f"Lengthen it, or {'reduce the preload' if tensioned else 'move the pulleys closer together'}."
         )

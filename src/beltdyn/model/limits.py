@@ -1,4 +1,4 @@
-"""What a drive must keep to, by which its results are judged."""
+"""Limits of the results of a drive."""
 
 from typing import Self
 
@@ -9,7 +9,7 @@ from beltdyn.parts.quantity import Force, Ratio
 
 
 class Limits(Part):
-    """What a drive must keep to. Nothing that is computed depends on it; reports judge results by it.
+    """Limits of results, checked by reports. They do not affect computed results.
 
     Examples
     --------
@@ -18,15 +18,13 @@ class Limits(Part):
     """
 
     largest_slip: Ratio | None = Field(
-        None, gt=0, lt=1, description="the largest slip of a pulley against the first one, over that one's speed"
+        None, gt=0, lt=1, description="the largest slip of a pulley against the first one, over its speed"
     )
-    largest_hub_load: Force | None = Field(
-        None, gt=0, description="the largest force of the belt on a pulley at any time, in N"
-    )
-    largest_tension: Force | None = Field(None, gt=0, description="the largest tension of a span at any time, in N")
-    least_tension: Force | None = Field(None, ge=0, description="the least tension of a span at any time, in N")
+    largest_hub_load: Force | None = Field(None, gt=0, description="the largest hub load at any time, in N")
+    largest_tension: Force | None = Field(None, gt=0, description="the largest span tension at any time, in N")
+    least_tension: Force | None = Field(None, ge=0, description="the least span tension at any time, in N")
     least_margin: Ratio | None = Field(
-        None, gt=0, description="the least capstan margin: the factor on all loads at which the belt slides through"
+        None, gt=0, description="the least capstan margin: the factor on all loads at which gross slip begins"
     )
 
     @model_validator(mode="after")
@@ -34,7 +32,6 @@ class Limits(Part):
         least, largest = self.least_tension, self.largest_tension
         if least is not None and largest is not None and not least < largest:
             raise ValueError(
-                f"least_tension = {least:g} N is not below largest_tension = {largest:g} N, which no drive can keep "
-                "to. Change one"
+                f"least_tension = {least:g} N must be below largest_tension = {largest:g} N. Change one of them"
             )
         return self

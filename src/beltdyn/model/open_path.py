@@ -49,8 +49,8 @@ def open_path(centers: FloatArray, radii: FloatArray, ends: Sequence[PathEnd], b
         return path
     if belt.length is None:
         raise ValueError(
-            f"belt.installed_tension = {belt.installed_tension:.5g} N does not go with an end that is pulled, which "
-            "gives the belt its tension. Give belt.length in its place"
+            f"belt.installed_tension = {belt.installed_tension:.5g} N contradicts the pulled end, which sets the "
+            "tension of the belt. Give belt.length instead"
         )
     missing = belt.length * float(belt.stretch_parameters.stretch(tension)) - path.length
     if missing <= -_ANY_LENGTH:

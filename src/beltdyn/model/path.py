@@ -1,4 +1,4 @@
-"""The path that the belt's centerline takes around its pulleys, without penetration."""
+"""The path of the tension line around the pulleys, without penetration."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +14,7 @@ _ROUNDING = 1e-12  # rad: a turning angle this far below zero is zero
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """A path of straight spans and circular arcs: closed, and run counter-clockwise, or from one end to another.
+    """A path of straight spans and circular arcs, closed and counter-clockwise, or open between two ends.
 
     Span i leaves pulley i and reaches pulley i + 1; the last span reaches pulley 0. Arc lengths of a closed path start
     with zero where the belt leaves pulley 0, and follow span 0, the arc of pulley 1, span 1, and so on to the arc of
@@ -82,17 +82,17 @@ class Path:
 
     @cached_property
     def wrap_angles(self) -> FloatArray:
-        """Angles over which the belt touches each pulley, shape (n,), rad, from 0 to 2 pi."""
+        """Wrap angles, shape (n,), rad, from 0 to 2 pi."""
         return wrap_angles(self.span_directions, self.radii)
 
     @property
     def total_turning(self) -> float:
-        """Angle through which the tangent turns, rad: 2 pi in one round of a closed path without loops."""
+        """Total rotation of the tangent, rad: 2 pi for a closed path without loops."""
         return float(np.sum(self.wrap_angles * np.sign(self.radii)))
 
     @property
     def ways_out(self) -> FloatArray:
-        """Unit vectors that lead away from the path at the ends of an open one, shape (2, 2)."""
+        """Outward unit vectors at the ends of an open path, shape (2, 2)."""
         return np.array([-self.span_directions[-1], self.span_directions[-2]])
 
     @property
@@ -135,7 +135,7 @@ class Path:
         return np.concatenate([[0.0], np.cumsum(pieces)])
 
     def span_start(self, span: int) -> float:
-        """Arc length at which a span begins, m."""
+        """Arc length at the start of a span, m."""
         return float(self._starts[2 * int(np.flatnonzero(self.order == span)[0])])
 
     @property
@@ -158,7 +158,7 @@ class Path:
         return self._trace(s)[0]
 
     def tangent(self, s: ArrayLike) -> FloatArray:
-        """Point along the path at unit length, in the direction of motion.
+        """Unit tangents along the path, in running direction.
 
         Parameters
         ----------
@@ -223,7 +223,7 @@ def span_directions(centers: FloatArray, radii: FloatArray, ends: FloatArray | N
 
 
 def span_points(centers: FloatArray, radii: FloatArray, ends: FloatArray | None = None) -> FloatArray:
-    """Points where spans start and end, shape (..., spans, 2, 2), m; arguments as for `span_directions`."""
+    """End points of spans, shape (..., spans, 2, 2), m; arguments as for `span_directions`."""
     centers, radii = _circles(centers, radii, ends)
     normals = _left(_directions(centers, radii))
     starts = centers - radii[:, None] * normals
@@ -232,7 +232,7 @@ def span_points(centers: FloatArray, radii: FloatArray, ends: FloatArray | None 
 
 
 def wrap_angles(directions: FloatArray, radii: FloatArray) -> FloatArray:
-    """Angles over which belts touch each pulley, shape (..., n), rad, from `span_directions`."""
+    """Wrap angles, shape (..., n), rad, from `span_directions`."""
     before = np.concatenate([directions[..., -1:, :], directions[..., :-1, :]], axis=-2)[..., : len(radii), :]
     after = directions[..., : len(radii), :]
     sine = before[..., 0] * after[..., 1] - before[..., 1] * after[..., 0]

@@ -17,7 +17,7 @@ _MARGIN = 0.06
 
 @dataclass(frozen=True)
 class Circle:
-    """A pulley in the picture, pixels; `prescribed` tells whether its speed is."""
+    """A pulley in the picture, pixels; `prescribed` says whether its speed is prescribed."""
 
     name: str
     x: float
@@ -28,7 +28,7 @@ class Circle:
 
 @dataclass(frozen=True)
 class Picture:
-    """What a template needs to draw a drive.
+    """The data of a template to draw a drive.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What is valid and looks mistaken, as a supplier asks back: tension, pulleys, sides, tensioners, the start."""
+"""Plausibility checks of a valid drive: tension, pulleys, sides, tensioners, start."""
 
 import math
 from collections.abc import Iterator
@@ -15,21 +15,21 @@ from beltdyn.parts.finding import Finding, listing
 from beltdyn.parts.quantity import RPM
 
 _DIAMETER_POWER = 5.6
-"""Power of the diameter with which the ribs of a belt live longer: published fits have 5.6 and 5.65."""
+"""Exponent of belt life over pulley diameter: published fits have 5.6 and 5.65."""
 _SLIGHT = math.radians(20.0)
-"""Wrap angle below which a pulley may be meant to touch the other side, where the belt would touch more of it."""
+"""Wrap angle below which the other side of the belt may have been intended, if it gives more wrap."""
 _MORE = 2.0
-"""How many times more it would touch there."""
+"""Least ratio of the wrap angles for that."""
 _BLOW = 0.05
-"""Change of tension by a sudden start, over the tension at rest, that is worth a warning."""
+"""Change of tension by a sudden start, over the tension at rest, that gives a warning."""
 _ANGLES = 64
-"""Angles over which the torque of a load is taken."""
+"""Angles over which the torque of a load is averaged."""
 _TAKES = 1e-3
-"""Power of a load over that of all from which on it counts."""
+"""Least share of a load in the total power."""
 
 
 def judge_plausibility(drive: Drive, installation: Installation) -> Iterator[Finding]:
-    """Find what a supplier would ask back.
+    """Check the plausibility of a drive.
 
     Parameters
     ----------
@@ -50,18 +50,18 @@ def _tension(drive: Drive, installation: Installation) -> Iterator[Finding]:
     most, ribs = belt.largest_tension, belt.value_of("ribs")
     if most is None or tension < most:
         return
-    each = (lambda force: f"{force:.4g} N, {force / ribs:.3g} N a rib or belt") if ribs else "{:.4g} N".format
-    more = f"Take {math.ceil(ribs * tension / most)} or more of them, lower" if ribs else "Take a larger belt, lower"
+    each = (lambda force: f"{force:.4g} N ({force / ribs:.3g} N per rib or belt)") if ribs else "{:.4g} N".format
+    more = f"Use at least {math.ceil(ribs * tension / most)} of them, reduce" if ribs else "Use a larger belt, reduce"
     readings = _other_readings(drive) if belt.length is not None else []
     yield Finding(
-        f"the tension at rest is {each(tension)}, and belts like this one are used below {each(most)}.",
-        "Cords stretch for good, and belt and bearings live a fraction of their time.",
-        f"{more} the tension, or correct what sets it{f': {listing(readings)}' if readings else ''}.",
+        f"the tension at rest is {each(tension)}, but the belt is rated for {each(most)}.",
+        "The cords stretch permanently, and belt and bearings fail early.",
+        f"{more} the tension, or correct its cause{f': {listing(readings)}' if readings else ''}.",
     )
 
 
 def _other_readings(drive: Drive) -> list[str]:
-    """What the tension would be with another side of a pulley, or other diameters, where it would be less."""
+    """The tension with another side of a pulley, or with other diameters, if it is lower."""
     changes = {
         f'with side = "{_other_side(one)}" of {one.name}': _flipped(drive, number)
         for number, one in enumerate(drive.pulleys)
@@ -76,7 +76,7 @@ def _other_side(pulley: Pulley) -> str:
 
 
 def _flipped(drive: Drive, number: int) -> Drive | None:
-    """The drive with a pulley on the other side of its belt; None where no belt can run so."""
+    """The drive with a pulley on the other side of its belt; None if no belt can run so."""
     changed = [
         one.replace(side=_other_side(one)) if place == number else one for place, one in enumerate(drive.pulleys)
     ]
@@ -87,7 +87,7 @@ def _flipped(drive: Drive, number: int) -> Drive | None:
 
 
 def with_pitch_diameters(drive: Drive) -> Drive | None:
-    """The drive whose diameters are those on which the tension line runs; None where it is the same, or cannot run."""
+    """The drive with its diameters as those of the tension line; None if it is the same, or impossible."""
     offsets = [drive.belt.offset(one.side) for one in drive.pulleys]
     if not any(offsets):
         return None
@@ -99,7 +99,7 @@ def with_pitch_diameters(drive: Drive) -> Drive | None:
 
 
 def other_diameters(drive: Drive) -> str:
-    """What is different if the diameters are meant as those of the tension line, in words; empty where nothing is.
+    """The difference if the diameters are those of the tension line, in words; empty if there is none.
 
     Parameters
     ----------
@@ -110,9 +110,9 @@ def other_diameters(drive: Drive) -> str:
     if meant is None:
         return ""
     if drive.belt.length is None:
-        return f"{meant.belt_length:.5g} m of belt, not {drive.belt_length:.5g}"
+        return f"belt length {meant.belt_length:.5g} m instead of {drive.belt_length:.5g} m"
     try:
-        return f"{meant.tension_at_rest:.5g} N at rest, not {drive.tension_at_rest:.5g}"
+        return f"tension at rest {meant.tension_at_rest:.5g} N instead of {drive.tension_at_rest:.5g} N"
     except BeltdynError:
         return ""
 
@@ -123,17 +123,17 @@ def _small_pulleys(drive: Drive) -> Iterator[Finding]:
     if least is None or not small:
         return
     lasting = (min(small.values()) / least) ** _DIAMETER_POWER
-    sizes = [f"{name} has {1e3 * diameter:.4g} mm" for name, diameter in small.items()]
+    sizes = [f"that of {name} is {1e3 * diameter:.4g} mm" for name, diameter in small.items()]
     yield Finding(
-        f"the smallest pulley for this belt has {1e3 * least:.4g} mm, and {listing(sizes)}.",
-        f"The belt lives about {lasting:.0%} as long as on the smallest, by published fits of its fatigue, and bending "
-        "takes more power.",
-        "Take a larger pulley, or a belt of a smaller profile.",
+        f"the smallest recommended pulley diameter of this belt is {1e3 * least:.4g} mm, but {listing(sizes)}.",
+        f"Belt life is about {lasting:.0%} of that on the smallest recommended pulley, by published fatigue fits, and "
+        "bending losses are higher.",
+        "Use a larger pulley, or a belt of a smaller profile.",
     )
 
 
 def _sides(drive: Drive) -> Iterator[Finding]:
-    """Pulleys that the belt hardly touches where they are given, and would touch on more of the other side."""
+    """Pulleys with a small wrap angle that would be larger on the other side of the belt."""
     if drive.ends or drive.belt.crossed:
         return
     for number, pulley in enumerate(drive.pulleys):
@@ -143,11 +143,11 @@ def _sides(drive: Drive) -> Iterator[Finding]:
             continue
         longer = 1e3 * (other.path.length - drive.path.length)
         yield Finding(
-            f"the belt's {pulley.side} touches {pulley.name} on {math.degrees(wrap):.3g}°, and its "
-            f"{_other_side(pulley)} would on {math.degrees(other.path.wrap_angles[number]):.3g}°.",
-            f"Its path would be {abs(longer):.3g} mm {'longer' if longer > 0 else 'shorter'} than "
-            f"{drive.path.length:.5g} m then; both are layouts that run, with other tensions.",
-            f'If that is meant, set side = "{_other_side(pulley)}" for {pulley.name}.',
+            f"the belt's {pulley.side} wraps {pulley.name} by {math.degrees(wrap):.3g}°, its {_other_side(pulley)} "
+            f"would wrap it by {math.degrees(other.path.wrap_angles[number]):.3g}°.",
+            f"The path would then be {abs(longer):.3g} mm {'longer' if longer > 0 else 'shorter'} than "
+            f"{drive.path.length:.5g} m; both layouts are possible, with different tensions.",
+            f'If the other is intended, set side = "{_other_side(pulley)}" for {pulley.name}.',
         )
 
 
@@ -169,16 +169,17 @@ def _tight_side(drive: Drive, installation: Installation) -> Iterator[Finding]:
         if number == driver or behind.index(number) < loaded[-1] or number == behind[loaded[-1]]:
             continue
         yield Finding(
-            f"the tensioner of {tensioner.pulley} is on the tight side: as the belt runs, no load lies between it and "
-            f"{name}.",
-            f"Its spring holds about {held:.4g} N there, and the loads take {total / speed:.4g} N, so that "
-            f"{max(held - total / speed, 0.0):.4g} N are left where the belt leaves {name}, not {held:.4g} N.",
-            f"Put it where the belt leaves {name}, or turn the sense of {name}: speeds are positive counter-clockwise.",
+            f"the tensioner of {tensioner.pulley} is on the tight side: in running direction no load lies between it "
+            f"and {name}.",
+            f"Its spring holds about {held:.4g} N there, and the loads need {total / speed:.4g} N, which leaves a "
+            f"slack-side tension of {max(held - total / speed, 0.0):.4g} N behind {name}, not {held:.4g} N.",
+            f"Move it to the span where the belt leaves {name}, or reverse {name}: speeds are positive "
+            "counter-clockwise.",
         )
 
 
 def _powers(drive: Drive, driver: int, installation: Installation) -> tuple[FloatArray, float]:
-    """Power that each pulley takes from the belt, W, and the belt's speed, m/s, when the driver runs fastest."""
+    """Power drawn from the belt by each pulley, W, and belt speed, m/s, at the highest speed of the driver."""
     pulley, radii = drive.pulleys[driver], installation.path.radii
     time = drive.simulation.end
     if pulley.speed is None:
@@ -199,13 +200,13 @@ def _powers(drive: Drive, driver: int, installation: Installation) -> tuple[Floa
 
 
 def _torque(load: Load, speed: float, time: float) -> float:
-    """Torque of a load at a speed and an instant, N m, in the mean over its angle."""
+    """Torque of a load at a speed and an instant, N m, averaged over its angle."""
     factor = 1.0 if load.factor is None else float(load.factor.at([time])[0])
     return factor * float(load.torque_over(np.linspace(0.0, 4.0 * math.pi, _ANGLES), speed, time).mean())
 
 
 def _sudden_start(drive: Drive, installation: Installation) -> Iterator[Finding]:
-    """Prescribed speeds that are there when a run begins from rest."""
+    """Prescribed speeds above zero at the start of a run from rest."""
     settings, belt = drive.simulation, drive.belt
     if settings.start not in ("equilibrium", "laid"):
         return
@@ -222,11 +223,11 @@ def _sudden_start(drive: Drive, installation: Installation) -> Iterator[Finding]
     if not sudden:
         return
     told = [f"{name} at {RPM * speeds[name][0]:.4g} rpm" for name in sudden]
-    gentle = 'let the speed rise, as { kind = "cosine_ramp", ... } does'
-    steady = f'Set simulation.start = "steady", which begins at these speeds, or {gentle}.'
+    gentle = 'ramp the speed up, for example with { kind = "cosine_ramp", ... }'
+    steady = f'Set simulation.start = "steady", which starts at these speeds, or {gentle}.'
     yield Finding(
-        f"the run begins with a blow: {listing(told)} from the first instant on, and the belt at rest.",
+        f"the run starts with a shock: {listing(told)} from the first instant, with the belt at rest.",
         f"The belt slides, or its tension changes by up to {max(blow.values()):.3g} N from {installation.tension:.4g} "
-        "N; time steps are short until all pulleys turn, so that the first part of a run is slow.",
+        "N; time steps are short until all pulleys turn, so the first part of the run is slow.",
         f"{gentle[0].upper()}{gentle[1:]}." if drive.ends else steady,
     )

@@ -1,4 +1,4 @@
-"""A pulley: driven with a prescribed speed, or turning freely, with what is behind its rim and on its shaft."""
+"""A pulley with prescribed speed or turning freely, with its hub chain and the loads on its shaft."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -26,12 +26,12 @@ _SPATIAL = 3
 
 
 class Diameter(Part):
-    """A pulley's size as it is sold."""
+    """The size of a pulley as sold."""
 
     diameter: Length = Field(
         gt=0,
-        description="the diameter by which the pulley is sold, in place of radius, its half: datum diameter for "
-        "V-belts, effective diameter for V-ribbed belts, outside diameter for others and for the back, in m",
+        description="the diameter of the pulley as sold, twice its radius: datum diameter for V-belts, effective "
+        "diameter for V-ribbed belts, outside diameter for others and for the back, in m",
     )
 
 
@@ -43,7 +43,7 @@ def _describe_diameter(schema: dict[str, Any]) -> None:
 
 
 class Pulley(Part):
-    """A round pulley, whose center stays where it is unless a tensioner carries it.
+    """A round pulley with a fixed center, unless a tensioner carries it.
 
     With `speed` the motion of its shaft is prescribed; without, it turns freely with its `inertia` under the belt,
     `torque` and its loads. The shaft is the rim itself, or the last body of the hub chain behind the rim. Speeds and
@@ -61,27 +61,27 @@ class Pulley(Part):
 
     name: Name = Field(description="the name of the pulley, as text")
     center: tuple[Coordinate, Coordinate] = Field(description="the center of the pulley as [x, y], in m")
-    radius: Length = Field(gt=0, description="the radius of the pulley, on which the surface of the belt lies, in m")
+    radius: Length = Field(gt=0, description="the radius of the pulley at the contact surface of the belt, in m")
     surface: AnySurface | None = Field(
-        None, description="the surface that is not a smooth circle of this radius, a group [pulley.surface]"
+        None, description="the surface, a group [pulley.surface], by default a smooth circle of this radius"
     )
     side: Side = Field("inside", description="the side of the belt that touches the pulley; the outside is its back")
     friction: Ratio | None = Field(
         None,
         ge=0,
-        description="the coefficient of friction on this pulley, without the wedge; by default that of the contact",
+        description="the coefficient of friction on this pulley, without the wedge effect; by default that of contact",
     )
     speed: SpeedProfile | None = Field(None, description="the prescribed speed of the shaft over time, in rad/s")
     harmonics: SpeedHarmonics = Field(
         (),
-        description="the harmonics of the prescribed speed, over the angle of its mean, or a table of a measured speed",
+        description="the harmonics of the prescribed speed over the angle of its mean, or a table of a measured speed",
     )
-    mass: Mass = Field(0.0, ge=0, description="the mass of the pulley, which moves with a tensioner, in kg")
-    inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia about the shaft, of the rim, in kg*m^2")
+    mass: Mass = Field(0.0, ge=0, description="the mass of the pulley, used if a tensioner moves it, in kg")
+    inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia of the rim about the shaft, in kg*m^2")
     torque: TorqueProfile | None = Field(None, description="the torque applied to the shaft over time, in N*m")
     load: tuple[AnyLoad, ...] = Field((), description="the loads and motors on the shaft, groups [[pulley.load]]")
     hub: tuple[AnyHubLink, ...] = Field(
-        (), description="the links of the hub chain, from the rim to the shaft, groups [[pulley.hub]]"
+        (), description="the links of the hub chain from rim to shaft, groups [[pulley.hub]]"
     )
 
     def value_of(self, key: str) -> Any:
@@ -103,7 +103,7 @@ class Pulley(Part):
         if diameter is None:
             return values
         if values.get("radius") is not None:
-            raise ValueError("radius and diameter exclude each other: one is twice the other. Keep one of them")
+            raise ValueError("radius and diameter exclude each other. Keep one of them")
         return values | {"radius": Diameter.model_validate({"diameter": diameter}).diameter / 2}
 
     @field_validator("center", mode="before")
@@ -111,8 +111,8 @@ class Pulley(Part):
     def _lies_in_the_plane(cls, center: Any) -> Any:
         if isinstance(center, Sequence) and len(center) == _SPATIAL:
             raise ValueError(
-                "has three coordinates, but drives are planar: shafts are parallel, and pulleys in line. Layouts in "
-                "space, such as quarter-turn drives, cannot be computed"
+                "has three coordinates, but drives are planar, with parallel shafts and aligned pulleys. Spatial "
+                "layouts, such as quarter-turn drives, are not supported"
             )
         return center
 
@@ -120,16 +120,16 @@ class Pulley(Part):
     def _is_prescribed_or_free(self) -> Self:
         if self.speed is not None and self.torque is not None:
             raise ValueError(
-                "speed and torque exclude each other: a pulley of prescribed speed takes whatever torque it needs. "
+                "speed and torque exclude each other: the torque of a pulley with prescribed speed is a result. "
                 "Remove one of them"
             )
         if self.speed is not None and self.load:
             raise ValueError(
-                "speed and load exclude each other: a shaft of prescribed speed takes whatever torque it needs. "
+                "speed and load exclude each other: the torque of a shaft with prescribed speed is a result. "
                 "Remove one of them"
             )
         if self.speed is None and self.harmonics:
-            raise ValueError("has harmonics but no speed. Give speed, the mean, or remove harmonics")
+            raise ValueError("has harmonics but no speed. Give the mean speed, or remove harmonics")
         if self.speed is None and self.inertia == 0:
             raise ValueError(
                 "has neither speed nor inertia. Give speed if its motion is prescribed, "
@@ -150,26 +150,26 @@ class Pulley(Part):
     def _surface_holds_the_shaft(self) -> Self:
         if self.surface is not None and self.surface.reach >= self.radius:
             raise ValueError(
-                f'surface of kind "{self.surface.kind}" reaches {self.surface.reach:g} m beyond the radius of '
-                f"{self.radius:g} m, and as far inside: the shaft would lie outside. Make it smaller"
+                f'surface of kind "{self.surface.kind}" deviates by {self.surface.reach:g} m from the radius of '
+                f"{self.radius:g} m: the shaft would lie outside the rim. Reduce the deviation"
             )
         return self
 
     @model_validator(mode="after")
     def _bodies_have_inertia(self) -> Self:
         if self.hub and self.inertia == 0:
-            raise ValueError("has a hub chain but no inertia: its rim turns freely. Give an inertia above zero")
+            raise ValueError("has a hub chain but no inertia of its free rim. Give an inertia above zero")
         free = self.hub[:-1] if self.prescribed else self.hub
         for number, link in enumerate(free, 1):
             if link.inertia == 0:
                 raise ValueError(
-                    f"hub[{number}] has no inertia: the body behind it turns freely. Give an inertia above zero"
+                    f"hub[{number}] has no inertia, but the body behind it turns freely. Give an inertia above zero"
                 )
         return self
 
     @property
     def turning(self) -> int:
-        """Sense in which the belt turns the pulley as it runs: 1 counter-clockwise (inside), -1 clockwise (outside)."""
+        """Turning sense of the pulley by the belt: 1 counter-clockwise (inside), -1 clockwise (outside)."""
         return 1 if self.side == "inside" else -1
 
     @property
@@ -179,19 +179,19 @@ class Pulley(Part):
 
     @property
     def profiles(self) -> tuple[Profile, ...]:
-        """Everything about the pulley that is prescribed over time."""
+        """All functions of time prescribed at the pulley."""
         given = (self.speed, self.torque, *self.switching)
         return tuple(profile for profile in given if profile is not None)
 
     @property
     def switching(self) -> tuple[Profile | None, ...]:
-        """Factor and command of each load, then the factors of the links of the hub chain; None where there is none."""
+        """Factor and command of each load, then the factors of the hub links; None for missing ones."""
         of_loads = (profile for item in self.load for profile in (item.factor, item.command))
         return (*of_loads, *(link.factor for link in self.hub))
 
 
 def fastest_rim(pulleys: Sequence[Pulley], radii: FloatArray, duration: float = math.inf) -> float:
-    """Speed of the fastest rim that is driven within a time (s), m/s; zero where none is.
+    """Speed of the fastest driven rim within a time (s), m/s; zero without one.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def fastest_rim(pulleys: Sequence[Pulley], radii: FloatArray, duration: float = 
 
 
 def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
-    """Coefficient of friction of a belt on a pulley, with the wedge factor where its inside touches.
+    """Friction coefficient of a belt on a pulley, with the wedge factor on the inside.
 
     Raises
     ------
@@ -218,7 +218,7 @@ def friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
 
 
 def flat_friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
-    """Coefficient of friction of a belt on a pulley, without the wedge.
+    """Friction coefficient of a belt on a pulley, without the wedge effect.
 
     It is that of the pulley, or of the contact, or of the belt: the first that is given.
 
@@ -231,6 +231,6 @@ def flat_friction_on(pulley: Pulley, belt: Belt, contact: Contact) -> float:
         if given is not None:
             return given
     raise ValueError(
-        "contact.friction is missing, and the belt has none of its own. Give the coefficient of friction, without the "
-        "wedge: 0.3 to 0.4 for rubber on metal"
+        "contact.friction is missing, and the belt has no friction of its own. Give the coefficient of friction "
+        "without the wedge effect: 0.3 to 0.4 for rubber on metal"
     )

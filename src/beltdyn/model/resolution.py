@@ -1,4 +1,4 @@
-"""Errors that the mesh makes in a running drive, from the length of elements, layout, stiffnesses and tension.
+"""Estimated discretisation errors of a running drive, from element length, layout, stiffnesses and tension.
 
 A belt takes on the curvature of a pulley within the length lambda = sqrt(l_s max(l_s, l_b)), where it sinks in over
 l_s = sqrt(T / k_p) and bends over l_b = sqrt(E I alpha2 / T).  An element of length l covers phi = l / R of a pulley.
@@ -28,25 +28,25 @@ from beltdyn.parts.finding import Finding, listing
 ERROR_LIMITS: Mapping[str, float] = MappingProxyType(
     {"tension": 0.01, "mean pressure": 0.05, "peak pressure": 0.2, "slip": 0.1, "losses": 0.2}
 )
-"""What the mesh may spoil, and the largest error, over the quantity itself, of a mesh that resolves it."""
+"""Quantities affected by the mesh, and the largest relative error of a mesh that resolves them."""
 
 PRESSURES = ("mean pressure", "peak pressure")
-"""Those that a number of elements that the drive chooses need not resolve."""
+"""Quantities that the default number of elements need not resolve."""
 
 _TENSION, _MEAN, _PEAK, _SLIP, _LOSSES = 2e-4, 2e-4, 1.2e-3, 3e-3, 1e-2
 _SURE = 2.0
-"""Estimates of which an error is hardly ever more."""
+"""Estimates that errors hardly ever exceed."""
 _COARSE = 12.0
-"""y from which elements touch at single points, and errors grow less."""
+"""y above which elements touch at single points, and errors grow more slowly."""
 _MOST = 100_000
 
 
 class OnPulleys(Protocol):
-    """What matters to a mesh of a belt on its pulleys: a drive has it, or what is known of one."""
+    """What the mesh of a belt on its pulleys depends on."""
 
     @property
     def belt(self) -> Belt:
-        """The belt; its length and elements do not matter."""
+        """The belt; its length and elements are ignored."""
 
     @property
     def belt_length(self) -> float:
@@ -63,7 +63,7 @@ class OnPulleys(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Running:
-    """How a belt runs, as far as it matters to its mesh.
+    """The operating point of a belt, as far as its mesh depends on it.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Running:
 
 
 def layer_lengths(drive: OnPulleys, tension: float) -> tuple[float, float]:
-    """Lengths within which a belt under a tension turns at the ends of an arc.
+    """Lengths over which a tensioned belt bends at the ends of an arc.
 
     Parameters
     ----------
@@ -102,12 +102,12 @@ def layer_lengths(drive: OnPulleys, tension: float) -> tuple[float, float]:
 
 
 def element_angles(drive: OnPulleys, elements: int) -> FloatArray:
-    """Angle of each pulley that one element covers, rad; of others, that of the cubic that misses as much."""
+    """Angle per element on each pulley, rad; for other kinds that of a cubic with the same error."""
     return drive.belt.element_kind.cubic_angle(drive.belt_length / (elements * drive.radii))
 
 
 def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, float]:
-    """Estimate the errors of a mesh.
+    """Estimate the discretisation errors of a mesh.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def mesh_errors(drive: OnPulleys, running: Running, elements: int) -> dict[str, 
 
 
 def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
-    """Number of elements from which twice the estimated error of each quantity keeps to its limit.
+    """Number of elements for which twice the estimated error of each quantity is within its limit.
 
     Twice, since hardly any error is more.
 
@@ -168,7 +168,7 @@ def elements_needed(drive: OnPulleys, running: Running) -> dict[str, int]:
 
 
 def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
-    """Fewest elements whose estimate of one of `ERROR_LIMITS` keeps to a limit, by halving: errors fall with them."""
+    """Fewest elements whose estimate of one of `ERROR_LIMITS` is within a limit, by bisection."""
     few, many = 0, _MOST
     while many - few > 1:
         middle = (few + many) // 2
@@ -180,16 +180,16 @@ def fewest(drive: OnPulleys, running: Running, name: str, limit: float) -> int:
 
 
 def unresolved(errors: Mapping[str, float], needed: Mapping[str, int], *, pressures: bool) -> list[Finding]:
-    """Say what a mesh does not resolve, and which ones would; nothing if it resolves all.
+    """Quantities that a mesh does not resolve, and meshes that would; empty if it resolves all.
 
     Parameters
     ----------
     errors
-        Result of `mesh_errors`; an error that is not known, NaN, counts as resolved.
+        Result of `mesh_errors`; an unknown error, NaN, counts as resolved.
     needed
         Result of `elements_needed`.
     pressures
-        Whether pressures are asked for, as where the number of elements is given; that which is chosen leaves them out.
+        Whether to include pressures, as for a given number of elements; the default number ignores them.
     """
     asked = ERROR_LIMITS if pressures else ERROR_LIMITS.keys() - PRESSURES
     names = sorted((name for name in asked if errors[name] > ERROR_LIMITS[name]), key=lambda name: -needed[name])
@@ -200,12 +200,12 @@ def unresolved(errors: Mapping[str, float], needed: Mapping[str, int], *, pressu
     return [
         Finding(
             f"the belt has too few elements for {listing([f'{name} ({_size(errors[name])})' for name in names])}.",
-            "These are wrong by about as much; speeds and torques need fewer elements.",
-            f"Set belt.elements = {needed[most]} for all of that{other}.",
+            "These have errors of about that size; speeds and torques need fewer elements.",
+            f"Set belt.elements = {needed[most]} for all of these{other}.",
         )
     ]
 
 
 def _size(error: float) -> str:
-    """An error in words; no number where it says only that nothing is right."""
+    """An error in percent, without a number above 100%."""
     return f"{error:.{0 if error > 0.1 else 1}%}" if error < 1.0 else "over 100%"

@@ -1,4 +1,4 @@
-"""Rules that the pulleys of a drive must obey together, so that a belt can run around them."""
+"""Rules for the layout of pulleys, so that a belt can run around them."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations, pairwise, permutations
@@ -18,17 +18,17 @@ _LEAST_WRAP = 1e-6  # rad
 _ROUNDING = 1e-6  # rad
 _MOST_TO_TRY = 16
 _WIDEST, _FARTHEST = 1e7, 1e9
-"""Largest extent of a drive and largest coordinate, over the smallest radius: a belt conveyor of 20 km has 2e5."""
+"""Largest extent of a drive and largest coordinate, over the smallest radius: 2e5 for a belt conveyor of 20 km."""
 
 
 class _Fault(NamedTuple):
     rule: str
     remedy: str | None
-    """None where it is worth a search."""
+    """None where a search for it pays."""
 
 
 def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
-    """Lay a path around pulleys in the order in which the belt meets them, and check that it is one.
+    """Lay a path around pulleys in belt order, and check it.
 
     Parameters
     ----------
@@ -47,13 +47,13 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()
     ------
     ValueError
         If there are fewer than two pulleys (one for an open belt), names are used twice, pulleys overlap or are too
-        close for the belt to pass between them, the order or a side is wrong, or the belt misses a pulley, would run
-        through one, or through itself.
+        close for the belt to pass between them, the order or a side is wrong, or the belt misses a pulley, runs
+        through a pulley, or crosses itself.
     """
     if not ends and len(pulleys) < 2:
-        raise ValueError(f"the drive has {len(pulleys)} pulley: a closed belt needs two or more. Add a [[pulley]]")
+        raise ValueError(f"the drive has {len(pulleys)} pulley; a closed belt needs at least two. Add a [[pulley]]")
     if not pulleys:
-        raise ValueError("the drive has no pulley: a belt with ends needs one or more. Add a [[pulley]]")
+        raise ValueError("the drive has no pulley; an open belt needs at least one. Add a [[pulley]]")
     _check_names([*pulleys, *ends])
     _check_sizes(pulleys, ends)
     _check_distances(pulleys)
@@ -66,7 +66,7 @@ def lay_path(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()
 
 
 def span_names(pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End]) -> list[tuple[str, str]]:
-    """Names of what each span leaves and reaches, pulleys or ends, in the order of `Path`."""
+    """Names of the pulleys or ends at both ends of each span, in the order of `Path`."""
     names = [pulley.name for pulley in pulleys]
     if not ends:
         return list(zip(names, [*names[1:], names[0]], strict=True))
@@ -74,12 +74,12 @@ def span_names(pulleys: Sequence[Pulley], ends: Sequence[PathEnd] | Sequence[End
 
 
 def radii(pulleys: Sequence[Pulley], belt: Belt) -> FloatArray:
-    """Effective radii, at which the line that carries the tension runs, shape (n,), m."""
+    """Effective radii of the tension line, shape (n,), m."""
     return np.array([pulley.radius + belt.offset(pulley.side) for pulley in pulleys])
 
 
 def trace(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd] = ()) -> Path:
-    """Path around pulleys, without a check."""
+    """Path around pulleys, unchecked."""
     turning = np.array([pulley.turning for pulley in pulleys])
     centers, signed = np.array([pulley.center for pulley in pulleys]), turning * radii(pulleys, belt)
     return open_path(centers, signed, ends, belt) if ends else Path(centers, signed)
@@ -90,7 +90,7 @@ def _check_names(parts: Sequence[Pulley | PathEnd]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise ValueError(
-                f'name = "{name}" is used {names.count(name)} times: names of pulleys and ends must differ. Rename one'
+                f'name = "{name}" is used {names.count(name)} times; pulleys and ends need unique names. Rename one'
             )
 
 
@@ -110,14 +110,14 @@ def _check_sizes(pulleys: Sequence[Pulley], ends: Sequence[PathEnd]) -> None:
     smallest = min(pulleys, key=lambda one: one.radius)
     extent, largest = float(np.ptp(places, axis=0).max()), float(np.abs(places).max())
     for size, limit, what in (
-        (extent, _WIDEST, "the drive extends over"),
-        (largest, _FARTHEST, "a coordinate is"),
+        (extent, _WIDEST, "the extent of the drive is"),
+        (largest, _FARTHEST, "the largest coordinate is"),
     ):
         if size > limit * smallest.radius:
             raise ValueError(
-                f"{what} {size:.4g} m, and {limit:.0e} radii of the smallest pulley are the limit: "
-                f'"{smallest.name}" has a radius of {smallest.radius:.4g} m. '
-                "Correct the places of pulleys and ends, or their units"
+                f"{what} {size:.4g} m; the limit is {limit:.0e} times the radius of the smallest pulley, "
+                f'{smallest.radius:.4g} m of "{smallest.name}". '
+                "Correct the coordinates of pulleys and ends, or their units"
             )
 
 
@@ -128,8 +128,8 @@ def _check_tangents(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEn
         distance = needed if end.point is None else np.hypot(*np.subtract(end.point, pulley.center))
         if distance < needed:
             raise ValueError(
-                f'end "{end.name}" lies within pulley "{pulley.name}": it is {distance:.5g} m from the center, where '
-                f"the belt runs at {needed:.5g} m. Move it away from the pulley"
+                f'end "{end.name}" lies inside pulley "{pulley.name}": it is {distance:.5g} m from the center, but the '
+                f"belt runs at {needed:.5g} m. Move it away from the pulley"
             )
     for one, other in pairwise([*pulleys, *([] if ends else pulleys[:1])]):
         if one.side == other.side:
@@ -138,14 +138,14 @@ def _check_tangents(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEn
         needed = one.radius + other.radius + belt.pitch_offset + belt.back_offset
         if not distance > needed:
             raise ValueError(
-                f'no straight line leads the belt from "{one.name}" to "{other.name}": it runs between them, which '
-                f"takes more than {needed:.5g} m from center to center (their radii, belt.pitch_offset and "
-                f"belt.back_offset), and these are {distance:.5g} m apart. Move them apart, or make one smaller"
+                f'the belt cannot pass between "{one.name}" and "{other.name}": this needs a center distance above '
+                f"{needed:.5g} m (their radii, belt.pitch_offset and belt.back_offset), but it is {distance:.5g} m. "
+                "Move them apart, or make one smaller"
             )
 
 
 def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path, ends: Sequence[PathEnd]) -> Iterator[_Fault]:
-    """Reasons why a path is none that a belt can take, each found when it is asked for."""
+    """Reasons why a belt cannot run along a path, each computed on demand."""
     names = span_names(pulleys, ends)
     if not ends and not belt.crossed and all(pulley.side == "inside" for pulley in pulleys):
         yield from _disorder(pulleys, path)
@@ -155,7 +155,7 @@ def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path, ends: Sequence[Pa
     crossing = crossings(path)
     if belt.crossed and not crossing:
         yield _Fault(
-            "belt.crossed = true, but no spans cross each other",
+            "belt.crossed = true, but no spans cross",
             'Remove it, or set side = "outside" for the pulleys between two crossings, which turn clockwise',
         )
     if crossing and not belt.crossed:
@@ -168,7 +168,7 @@ def _faults(pulleys: Sequence[Pulley], belt: Belt, path: Path, ends: Sequence[Pa
 
 
 def _disorder(pulleys: Sequence[Pulley], path: Path) -> Iterator[_Fault]:
-    """What keeps a path with all pulleys on its inside from being a round of left turns."""
+    """Faults of a path with all pulleys on its inside that is not a single counter-clockwise loop."""
     if abs(path.total_turning - 2 * np.pi) < _ROUNDING:
         return
     outermost = _outermost(path)
@@ -177,7 +177,7 @@ def _disorder(pulleys: Sequence[Pulley], path: Path) -> Iterator[_Fault]:
             yield _missed(pulley)
     yield _Fault(
         "the pulleys are not listed in the order in which the belt meets them when it runs counter-clockwise",
-        f"List them so: {_listed(pulleys[index] for index in outermost)}",
+        f"List them as {_listed(pulleys[index] for index in outermost)}",
     )
 
 
@@ -194,7 +194,7 @@ def _outermost(path: Path) -> list[int]:
 def _missed(pulley: Pulley) -> _Fault:
     where, remedy = ("inside", "outwards") if pulley.side == "inside" else ("outside", "inwards")
     return _Fault(
-        f'pulley "{pulley.name}" is not touched by the belt: it lies {where} the path around the others',
+        f'the belt does not touch pulley "{pulley.name}": it lies {where} the path around the others',
         f"Move it {remedy}, or remove it",
     )
 
@@ -218,7 +218,7 @@ def _collisions(
 
 
 def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> str:
-    """What makes a path without crossings, or that a belt may cross itself."""
+    """Changes that remove crossings, or that permit them."""
     tried = pulleys if len(pulleys) <= _MOST_TO_TRY else ()
     wishes = [
         wish
@@ -226,16 +226,16 @@ def _remedy(pulleys: Sequence[Pulley], belt: Belt, ends: Sequence[PathEnd]) -> s
         if (wish := next((wish for wish, changed in changes if _fits(changed, belt, ends)), None))
     ]
     if _fits(pulleys, belt.replace(crossed=True), ends):
-        wishes.append("set belt.crossed = true if spans shall cross each other")
-    text = ", or ".join(wishes) or "check the order of the pulleys, and which side of the belt touches each"
+        wishes.append("set belt.crossed = true if the spans are intended to cross")
+    text = ", or ".join(wishes) or "check the order and the sides of the pulleys"
     return text[0].upper() + text[1:]
 
 
 def _other_lists(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]]:
-    """Lists that a user may have meant: in reversed order, with one other side, with one pulley in another place."""
+    """Probable intended lists: in reversed order, with another side of one pulley, with one pulley elsewhere."""
     given = list(pulleys)
     turned = [*given[:1], *given[:0:-1]]
-    yield f"list the pulleys so: {_listed(turned)}", turned
+    yield f"list the pulleys as {_listed(turned)}", turned
     for index, pulley in enumerate(given):
         side = "outside" if pulley.side == "inside" else "inside"
         changed = pulley.replace(side=side)
@@ -243,14 +243,14 @@ def _other_lists(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]
     for index, place in permutations(range(1, len(given)), 2):
         moved = given[:index] + given[index + 1 :]
         moved.insert(place, given[index])
-        yield f"list the pulleys so: {_listed(moved)}", moved
+        yield f"list the pulleys as {_listed(moved)}", moved
 
 
 def _fewer(pulleys: Sequence[Pulley]) -> Iterator[tuple[str, list[Pulley]]]:
     """Lists without one pulley."""
     for index, pulley in enumerate(pulleys):
         surface = "inside" if pulley.side == "inside" else "back"
-        wish = f'move "{pulley.name}" against the {surface} of the belt, which does not touch it'
+        wish = f'move "{pulley.name}" against the {surface} of the belt'
         yield wish, [*pulleys[:index], *pulleys[index + 1 :]]
 
 

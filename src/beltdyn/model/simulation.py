@@ -1,4 +1,4 @@
-"""How a drive is simulated: duration, outputs, start and integrator."""
+"""Settings of a run: duration, outputs, start and integrator."""
 
 from math import floor, inf
 from typing import Literal, Self
@@ -13,14 +13,14 @@ from beltdyn.parts.quantity import Ratio, Time
 
 _MOST_OUTPUTS = 1_000_000
 _MOST_STEPS = 1_000_000_000
-"""Days of computing time."""
+"""Steps of some days of computing time."""
 
 _FIELDS = 100
-"""Number of instants at which fields along the belt are recorded unless an interval is given, about."""
+"""Approximate number of field outputs without a given interval."""
 
 
 class Simulation(Part):
-    """Settings of a transient simulation, from time zero or from a later instant on.
+    """Settings of a transient simulation, from time zero or a later instant.
 
     Examples
     --------
@@ -33,38 +33,37 @@ class Simulation(Part):
     field_interval: Time | None = Field(
         None,
         gt=0,
-        description="the time between two outputs of what is recorded along the belt, in s; by default a hundredth of "
-        "the duration",
+        description="the time between two outputs of fields along the belt, in s; by default a hundredth of the "
+        "duration",
     )
     frame: Literal["staying", "travelling"] | None = Field(
         None,
-        description="whether the mesh stays in place while the belt flows through it, or travels with the belt; by "
-        "default it stays, unless the drive asks for what only a mesh that travels has",
+        description="the frame of the mesh: staying in place while the belt flows through it, or travelling with the "
+        "belt; by default staying, unless the drive needs features of the travelling mesh",
     )
     mesh: Literal["auto", "uniform"] = Field(
         "auto",
-        description="the mesh that stays: graded towards the ends of arcs, or as many equal elements as "
-        "`belt.elements` says, as published",
+        description="the staying mesh: graded towards the ends of arcs, or of `belt.elements` equal elements, as "
+        "published",
     )
     force_tolerance: Ratio | None = Field(
         None,
         gt=0,
         lt=1,
-        description="the error of contact forces at the beginning, over the largest of a pulley, up to which the mesh "
-        "that stays is refined, below 1; by default it has the number of elements that is given or chosen",
+        description="the error of contact forces at the start, over the largest force on a pulley, to which the "
+        "staying mesh is refined, below 1; by default the mesh has the given or chosen number of elements",
     )
     start: Start = Field(
         "equilibrium",
-        description="the state at the beginning: static equilibrium, the belt laid on its path, steady running "
-        "under the speeds and loads of that instant, or the state of an earlier run as "
-        '{ file = "run.nc", time = "0.5 s" }',
+        description="the initial state: static equilibrium, the belt laid on its path, steady running with the speeds "
+        'and loads of that instant, or the state of an earlier run, { file = "run.nc", time = "0.5 s" }',
     )
     start_at: Time | None = Field(
         None,
         ge=0,
         lt=inf,
-        description="the instant of speeds, torques and schedules at which the run begins, in s, where it begins in "
-        "steady running or in the state of an earlier run; by default 0, or the instant of that state",
+        description="the time of speeds, torques and schedules at the start of a run from steady running or from an "
+        "earlier run, in s; by default 0, or the instant of the earlier run",
     )
     integrator: Literal["generalized_alpha", "cvode", "ida", "bdf", "radau"] = Field(
         "generalized_alpha", description="the time integrator"
@@ -76,40 +75,40 @@ class Simulation(Part):
     max_step: Time | None = Field(None, gt=0, description="the longest time step, in s")
     joint: Literal["shared_node", "multipliers"] = Field(
         "shared_node",
-        description="the joint of the belt's ends: by one shared node, or by Lagrange multipliers",
+        description="the joint of the belt's ends: a shared node, or Lagrange multipliers",
     )
 
     @property
     def instants(self) -> Instants:
-        """Output instants; fields along the belt are recorded at least as often as asked for."""
+        """Output instants; fields along the belt are recorded at least as often as requested."""
         wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
         stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
         return Instants(self.output_interval, self.end, stride, self.begin)
 
     @property
     def begin(self) -> float:
-        """The instant at which the run begins, s; zero of an earlier run whose last instant is not looked up yet."""
+        """The start of the run, s; zero for an earlier run whose last instant is not yet known."""
         if self.start_at is None and isinstance(self.start, EarlierRun):
             return self.start.time or 0.0
         return self.start_at or 0.0
 
     @property
     def end(self) -> float:
-        """The instant at which the run ends, s."""
+        """The end of the run, s."""
         return self.begin + self.duration
 
     @model_validator(mode="after")
     def _begins_later_in_motion(self) -> Self:
         if self.start_at and self.start in ("equilibrium", "laid"):
             raise ValueError(
-                f'start_at = {self.start_at:g} s does not fit start = "{self.start}", a belt at rest. '
+                f'start_at = {self.start_at:g} s is incompatible with start = "{self.start}", a belt at rest. '
                 'Set start = "steady", or remove start_at'
             )
         return self
 
     @property
     def misfits_staying(self) -> list[tuple[str, str, str]]:
-        """Settings that only a mesh that travels has: key, value, and the value with which a mesh may stay."""
+        """Settings that need a travelling mesh: key, value, and the value for a staying mesh."""
         settings = (
             ("start", self.start, ("equilibrium", "steady")),
             ("integrator", self.integrator, ("generalized_alpha",)),
@@ -126,8 +125,8 @@ class Simulation(Part):
         other = 'frame = "travelling"' if self.frame == "travelling" else 'mesh = "uniform"'
         if self.force_tolerance is not None and (self.frame == "travelling" or self.mesh == "uniform"):
             raise ValueError(
-                f"force_tolerance = {self.force_tolerance:g} does not fit {other}, which is not refined. Remove it, or "
-                'set frame = "staying" and mesh = "auto"'
+                f"force_tolerance = {self.force_tolerance:g} is incompatible with {other}, which is not refined. "
+                'Remove it, or set frame = "staying" and mesh = "auto"'
             )
         return self
 
@@ -136,7 +135,8 @@ class Simulation(Part):
         if self.frame == "staying":
             for key, value, fit in self.misfits_staying:
                 raise ValueError(
-                    f'{key} = "{value}" does not fit frame = "staying". Set {key} = "{fit}", or frame = "travelling"'
+                    f'{key} = "{value}" is incompatible with frame = "staying". Set {key} = "{fit}", or frame = '
+                    '"travelling"'
                 )
         return self
 
@@ -156,12 +156,12 @@ class Simulation(Part):
             )
         if self.duration / self.output_interval > _MOST_OUTPUTS:
             raise ValueError(
-                f"output_interval = {self.output_interval:g} s asks for {self.duration / self.output_interval:.3g} "
-                f"outputs, and {_MOST_OUTPUTS:,} is the limit. Lengthen the interval"
+                f"output_interval = {self.output_interval:g} s requires {self.duration / self.output_interval:.3g} "
+                f"outputs; the limit is {_MOST_OUTPUTS:,}. Lengthen the interval"
             )
         if self.max_step is not None and self.duration / self.max_step > _MOST_STEPS:
             raise ValueError(
-                f"max_step = {self.max_step:g} s asks for {self.duration / self.max_step:.3g} time steps at least, and "
-                f"{_MOST_STEPS:,} is the limit. Lengthen it, or omit it: rtol controls the length of steps"
+                f"max_step = {self.max_step:g} s requires at least {self.duration / self.max_step:.3g} time steps; the "
+                f"limit is {_MOST_STEPS:,}. Increase it, or omit it: rtol controls the step size"
             )
         return self

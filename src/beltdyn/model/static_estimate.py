@@ -1,4 +1,4 @@
-"""Estimate of the belt at rest on pulleys that stand still, without friction: its stretch and its penetration."""
+"""Estimate of the belt at rest without friction: stretch and penetration."""
 
 from dataclasses import dataclass
 
@@ -37,7 +37,7 @@ class StaticEstimate:
 
 
 def static_estimate(path: Path, belt: Belt, contact: Contact) -> StaticEstimate:
-    """Estimate tension and penetration of a belt on pulleys that stand still.
+    """Estimate tension and penetration of a belt at rest on its pulleys.
 
     At the stretch g the tension T is that of the law of stretch. On a pulley of radius R it presses with T g / R per
     unstretched metre, so the belt sinks by d = T g / (R k_p), which shortens the path by the wrap angle times d. Of the

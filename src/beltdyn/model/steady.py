@@ -1,4 +1,4 @@
-"""On what mesh the steady running of a drive is found."""
+"""The mesh of steady running."""
 
 from typing import Literal, Self
 
@@ -9,7 +9,7 @@ from beltdyn.parts.quantity import Ratio
 
 
 class Steady(Part):
-    """The mesh of steady running, of maps and of all other analyses that begin with it.
+    """The mesh of steady running, of maps and of all other analyses based on it.
 
     Examples
     --------
@@ -19,22 +19,22 @@ class Steady(Part):
 
     mesh: Literal["auto", "uniform"] = Field(
         "auto",
-        description="the mesh: graded towards the ends of arcs and refined by the solution, or as many equal elements "
-        "as `belt.elements` says, as published",
+        description="the mesh: graded towards the ends of arcs and refined by the solution, or `belt.elements` equal "
+        "elements, as published",
     )
     force_tolerance: Ratio | None = Field(
         None,
         gt=0,
         lt=1,
-        description="the error of contact forces, over the largest of a pulley, up to which a mesh is refined, below "
-        "1; 0.01 by default",
+        description="the error of contact forces, over the largest force on a pulley, to which the mesh is refined, "
+        "below 1; 0.01 by default",
     )
 
     @model_validator(mode="after")
     def _is_refined_or_not(self) -> Self:
         if self.mesh == "uniform" and self.force_tolerance is not None:
             raise ValueError(
-                f'force_tolerance = {self.force_tolerance:g} does not fit mesh = "uniform", which is not refined. '
-                'Remove it, or set mesh = "auto"'
+                f'force_tolerance = {self.force_tolerance:g} is incompatible with mesh = "uniform", which is not '
+                'refined. Remove it, or set mesh = "auto"'
             )
         return self

@@ -15,7 +15,7 @@ from beltdyn.stretch import LAWS, StretchParameters
 
 
 class StretchCurve(Part):
-    """Tension over strain as measured on the whole belt, a smooth curve through its points.
+    """Measured tension over strain of the whole belt, a smooth curve through its points.
 
     The points are `strains` and `tensions`, or the two columns of the CSV file `file`: a relative path starts at the
     folder of the drive file. The point without strain and tension may be left out.
@@ -43,17 +43,17 @@ class StretchCurve(Part):
         strains, tensions = self._points
         if self.strains[0] < 0 or (self.strains[0] == 0 and self.tensions[0] != 0):
             raise ValueError(
-                f"the first point has the strain {self.strains[0]:g} and the tension {self.tensions[0]:g} N: the curve "
-                "begins without strain and tension. Measure the strain from the unstretched length"
+                f"the first point has the strain {self.strains[0]:g} and the tension {self.tensions[0]:g} N, but a "
+                "curve must start at the origin. Measure the strain from the unstretched length"
             )
         for (_, before), (strain, after) in pairwise(zip(strains, tensions, strict=True)):
             if after <= before:
                 raise ValueError(
-                    f"tensions must increase, but {after:g} N at the strain {strain:g} follows {before:g} N. Take the "
-                    "curve of loading, and smooth it"
+                    f"tensions must increase, but {after:g} N at the strain {strain:g} follows {before:g} N. Use the "
+                    "loading curve, and smooth it"
                 )
         if len(strains) < 2:
-            raise ValueError("the curve has no point with a strain. Give at least one")
+            raise ValueError("the curve has no point above zero strain. Give at least one")
         return self
 
     @property
@@ -64,7 +64,7 @@ class StretchCurve(Part):
         return (0.0, *self.strains), (0.0, *self.tensions)
 
     def times(self, factor: float) -> "StretchCurve":
-        """The curve of a belt so many times as strong."""
+        """The curve scaled in tension."""
         return StretchCurve(strains=self.strains, tensions=tuple(factor * tension for tension in self.tensions))
 
     @cached_property
@@ -75,7 +75,7 @@ class StretchCurve(Part):
 
 
 def with_initial_slope(data: Any, base: Path | None) -> Any:
-    """Set the axial stiffness of a belt with a measured curve to the slope with which the curve begins.
+    """Set the axial stiffness of a belt with a measured curve to the initial slope of the curve.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def with_initial_slope(data: Any, base: Path | None) -> Any:
         return data
     if "axial_stiffness" in data:
         raise ValueError(
-            "axial_stiffness and stretch_curve exclude each other: the curve has the stiffness. Keep one of them"
+            "axial_stiffness and stretch_curve exclude each other: the curve gives the stiffness. Keep one of them"
         )
     try:
         curve = StretchCurve.model_validate(data["stretch_curve"], context={"base": base})

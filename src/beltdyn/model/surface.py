@@ -1,4 +1,4 @@
-"""Surfaces of pulleys that are not smooth circles: a part for each kind in the list."""
+"""Surfaces of pulleys other than smooth circles, a part for each kind."""
 
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Union
 
@@ -11,7 +11,7 @@ from beltdyn.parts.quantity import quantity
 
 
 class Surface(Part):
-    """A surface that is not a smooth circle, and turns with its pulley."""
+    """A surface other than a smooth circle, which turns with its pulley."""
 
     if TYPE_CHECKING:  # the field that tells the kinds apart
         kind: str
@@ -20,12 +20,12 @@ class Surface(Part):
 
     @property
     def parameters(self) -> dict[str, float]:
-        """What its kind takes, by name."""
+        """Parameters of its kind, by name."""
         return {parameter.name: getattr(self, parameter.name) for parameter in KINDS[self.kind].parameters}
 
     @property
     def reach(self) -> float:
-        """How far it goes beyond the effective radius at most, m."""
+        """Largest deviation beyond the effective radius, m."""
         return KINDS[self.kind].reach(self.parameters)
 
 

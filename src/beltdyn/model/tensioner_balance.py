@@ -1,4 +1,4 @@
-"""Where springs hold tensioners against the belt, and which of these balances are stable."""
+"""Equilibrium positions of spring-loaded tensioners, and their stability."""
 
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
@@ -14,18 +14,18 @@ from beltdyn.model.path import Path
 from beltdyn.model.static_estimate import StaticEstimate, static_estimate
 
 _FIRST_STEP, _GROWTH = 1e-3, 1.3
-"""Of the search along the way of a tensioner, over the way on which its pulley moves by the smallest radius."""
+"""Step of the search along the travel of a tensioner, over the travel that moves its pulley by the smallest radius."""
 _LONGEST_STEP = 0.02
-"""Of the same, over the distance between its pulley and the nearest other one: within that the leverage is smooth."""
+"""The same, over the distance of its pulley from the nearest other one, within which the leverage is smooth."""
 _ROUNDING = 4 * float(np.finfo(float).eps)
 _FARTHEST = 100.0
-"""How far a sliding tensioner is followed, in lengths of the path. An arm is followed half a turn to both sides."""
+"""Search range of a sliding tensioner, in path lengths; an arm is searched over half a turn to both sides."""
 _MOST_ROUNDS = 200
 _ACCURACY = 1e-13
 
 
 class TensionerBalance(NamedTuple):
-    """A place in which spring and stops of a tensioner balance the belt.
+    """An equilibrium position of a tensioner between belt, spring and stops.
 
     Examples
     --------
@@ -38,9 +38,9 @@ class TensionerBalance(NamedTuple):
     position: float
     """q, m or rad."""
     stable: bool
-    """Whether what moves it a little brings it back, with the belt of its length and the other tensioners held."""
+    """Whether it returns after a small disturbance, with given belt length and the other tensioners held."""
     here: bool
-    """Whether the tensioner stands there: of all its balances it is the nearest one."""
+    """Whether the tensioner rests there, at its nearest equilibrium."""
 
 
 class _Situation(NamedTuple):
@@ -55,7 +55,7 @@ class _Situation(NamedTuple):
 
     @property
     def carrier(self) -> Carrier:
-        """The tensioner that is looked at."""
+        """The tensioner under consideration."""
         return self.carriers[self.number]
 
     def at(self, position: float) -> StaticEstimate:
@@ -65,7 +65,7 @@ class _Situation(NamedTuple):
         return static_estimate(moved(self.path, self.carriers, changed), self.belt, self.contact)
 
     def excess(self, position: float) -> float:
-        """What spring and stops press more than the belt with that tensioner at a position, F - T dL/dq.
+        """Excess of the force of spring and stops over that of the belt at a position, F - T dL/dq.
 
         Raises
         ------
@@ -76,24 +76,24 @@ class _Situation(NamedTuple):
         if abs(there.path.total_turning - self.path.total_turning) > 1.0:
             raise ValueError("the belt leaves a pulley")
         if _covers_another(there.path, one.pulley):
-            raise ValueError("the pulley meets another one")
+            raise ValueError("the pulley meets another pulley")
         leverage = there.path.gradient(one.pulley) @ one.place(position)[1]
         return one.force(position) - there.tension * float(leverage)
 
     @property
     def scale(self) -> float:
-        """Way of the tensioner on which its pulley moves by the smallest radius, m or rad."""
+        """Travel that moves the pulley by the smallest radius, m or rad."""
         return float(np.abs(self.path.radii).min() / np.linalg.norm(self.carrier.place(0.0)[1]))
 
     def longest_step(self, position: float) -> float:
-        """Step of the search that is short against the distance to the nearest other pulley, m or rad."""
+        """Search step, short against the distance to the nearest other pulley, m or rad."""
         changed = self.positions.copy()
         changed[self.number] = position
         distances = _distances(moved(self.path, self.carriers, changed), self.carrier.pulley)
         return _LONGEST_STEP * float(distances.min() / np.linalg.norm(self.carrier.place(position)[1]))
 
     def is_stable(self, position: float) -> bool:
-        """Tell whether a balance is stable: the excess falls on its way, with the belt as long as it is there."""
+        """Whether an equilibrium is stable: the excess falls along the travel at constant belt length."""
         there, step = self.at(position), 1e-4 * self.scale
         fixed = self._replace(
             belt=self.belt.replace(length=there.length, installed_tension=None),
@@ -108,7 +108,7 @@ class _Situation(NamedTuple):
 def balance_tensioners(
     path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier]
 ) -> tuple[StaticEstimate, FloatArray]:
-    """Find where spring-loaded tensioners stand, by virtual work: force of spring and stops = T dL/dq for each.
+    """Find the rest positions of spring-loaded tensioners by virtual work: force of spring and stops = T dL/dq.
 
     Of several balances each takes the stable one that is nearest to its nominal place, and an unstable one only where
     none is stable. Weight and dry friction of a tensioner are left out, and so is what a change of the wrap angles does
@@ -175,7 +175,7 @@ def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
             break
     else:
         if situations[1:]:
-            raise ValueError("the tensioners find no balance together. Make their springs stiffer, or give stops")
+            raise ValueError("the tensioners have no common equilibrium. Increase their spring rates, or give stops")
     positions.setflags(write=False)
     return static_estimate(moved(path, carriers, positions), belt, contact), positions
 
@@ -183,7 +183,7 @@ def _balanced(layout: _Layout) -> tuple[StaticEstimate, FloatArray]:
 def all_balances(
     path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier], positions: FloatArray
 ) -> tuple[tuple[TensionerBalance, ...], ...]:
-    """Find every balance of each tensioner, the others held.
+    """Find all equilibria of each tensioner, with the others held.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def all_balances(
 def held_belt(
     path: Path, belt: Belt, contact: Contact, carriers: Sequence[Carrier], positions: FloatArray, number: int
 ) -> StaticEstimate:
-    """Find the belt that holds a tensioner at a place, by virtual work: T = F / (dL/dq).
+    """Find the belt that holds a tensioner at a position, by virtual work: T = F / (dL/dq).
 
     Parameters
     ----------
@@ -225,8 +225,8 @@ def held_belt(
     force = one.force(position)
     if not (force > 0.0 and leverage > 0.0):
         raise ValueError(
-            f'no tension holds the tensioner of "{one.tensioner.pulley}" at {one.tensioner.written(position)}: it '
-            f"presses with {force:.4g}, and a unit of travel lengthens the path by {leverage:.4g}"
+            f'no tension holds the tensioner of "{one.tensioner.pulley}" at {one.tensioner.written(position)}: its '
+            f"force is {force:.4g}, and a unit of travel lengthens the path by {leverage:.4g}"
         )
     return static_estimate(there, belt.replace(installed_tension=force / leverage), contact)
 
@@ -288,7 +288,7 @@ class _Side:
         self.found: float | None = None
 
     def go_on(self) -> bool:
-        """Take a step, and find the balance on it if there is one; False where the way ends."""
+        """Take a step and find an equilibrium on it; False at the end of the travel."""
         from scipy.optimize import brentq
 
         excess, self.found = self._situation.excess, None
@@ -326,24 +326,24 @@ def _no_balance(situation: _Situation, start: float) -> str:
     if tension is not None:
         unit = "N m" if one.tensioner.turns else "N"
         return (
-            f'belt.installed_tension = {tension:.5g} N is not what the tensioner of "{name}" holds: it presses with '
-            f"{one.force(start):.5g} {unit}, and that tension takes {one.force(start) - excess:.5g} {unit}. Set its "
-            "preload to that, or give belt.length in place of the tension, which the tensioner sets then"
+            f'belt.installed_tension = {tension:.5g} N does not balance the tensioner of "{name}": its spring gives '
+            f"{one.force(start):.5g} {unit}, that tension needs {one.force(start) - excess:.5g} {unit}. Set its "
+            "preload to that, or give belt.length instead; the tensioner then sets the tension"
         )
     if excess > 0:
         return (
-            f'the tensioner of "{name}" moves on and on without tensioning the belt enough. '
-            "Shorten the belt, lower the preload, or give stops"
+            f'the tensioner of "{name}" reaches the end of its travel without balancing the belt. '
+            "Shorten the belt, reduce the preload, or give stops"
         )
     return (
-        f'the belt pushes the tensioner of "{name}" away without losing enough tension. '
-        "Lengthen the belt, raise the preload, or give stops"
+        f'the belt pushes the tensioner of "{name}" back without losing enough tension. '
+        "Lengthen the belt, increase the preload, or give stops"
     )
 
 
 def _no_stable_balance(one: Carrier, position: float, tension: float) -> str:
     return (
-        f'with belt.installed_tension = {tension:.5g} N the tensioner of "{one.tensioner.pulley}" balances the belt at '
-        f"{one.tensioner.written(position)}, but not stably: what moves it a little drives it away. Change its pivot "
-        "or direction, raise the rate of its spring, or give stops"
+        f"with belt.installed_tension = {tension:.5g} N the equilibrium of the tensioner of "
+        f'"{one.tensioner.pulley}" at {one.tensioner.written(position)} is unstable. Change its pivot or direction, '
+        "increase its spring rate, or give stops"
     )

@@ -13,7 +13,7 @@ from beltdyn.parts.text_file import parse_toml
 
 
 def tolerances_of(drive: Drive) -> dict[str, float]:
-    """Tolerances of the numbers of a drive, in SI units, by the paths of these.
+    """Tolerances of the numbers of a drive, in SI units, by their paths.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Numbers changed in the text of a drive file, which keeps its comments, its order and its units."""
+"""Change numbers in the text of a drive file and keep its comments, order and units."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ _DIGITS = 10
 
 
 def edited(drive: Drive, changes: Mapping[str, float]) -> str:
-    """The text of a drive with some numbers changed, as its author wrote the rest.
+    """The text of a drive with some numbers changed, and the rest as its author wrote it.
 
     Parameters
     ----------

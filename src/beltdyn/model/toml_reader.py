@@ -18,7 +18,7 @@ Study = TypeVar("Study", bound=Part)
 
 _LONGEST_REASON = 200
 _SECTION = re.compile(r"(?:^|\n\n)(?=[A-Z]\w+\n---)")
-"""Where a section of a docstring begins."""
+"""Start of a section of a docstring."""
 
 
 def load(path: str | pathlib.Path) -> Drive:
@@ -46,7 +46,7 @@ def load(path: str | pathlib.Path) -> Drive:
     20
     """
     path = pathlib.Path(path)
-    return loads(_text_of(path, "A drive file is TOML: `beltdyn new` writes one."), base=path.parent)
+    return loads(_text_of(path, "A drive file is TOML; `beltdyn new` writes one."), base=path.parent)
 
 
 def read_study(path: str | pathlib.Path, kind: type[Study]) -> Study:
@@ -86,13 +86,13 @@ def _text_of(path: pathlib.Path, remedy: str) -> str:
     try:
         return read_text(path, LONGEST_TOML)
     except UnicodeDecodeError as error:
-        raise ModelError(f"{path} is not a text in UTF-8. {remedy}") from error
+        raise ModelError(f"{path} is not UTF-8 text. {remedy}") from error
     except (OSError, ValueError) as error:
-        raise ModelError(f"{path} cannot be read: {reason(error)}. Check its name.") from error
+        raise ModelError(f"{path} cannot be read: {reason(error)}. Check the path.") from error
 
 
 def loads(text: str, base: pathlib.Path | None = None) -> Drive:
-    """Make a drive from the text of a drive file.
+    """Read a drive from the text of a drive file.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def _parse(text: str, file: str) -> dict[str, Any]:
         return parse_toml(text)
     except tomllib.TOMLDecodeError as error:
         told = shorten(error, _LONGEST_REASON)
-        raise ModelError(f"{file} is not valid TOML: {told}. Correct the file there.") from error
+        raise ModelError(f"{file} is not valid TOML: {told}. Correct the file.") from error
     except ValueError as error:
         raise ModelError(f"{file} is not valid TOML: {error}.") from error
 
@@ -144,7 +144,7 @@ def _refers_to_files(data: Any) -> bool:
 
 
 def json_schema() -> dict[str, Any]:
-    """Make the JSON schema of drive files, with which editors check and complete them.
+    """The JSON schema of drive files, for checks and completion in editors.
 
     Returns
     -------

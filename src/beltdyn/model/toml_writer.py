@@ -13,7 +13,7 @@ from beltdyn.parts.toml_edits import Location
 
 
 def dumps(drive: Drive) -> str:
-    """Write a drive as TOML, in SI units and with every default spelled out; tolerances of its file are kept.
+    """Write a drive as TOML, in SI units, with all defaults and tolerances.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def dumps(drive: Drive) -> str:
 
 
 def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
-    """Write a drive as `dumps` does, with tolerances that are told.
+    """Write a drive as `dumps` does, with given tolerances.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
     ModelError
         If a load is a function of Python.
     """
-    refuse_functions(drive, "a drive file cannot hold a function of Python", "keep the drive in a script")
+    refuse_functions(drive, "a drive file cannot hold a Python function", "keep the drive in a script")
     data = drive.data
     for path, size in tolerances.items():
         holder: Any = data
@@ -65,7 +65,7 @@ def spelled_out(drive: Drive, tolerances: Mapping[str, float]) -> str:
 
 
 def location_of(data: Mapping[str, Any], path: str) -> Location:
-    """Where a path of `Drive.with_` leads in the plain data of a drive file.
+    """The location of a path of `Drive.with_` in the plain data of a drive file.
 
     Parameters
     ----------

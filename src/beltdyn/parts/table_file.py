@@ -194,9 +194,7 @@ def read_table(name: object, base: Path | None, width: int | None) -> NumberTabl
     if not isinstance(name, str | Path):
         raise ValueError(f"file = {shorten(name)} must be the path of a CSV file, as text")
     try:
-        separator, lines = read_rows(
-            (base or Path()) / name, ". A relative path starts at the folder of the drive file"
-        )
+        separator, lines = read_rows((base or Path()) / name, ". Relative paths start at the folder of the drive file")
     except ValueError as error:
         raise ValueError(f'file = "{shorten(name)}" {error}') from error
     if len(lines) > _MOST_ROWS:

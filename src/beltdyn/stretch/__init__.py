@@ -1,4 +1,4 @@
-"""Laws of stretch, a law a file: tension over stretch. Importing one here puts it on the list."""
+"""Stretch laws, tension over stretch, one per file; importing one here registers it."""
 
 from beltdyn.kernel import by_type
 from beltdyn.stretch.green import Green as Green

@@ -1,4 +1,4 @@
-"""What a law of stretch provides, and the list of all of them."""
+"""The contract of stretch laws, and their register."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
@@ -9,7 +9,7 @@ from beltdyn.arrays import FloatArray
 
 
 class StretchParameters(Protocol):
-    """Parameters of a law of stretch: a named tuple that knows tension over stretch, and stretch over tension."""
+    """Parameters of a stretch law, a named tuple with tension over stretch and its inverse."""
 
     @property
     def stiffness(self) -> float:
@@ -37,12 +37,12 @@ class Stretching(NamedTuple):
 
 
 class StretchLaw(NamedTuple):
-    """A law of stretch in the list."""
+    """A registered stretch law."""
 
     name: str
     """Its name in a drive file."""
     meaning: str
-    """A phrase that says what it is."""
+    """A short description."""
     record: type[Any]
     """Class of its parameters, a named tuple."""
     stretching: Callable[[Any, float], Stretching]
@@ -50,13 +50,13 @@ class StretchLaw(NamedTuple):
     make: Callable[..., Any]
     """Parameters from the axial stiffness EA (N) of a belt, or from measured points."""
     from_points: bool = False
-    """Whether it is made of strains and tensions (N) that were measured."""
+    """Whether it is made from measured strains and tensions (N)."""
 
 
 LAWS: dict[str, StretchLaw] = {}
-"""All laws of stretch by their names."""
+"""All stretch laws by name."""
 
 
 def register(law: StretchLaw) -> None:
-    """Add a law of stretch to the list."""
+    """Register a stretch law."""
     LAWS[law.name] = law

@@ -1,4 +1,4 @@
-"""Tension in proportion to the elongation, N = EA (g - 1): the axial stiffness as belts are sold and tested with."""
+"""Tension proportional to elongation, N = EA (g - 1): the axial stiffness of catalogues and tests."""
 
 from typing import NamedTuple
 
@@ -49,4 +49,4 @@ def linear(law: Linear, metric: float) -> Stretching:
     )
 
 
-register(StretchLaw("linear", "tension in proportion to the elongation", Linear, linear, Linear))
+register(StretchLaw("linear", "tension proportional to elongation", Linear, linear, Linear))

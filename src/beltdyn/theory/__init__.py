@@ -1,4 +1,4 @@
-"""Closed forms and boundary-value problems of belt theory, to hold simulations against; numbers in, numbers out."""
+"""Closed forms and boundary-value problems of belt theory, for comparison with simulations."""
 
 import lazy_loader
 

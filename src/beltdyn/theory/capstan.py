@@ -1,4 +1,4 @@
-"""Tension ratio of a belt that slides on a pulley (Euler 1769, Eytelwein 1808), also in motion."""
+"""Tension ratio of a sliding belt on a pulley (Euler 1769, Eytelwein 1808), at rest or in motion."""
 
 from math import exp, log
 
@@ -58,7 +58,7 @@ def tight_tension(
 def sliding_angle(
     tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0
 ) -> float:
-    """Arc of sliding ln((T1 - rho A v^2) / (T2 - rho A v^2)) / mu that turns one tension into another, rad.
+    """Sliding arc between two tensions, ln((T1 - rho A v^2) / (T2 - rho A v^2)) / mu, rad.
 
     Parameters are those of `tight_tension`, with the tight tension T1 (N) in place of the angle.
 

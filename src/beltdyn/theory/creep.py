@@ -85,7 +85,7 @@ def creep_speed_loss(tight: float, slack: float, law: StretchParameters, arc: fl
 
 
 def entry_creep(elastic: float, saturation: float, lengths: float) -> float:
-    """Slip velocity v0 at the entry of an arc, which Coulomb's friction does not have.
+    """Slip velocity v0 at the entry of an arc, zero for Coulomb friction.
 
     Below the cap the slip velocity grows e-fold over each layer length, to v0 + V dT / EA at the exit. Where that is
     above v_c, the belt slides from v_c on, after n' layer lengths: v0 = v_c e^-n' with

@@ -33,7 +33,7 @@ def speed_loss(tight: float, slack: float, law: StretchParameters) -> float:
 
 
 def slip_arc(tight: float, slack: float, friction: float, *, mass_per_length: float = 0.0, speed: float = 0.0) -> float:
-    """Angle over which the belt slides before it leaves a pulley, rad; on the rest of the wrap it adheres.
+    """Sliding arc before the exit of a pulley, rad; on the rest of the wrap the belt adheres.
 
     Parameters are those of `capstan.sliding_angle`.
     """
@@ -50,7 +50,7 @@ def entry_strain(
     bent_strain: float,
     loss_factor: float = 0.0,
 ) -> FloatArray:
-    """Strain that a belt has lost against its span where it first touches a pulley, and with it the speed of the rim.
+    """Strain lost by the belt at the entry of a pulley against its span, and the resulting loss of rim speed.
 
     In a span of tension T the belt bends towards a rim of stiffness k.  With q = EI k / T^2 the beam on springs, E I
     d'''' - T d'' + k d = T / R, meets the rim with the curvature kappa and the angle alpha,
@@ -90,7 +90,7 @@ def gross_slip_tensions(
     mass_per_length: float = 0.0,
     speed: float = 0.0,
 ) -> tuple[float, float]:
-    """Tight and slack tension of a drive with equal pulleys at the end of its capacity, where all of the wrap slides.
+    """Tight and slack tension of a drive with equal pulleys at gross slip.
 
     At small strain the belt's length fixes the mean of the tension over the path: with the lifted tension
     T0 = rho A v^2, span l, T1 - T0 = (T2 - T0) e^(mu pi), and arcs with the mean (T1 - T2) / (mu pi),

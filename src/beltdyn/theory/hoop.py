@@ -1,10 +1,10 @@
-"""A belt that runs without load: its tension rho A v^2 bends it around any curve without a force from outside."""
+"""A belt running without load or contact: the tension rho A v^2 balances any curvature."""
 
 from math import sqrt
 
 
 def hoop_tension(mass_per_length: float, speed: float) -> float:
-    """Tension T = rho A v^2 (Routh 1860) of a running belt that nothing presses or holds.
+    """Centrifugal tension T = rho A v^2 (Routh 1860) of a running belt without contact.
 
     Parameters
     ----------

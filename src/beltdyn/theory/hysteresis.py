@@ -1,4 +1,4 @@
-"""Energy that hysteresis takes from a metre of belt: bending on to a pulley and off, tension, being pressed in.
+"""Hysteresis loss per metre of belt: bending onto and off a pulley, tension, compression.
 
 A material with the loss factor eta = tan delta = E''/E' loses in a cycle of the strain between two values
 
@@ -38,7 +38,7 @@ STRETCH_SHARE: Final = 0.5 * pi
 
 
 def bending_loss(bending_stiffness: float, loss_factor: float, radii: FloatArray) -> FloatArray:
-    """Energy lost by a metre of belt on each pulley, J/m, which is a force in N that holds the belt back.
+    """Bending loss per metre of belt on each pulley, J/m, equal to a resisting force in N.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def bending_loss(bending_stiffness: float, loss_factor: float, radii: FloatArray
 
 
 def stretch_loss(axial_stiffness: float, loss_factor: float, tight: float, slack: float) -> float:
-    """Energy lost by a metre of belt whose tension goes from slack to tight and back, J/m.
+    """Loss per metre of belt over a tension cycle from slack to tight and back, J/m.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def stretch_loss(axial_stiffness: float, loss_factor: float, tight: float, slack
 
 
 def deepest(stiffness: float) -> float:
-    """Depth to which a belt sinks in where it bends on to a pulley, over that along the arc.
+    """Penetration at the ends of an arc over that along the arc.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def deepest(stiffness: float) -> float:
 def compression_loss(
     tension: float, bending_stiffness: float, contact_stiffness: float, loss_factor: float, radii: FloatArray
 ) -> FloatArray:
-    """Energy lost by a metre of belt as it is pressed into each pulley and comes out, J/m.
+    """Compression loss per metre of belt on each pulley, J/m.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ class OpenBelt(NamedTuple):
     span: float
     """Length of each span, m."""
     tilt: float
-    """Angle that the spans make with the line of centres, towards the second pulley where positive, rad."""
+    """Angle between the spans and the line of centres, positive towards the second pulley, rad."""
     wrap: tuple[float, float]
     """Wrap angles, rad."""
     length: float

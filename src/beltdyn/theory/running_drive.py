@@ -29,7 +29,7 @@ _X, _Y, _SECTION, _SECTION_RATE, _FORCE_X, _FORCE_Y, _TORQUE = range(7)
 
 @dataclass(frozen=True)
 class RunningDrive:
-    """A drive that runs counter-clockwise: driver at the origin, driven pulley at (distance, 0).
+    """A drive in counter-clockwise rotation: driver at the origin, driven pulley at (distance, 0).
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Lowest frequency of a span that sags a little under its weight (Irvine and Caughey 1974), with bending stiffness.
+"""Lowest frequency of a slightly sagging span (Irvine and Caughey 1974), with bending stiffness.
 
 A parabola between ends that hold it is stretched as it swings, since it sags.  With the weight w per length across it
 
@@ -16,7 +16,7 @@ _SMALLEST = 1e-12
 
 
 def sag_parameter(weight: float, length: float, tension: float, axial_stiffness: float) -> float:
-    """Irvine's parameter lambda^2: how much the sag stiffens the span, 1.
+    """Irvine's parameter lambda^2 for the stiffening by sag, 1.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def sag_parameter(weight: float, length: float, tension: float, axial_stiffness:
 def lowest_frequency(
     length: float, tension: float, mass: float, *, bending: float = 0.0, sag_parameter: float = 0.0
 ) -> float:
-    """Lowest frequency at which a span swings across in its plane, Hz.
+    """Lowest frequency of transverse vibration of a span in its plane, Hz.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Flutter of a belt that slides on its pulley: friction follows the normal force, and couples it with waves of stretch.
+"""Flutter of a sliding belt: friction couples the normal force with longitudinal waves.
 
 On an arc let w be the displacement outwards and u that along the belt, both as exp(i q x + s t).  The belt stretches by
 u' + w / R, presses less by k_p w + c_p dw/dt, and where it slides friction is mu times that, whatever u does:
@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 _SHORTEST = 20.0
-"""Largest wave number looked at, over that of the waves in tune."""
+"""Largest wave number considered, over that of the tuned waves."""
 _WAVES = 4000
 
 
@@ -32,7 +32,7 @@ class Flutter(NamedTuple):
 
 
 class SlidingBelt(NamedTuple):
-    """A belt that slides on a pulley of radius R."""
+    """A belt sliding on a pulley of radius R."""
 
     mass_per_length: float
     """m, kg/m."""
@@ -70,7 +70,7 @@ def flutter_at(belt: SlidingBelt, wave_number: float) -> Flutter:
 
 
 def fastest_flutter(belt: SlidingBelt) -> Flutter:
-    """The wave that grows fastest of all on an arc without ends: a bound for arcs of which a part slides.
+    """The fastest growing wave on an infinite arc, a bound for partly sliding arcs.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ from beltdyn.stretch import StretchParameters
 from beltdyn.theory.path import open_belt
 
 _DEEPEST = 0.15
-"""Tension over k_p R^2 that is still looked at; beyond 1/6, a belt R/3 deep, none is in balance."""
+"""Largest tension over k_p R^2 considered; above 1/6, a penetration of R/3, there is no equilibrium."""
 
 
 class StaticTension(NamedTuple):
@@ -32,7 +32,7 @@ def static_tension(
     contact_stiffness: float,
     bending_stiffness: float = 0.0,
 ) -> StaticTension:
-    """Tension for which the stretched belt is as long as its path around two pulleys.
+    """Tension at which the stretched belt has the length of its path around two pulleys.
 
     On the arcs the belt presses with k_p d = T g / (R - d) per reference length.  There the tension is that of the
     spans, T0, plus k_p d^2 / 2 g, since a radial force does work on a belt that sinks in, less 2 EI kappa^2 for
@@ -82,8 +82,8 @@ def static_tension(
     least = max(1e-3 * most, 4.0 * bending_stiffness / min(radii) ** 2)
     if not least < most or _path(belt, least)[1] < length:
         raise ModelError(
-            f"length = {length:g} m leaves the belt slack around pulleys of {radii[0]:g} and {radii[1]:g} m at "
-            f"{distance:g} m, or so stiff in bending that it does not follow them. Shorten it."
+            f"length = {length:g} m is too long: around pulleys of {radii[0]:g} and {radii[1]:g} m at {distance:g} m "
+            "the belt is slack, or too stiff in bending to follow them. Shorten it."
         )
     found = float(brentq(lambda tension: _path(belt, tension)[1] - length, least, most))
     one, other = _arcs(belt, found)

@@ -1,4 +1,4 @@
-"""Stretch of a belt at rest that sinks into its pulleys; the laws of stretch themselves are in `beltdyn.stretch`."""
+"""Stretch of a belt at rest with penetration; the stretch laws are in `beltdyn.stretch`."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from beltdyn.stretch import StretchParameters
 
 
 def stretch_with_penetration(length: float, path: float, law: StretchParameters, sinking: float) -> float:
-    """Stretch g of a belt at rest that sinks into its pulleys: the root of g length + sinking T g = path, T of g.
+    """Stretch g of a belt at rest with penetration: the root of g length + sinking T g = path, T of g.
 
     Parameters
     ----------

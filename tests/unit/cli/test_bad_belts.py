@@ -49,7 +49,7 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     "half a rib": ('profile = "PK"\nribs = 5.5', ("belt.ribs = 5.5 must be a whole number",)),
     "ribs of a flat belt": (
         'profile = "flat-aramid"\nribs = 6\nwidth = 0.02',
-        ('ribs = 6 does not fit profile "flat-aramid"', "sold by width", "Give width"),
+        ('ribs = 6 is incompatible with profile "flat-aramid"', "sold by width", "Give width"),
     ),
     "flat belt without width": ('profile = "flat-aramid"', ("width is missing", "is sold by width", "Give it")),
     "round belt without diameter": ('profile = "round-85A"', ("diameter is missing", "is sold by diameter")),
@@ -105,11 +105,14 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     "negative damping": (f"{SIZE}{STIFF}stretch_damping_time = -1", ("must be at least 0", "Give the time")),
     "damped truss": (
         f'{SIZE}{STIFF}bending_damping_time = 1e-3\nelements = 21\ndiscretization = "truss"',
-        ('bending_damping_time = 0.001 s does not fit discretization = "truss"', 'set discretization = "ancf"'),
+        ('bending_damping_time = 0.001 s is incompatible with discretization = "truss"', 'set discretization = "ancf"'),
     ),
     "beam with hysteresis": (
         f'{SIZE}{STIFF}stretch_loss_factor = 0.1\nelements = 21\ndiscretization = "three-node-beam"',
-        ('stretch_loss_factor = 0.1 does not fit discretization = "three-node-beam"', "Set stretch_loss_factor = 0"),
+        (
+            'stretch_loss_factor = 0.1 is incompatible with discretization = "three-node-beam"',
+            "Set stretch_loss_factor = 0",
+        ),
     ),
     "large loss factor": (f"{SIZE}{STIFF}bending_loss_factor = 2", ("belt.bending_loss_factor = 2 must be at most 1",)),
     "two losses of bending": (

@@ -36,7 +36,7 @@ CASES = (
         "misspelled profile key",
         "end = 0.6, value = 12.0",
         "stop = 0.6, value = 12.0",
-        ("pulley[driver].speed.end is missing", "when the rise ends"),
+        ("pulley[driver].speed.end is missing", "the end of the rise"),
     ),
     Case("missing length", BELT, "", ("belt: length is missing", "unstretched length", "installed_tension")),
     Case(
@@ -58,9 +58,7 @@ CASES = (
         f'{DRIVEN}\nside = "outside"',
         ("the belt would cross itself", 'Set side = "inside" for "driven"', "belt.crossed = true"),
     ),
-    Case(
-        "crossed without crossing", BELT, f"{BELT}\ncrossed = true", ("no spans cross each other", 'side = "outside"')
-    ),
+    Case("crossed without crossing", BELT, f"{BELT}\ncrossed = true", ("no spans cross", 'side = "outside"')),
     Case(
         "negative penetration",
         "stiffness = 1e7",
@@ -365,7 +363,7 @@ CASES = (
         "pulley inside",
         "[contact]",
         f"{THIRD}center = [0, 0]\nradius = 0.05\n[contact]",
-        ('pulley "idler" is not touched', "Move it outwards"),
+        ('does not touch pulley "idler"', "Move it outwards"),
     ),
     # files
     Case("not TOML", BELT, "length: 1.2727", ("not valid TOML", "line")),

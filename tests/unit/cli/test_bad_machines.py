@@ -24,13 +24,13 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "harmonics without speed": (
         "driven",
         "harmonics = [{ order = 2, amplitude = 0.1 }]",
-        ("pulley[driven] has harmonics but no speed", "Give speed"),
+        ("pulley[driven] has harmonics but no speed", "Give the mean speed"),
     ),
     "harmonic without order": ("driver", "harmonics = [{ amplitude = 0.1 }]", ("harmonics[1].order is missing",)),
     "harmonic of order zero": (
         "driver",
         "harmonics = [{ order = 0, amplitude = 0.1 }]",
-        ("pulley[driver].harmonics[1].order = 0 must be greater than 0", "waves in a turn"),
+        ("pulley[driver].harmonics[1].order = 0 must be greater than 0", "waves per turn"),
     ),
     "phase in mm": (
         "driver",
@@ -68,7 +68,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "negative resistance": (
         "driven",
         f"{RESISTANCE}constant = -1 }}]",
-        ("load[1].constant = -1 must be at least 0", "Give the part that does not depend on the speed"),
+        ("load[1].constant = -1 must be at least 0", "Give the part independent of speed"),
     ),
     "linear resistance in N m": (
         "driven",
@@ -98,7 +98,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "motor that stands": (
         "driven",
         MOTOR.replace("100", "0"),
-        ("synchronous_speed = 0 leaves the slip undefined", "Give another speed"),
+        ("synchronous_speed = 0 leaves the slip undefined", "Give a speed other than zero"),
     ),
     "motor in hertz": ("driven", MOTOR.replace("100", '"25 Hz"'), ("synchronous_speed", "ambiguous", '"1500 rpm"')),
     # schedules
@@ -133,7 +133,7 @@ PULLEYS: dict[str, tuple[str, str, tuple[str, ...]]] = {
         ONE_WAY.replace(", inertia = 0.1", ""),
         ("pulley[driven]: hub[1] has no inertia", "Give an inertia above zero"),
     ),
-    "rim without inertia": ("driver", ISOLATOR, ("pulley[driver] has a hub chain but no inertia", "its rim turns")),
+    "rim without inertia": ("driver", ISOLATOR, ("pulley[driver] has a hub chain but no inertia", "free rim")),
     "clutch of a third sense": (
         "driven",
         ONE_WAY.replace("inertia", 'drives = "ccw", inertia'),
@@ -173,7 +173,7 @@ TENSIONERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "take-up in N": (f'{FIXED}take_up = "1 N"', ("tensioner[driven].take_up", "must be in units of m")),
     "take-up that slackens": (f'{FIXED}take_up = "-5 mm"', ("would hang slack", "Shorten it, or move the pulleys")),
     # sliding
-    "no direction at all": (SLIDING.replace("[1, 0]", "[0, 0]"), ("points nowhere", "Give the direction")),
+    "no direction at all": (SLIDING.replace("[1, 0]", "[0, 0]"), ("has zero length", "Give the direction")),
     "direction in space": (
         SLIDING.replace("[1, 0]", "[1, 0, 0]"),
         ("[driven].direction", "more than 2 entries"),
@@ -181,31 +181,37 @@ TENSIONERS: dict[str, tuple[str, tuple[str, ...]]] = {
     "direction inwards": (SLIDING.replace("[1, 0]", "[-1, 0]"), ("cannot tension the belt", "Choose a direction")),
     "no preload": (
         SLIDING.replace("preload = 100\n", ""),
-        ("[driven].preload is missing", "force of the spring"),
+        ("[driven].preload is missing", "spring force"),
     ),
     "preload in N m": (SLIDING.replace("100", '"5 N m"'), ("tensioner[driven].preload", 'units of N, not "N m"')),
-    "preload that pulls": (SLIDING.replace("100", "-100"), ('pushes the tensioner of "driven" away', "raise the prel")),
-    "no preload to hold": (SLIDING.replace("100", "0"), ("where its tensioners put them", "or raise the preload")),
-    "preload without end": (SLIDING.replace("100", "1e6"), ("too short", "1803%", "or lower the preload")),
-    "negative rate": (f"{SLIDING}rate = -1", ("tensioner[driven].rate = -1 must be at least 0", "Give the rate")),
+    "preload that pulls": (
+        SLIDING.replace("100", "-100"),
+        ('pushes the tensioner of "driven" back', "increase the prel"),
+    ),
+    "no preload to hold": (SLIDING.replace("100", "0"), ("as placed by the tensioners", "or increase the preload")),
+    "preload without end": (SLIDING.replace("100", "1e6"), ("too short", "1803%", "or reduce the preload")),
+    "negative rate": (
+        f"{SLIDING}rate = -1",
+        ("tensioner[driven].rate = -1 must be at least 0", "Give the spring rate"),
+    ),
     "rate about a pivot": (f'{SLIDING}rate = "1 N m/rad"', ("tensioner[driven].rate", "must be in units of N/m")),
     "negative dry friction": (f"{SLIDING}yielding_friction = -1", ("yielding_friction = -1 must be at least 0",)),
-    "nothing moves": (SLIDING.replace("mass = 1", "mass = 0"), ("moves nothing that has inertia", "Give the pulley's")),
+    "nothing moves": (SLIDING.replace("mass = 1", "mass = 0"), ("has no moving mass", "Give the mass")),
     # stops
     "stops in wrong order": (
         f"{SLIDING}stops = [0.01, -0.01]\nstop_stiffness = 1e5",
-        ("tensioner[driven]: stops = [0.01, -0.01] must be a lower and an upper one", "zero between"),
+        ("tensioner[driven]: stops = [0.01, -0.01] must be a lower and an upper stop", "on both sides of zero"),
     ),
-    "stops beside the center": (f"{SLIDING}stops = [0.01, 0.02]\nstop_stiffness = 1e5", ("with zero between",)),
+    "stops beside the center": (f"{SLIDING}stops = [0.01, 0.02]\nstop_stiffness = 1e5", ("on both sides of zero",)),
     "one stop": (f"{SLIDING}stops = [0.01]\nstop_stiffness = 1e5", ("tensioner[driven].stops[2] is missing",)),
-    "hard stops": (f"{SLIDING}stops = [-0.01, 0.01]", ("stop_stiffness is missing: stops are springs",)),
+    "hard stops": (f"{SLIDING}stops = [-0.01, 0.01]", ("stop_stiffness is missing, but stops are springs",)),
     "stiffness of no stops": (f"{SLIDING}stop_stiffness = 1e5", ("tensioner[driven]: stops is missing", "Give stops")),
     "damping of no stops": (f"{SLIDING}stop_damping = 10", ("tensioner[driven]: stops is missing", "Give stops")),
     # rotary
     "no pivot": (ROTARY.replace("pivot = [0.19, -0.09]\n", ""), ("tensioner[driven].pivot is missing",)),
     "pivot at the center": (ROTARY.replace("[0.19, -0.09]", "[0.191441, 0]"), ("is the center of the pulley",)),
     "dead center": (ROTARY.replace("[0.19, -0.09]", "[0, 0]"), ("hardly changes the length", "Move its pivot")),
-    "arm without inertia": (ROTARY.replace("inertia = 1e-3\n", ""), ("moves nothing that has inertia",)),
+    "arm without inertia": (ROTARY.replace("inertia = 1e-3\n", ""), ("has no moving mass",)),
     "moment in N": (ROTARY.replace("preload = 5", 'preload = "5 N"'), ("tensioner[driven].preload", "units of N*m")),
     "stops in degrees without unit": (
         f"{ROTARY}stops = [-1, 15]\nstop_stiffness = 100",

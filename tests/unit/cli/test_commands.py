@@ -71,7 +71,7 @@ def test_check_of_the_papers_drive(run_main: RunMain, drive_file: Path) -> None:
     for part in ("1.2763 m", "0.281%", "28.19 N", f"{tension:.4g} N: ", "5.8%", "180.0°", "0.3829"):
         assert part in output
     assert "warning: the belt has too few elements for peak pressure" in output
-    assert "warning: the contact of belt and pulleys is so soft that it takes 5.8%" in output
+    assert "warning: the contact between belt and pulleys is so soft that it reduces the belt tension by 5.8%" in output
     assert f"beltdyn check {drive_file} --figure layout.png" in output
 
 
@@ -92,7 +92,7 @@ def test_check_of_a_belt_of_given_tension(run_main: RunMain, drive_file: Path, d
     code, output, _ = run_main(["check", str(drive_file)])
     assert code == 0
     assert "250 N as specified (" in output
-    assert "mm shorter for 250 N than on hard pulleys" in output
+    assert "mm shorter for 250 N than on rigid pulleys" in output
 
 
 def test_check_tells_what_to_expect_at_rest(run_main: RunMain, drive_file: Path, drive_text: str) -> None:

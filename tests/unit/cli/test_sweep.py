@@ -40,7 +40,7 @@ def test_a_sweep_takes_quantities_and_names_its_file(
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"--pulley": "idler"}, "pulley = 'idler' is not in this drive. Its pulleys are: driver, driven."),
+        ({"--pulley": "idler"}, "pulley = 'idler' is not in this drive. Choose one of driver, driven."),
         (
             {"--pulley": "driven"},
             "pulley = 'driven' turns freely, but a sweep needs a prescribed speed. Choose one of driver.",
@@ -95,7 +95,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
     [
         (["--figures", "slips"], "figure 'slips' is unknown. Choose from configuration, contact_forces"),
         (["--figures", "slip,"], "figure '' is not known"),
-        (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Its pulleys are: driver, driven."),
+        (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Choose one of driver, driven."),
         (["--figures", "tensioners"], "this drive has no tensioner that moves"),
         (["--figures", "orders"], "orders need 16 or more"),
         (["--figures", "waterfall", "--variable", "energy"], "Choose from: pulley_speed, pulley_angle, shaft_speed"),

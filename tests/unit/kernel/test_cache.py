@@ -60,7 +60,7 @@ def test_an_unwritable_cache_gives_way_to_a_temporary_one(tmp_path: Path, monkey
     in_the_way = tmp_path / "file"
     in_the_way.touch()
     monkeypatch.setenv(CACHE_VARIABLE, str(in_the_way))
-    with pytest.warns(KernelCacheWarning, match=f"{re.escape(str(in_the_way))} is not used.*cannot be written"):
+    with pytest.warns(KernelCacheWarning, match=f"{re.escape(str(in_the_way))} is not usable.*cannot be written"):
         folder = kernel_cache()
     assert in_the_way not in folder.parents
     assert folder.is_dir()

@@ -49,7 +49,9 @@ def test_a_change_gives_the_belt_of_the_changed_keys(
 
 
 def test_a_size_that_does_not_fit_is_said(drive: Drive) -> None:
-    with pytest.raises(ModelError, match='ribs = 6 does not fit profile "flat-polyamide", which is sold by width'):
+    with pytest.raises(
+        ModelError, match='ribs = 6 is incompatible with profile "flat-polyamide", which is sold by width'
+    ):
         drive_with(drive, **PK).with_({"belt.profile": "flat-polyamide"})
     with pytest.raises(ModelError, match=r"belt\.ribs = 4\.5 must be a whole number"):
         drive_with(drive, **PK).with_({"belt.ribs": 4.5})

@@ -47,7 +47,7 @@ def test_allowed_penetration_is_that_on_the_smallest_pulley(make_drive: MakeDriv
     ("layout", "belt", "tensioner", "words"),
     [
         ("open", {"length": 1.8, "installed_tension": 400.0}, (), ("both given, with 0 fixed", 'kind = "fixed"')),
-        ("open", {"installed_tension": 1e9}, (), ("installed_tension = 1e+09 N", "50%", "Lower it")),
+        ("open", {"installed_tension": 1e9}, (), ("installed_tension = 1e+09 N", "50%", "Reduce it")),
         (
             "flat",
             {"length": 3.9, "installed_tension": 400.0},
@@ -58,7 +58,7 @@ def test_allowed_penetration_is_that_on_the_smallest_pulley(make_drive: MakeDriv
             "serpentine",
             {"length": 3.0},
             [ROTARY],
-            ("length = 3 m is longer", "where its tensioners put them", "Shorten it, or raise the preload"),
+            ("length = 3 m is longer", "as placed by the tensioners", "Shorten it, or increase the preload"),
         ),
         (
             "flat",
@@ -81,7 +81,7 @@ def test_what_cannot_come_to_rest(
 
 
 def test_penetration_that_takes_all_tension(make_drive: MakeDrive) -> None:
-    with pytest.raises(ModelError, match="loses all tension, since it sinks"):
+    with pytest.raises(ModelError, match="sinks into the pulleys and loses all tension"):
         make_drive("open", length=1.81, contact={"allowed_penetration": 5e-3})
 
 
@@ -218,12 +218,14 @@ def test_a_tightened_belt_of_given_length_takes_up_more(make_drive: MakeDrive) -
 
 def test_what_is_open_has_no_value_before_the_drive(make_drive: MakeDrive) -> None:
     drive = make_drive("flat", contact={"allowed_penetration": 1e-5}, installed_tension=200.0)
-    with pytest.raises(ModelError, match=r"belt\.length is open.* installed_tension = 200 N\. Take belt_length"):
+    with pytest.raises(ModelError, match=r"belt\.length is open.* installed_tension = 200 N\. Use drive.belt_length"):
         _ = drive.belt.given_length
-    with pytest.raises(ModelError, match=r"contact\.stiffness is open\. Take the contact that a drive completes"):
+    with pytest.raises(ModelError, match=r"contact\.stiffness is open; the drive chooses it\. Use drive\.completed"):
         _ = drive.contact.given("stiffness")
 
 
 def test_a_penetration_that_no_stiffness_keeps_to(make_drive: MakeDrive) -> None:
-    with pytest.raises(ModelError, match=r"allowed_penetration = 1e-13 m takes a stiffness .* too large.* Allow more"):
+    with pytest.raises(
+        ModelError, match=r"allowed_penetration = 1e-13 m needs an invalid contact stiffness.* too large.* Increase it"
+    ):
         make_drive("open", contact={"allowed_penetration": 1e-13})

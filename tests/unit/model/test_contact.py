@@ -39,7 +39,7 @@ def test_every_law_of_the_normal_force_can_be_chosen(law: str) -> None:
     ("changes", "sentence"),
     [
         ({"allowed_penetration": 1e-4}, "stiffness and allowed_penetration exclude each other. Remove one of them"),
-        ({"creep_rate_factor": None}, 'creep_rate_factor is missing: the friction law "force_slope" needs it'),
+        ({"creep_rate_factor": None}, 'creep_rate_factor is missing, but the friction law "force_slope" needs it'),
         (
             {"creep_velocity": 0.1},
             'creep_velocity belongs to the friction law "coefficient_slope", not to "force_slope"',
@@ -67,7 +67,7 @@ def test_a_law_that_is_not_chosen_leaves_its_parameters_open() -> None:
 def test_numbers_of_computation_may_be_left_open() -> None:
     contact = Contact(friction=0.4)
     assert contact.open_keys == ("stiffness", "damping", "creep_ratio", "standstill_creep")
-    with pytest.raises(ModelError, match=r"contact\.creep_ratio is open\. Take the contact that a drive completes"):
+    with pytest.raises(ModelError, match=r"contact\.creep_ratio is open; the drive chooses it\. Use drive\.completed"):
         _ = contact.friction_parameters
     with pytest.raises(ModelError, match=r"contact\.stiffness is open"):
         _ = contact.normal_parameters

@@ -134,7 +134,7 @@ def test_it_is_told_which_mesh_resolves_pressures() -> None:
     assert finer > given.elements
     assert advise(given, install(given)) == []
     (finding,) = advise(drive({"elements": given.elements}, simulation=run), install(given))
-    assert f"Set belt.elements = {finer} for all of that" in str(finding)
+    assert f"Set belt.elements = {finer} for all of these" in str(finding)
     assert advise(drive({"elements": finer}, simulation=run), install(given)) == []
 
 

@@ -74,7 +74,7 @@ def test_a_belt_with_ends_has_a_mesh_that_travels() -> None:
         "gravity": [0.0, -9.81],
     }
     assert Drive(**ended, simulation=RUN).frame == ("travelling", "since the belt is open")
-    with pytest.raises(ModelError, match='"staying" does not fit an open belt'):
+    with pytest.raises(ModelError, match='"staying" is incompatible with an open belt'):
         Drive(**ended, simulation=RUN | {"frame": "staying"})
 
 
@@ -99,4 +99,4 @@ def test_a_tolerance_of_forces_needs_a_mesh_that_stays() -> None:
     assert drive(simulation={"force_tolerance": 0.01}).frame.stays
     with pytest.raises(ModelError) as caught:
         drive(simulation={"force_tolerance": 0.01, "start": "laid"})
-    assert 'does not fit a mesh that travels, as this one does, since simulation.start = "laid"' in str(caught.value)
+    assert 'refined; the mesh of this drive travels, since simulation.start = "laid"' in str(caught.value)

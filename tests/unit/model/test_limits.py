@@ -26,7 +26,7 @@ def test_a_drive_states_none_by_default(drive: Drive) -> None:
         ({"largest_hub_load": "3 m"}, 'must be in units of N, not "m"'),
         ({"least_margin": 0.0}, "least_margin = 0.0 must be greater than 0"),
         ({"hub_load": 3.0}, 'hub_load is not a known key. Did you mean "largest_hub_load"?'),
-        ({"least_tension": 9.0, "largest_tension": 9.0}, "least_tension = 9 N is not below largest_tension = 9 N"),
+        ({"least_tension": 9.0, "largest_tension": 9.0}, "least_tension = 9 N must be below largest_tension = 9 N"),
     ],
 )
 def test_message(given: dict[str, Any], sentence: str) -> None:

@@ -18,9 +18,9 @@ PLACE = {"name": "one", "center": (0, 0), "radius": 0.1}
     [
         ({"speed": SPEED, "load": [LOAD]}, "speed and load exclude each other"),
         ({"inertia": 1.0, "harmonics": [{"order": 2, "amplitude": 0.1}]}, "has harmonics but no speed"),
-        ({"inertia": 1.0, "hub": [LINK, LINK | {"inertia": 0}]}, "hub[2] has no inertia: the body behind it turns"),
+        ({"inertia": 1.0, "hub": [LINK, LINK | {"inertia": 0}]}, "hub[2] has no inertia, but the body behind it turns"),
         ({"speed": SPEED, "inertia": 1.0, "hub": [LINK | {"inertia": 0}, LINK]}, "hub[1] has no inertia"),
-        ({"speed": SPEED, "hub": [LINK]}, "has a hub chain but no inertia: its rim turns freely"),
+        ({"speed": SPEED, "hub": [LINK]}, "has a hub chain but no inertia of its free rim"),
         ({"inertia": 1.0, "mass": -1.0}, "pulley.mass = -1.0 must be at least 0. Give the mass of the pulley"),
         ({"inertia": 1.0, "hub": [{"kind": "isolator"}]}, "pulley.hub[1].stiffness is missing. Give the torque over"),
         ({"inertia": 1.0, "hub": [{"stiffness": 1.0}]}, "has no kind"),
@@ -90,5 +90,5 @@ def test_schema_knows_the_diameter() -> None:
 def test_a_pulley_lies_in_the_plane() -> None:
     with pytest.raises(ModelError) as caught:
         Pulley(name="turned", center=(0.0, 0.0, 0.1), radius=0.1, inertia=1.0)
-    assert "three coordinates, but drives are planar: shafts are parallel" in str(caught.value)
+    assert "three coordinates, but drives are planar, with parallel shafts" in str(caught.value)
     assert "quarter-turn" in str(caught.value)

@@ -58,7 +58,7 @@ def test_said_are_errors_and_meshes_from_the_most_demanding_on(drive: Drive) -> 
     needed = dict.fromkeys(ERROR_LIMITS, 20) | {"tension": 47, "peak pressure": 90}
     (finding,) = unresolved(errors, needed, pressures=True)
     assert finding.fault == "the belt has too few elements for peak pressure (over 100%) and tension (12%)."
-    assert finding.remedy == "Set belt.elements = 90 for all of that, or 47 for all but peak pressure."
+    assert finding.remedy == "Set belt.elements = 90 for all of these, or 47 for all but peak pressure."
     (of_tension,) = unresolved(errors, needed, pressures=False)
     assert of_tension.fault == "the belt has too few elements for tension (12%)."
     assert unresolved(dict.fromkeys(ERROR_LIMITS, 0.0), needed, pressures=True) == []

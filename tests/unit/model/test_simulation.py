@@ -1,4 +1,4 @@
-"""Settings of a simulation: instants of outputs and of fields, and what does not fit together."""
+"""Settings of a simulation: instants of outputs and of fields, and what is incompatible with together."""
 
 from typing import Any
 
@@ -39,26 +39,29 @@ def test_a_run_that_begins_later_ends_as_much_later() -> None:
     [
         ({"output_interval": 1.5}, "output_interval = 1.5 s is longer than duration = 1 s. Shorten the interval"),
         ({"field_interval": 9e-4}, "field_interval = 0.0009 s is shorter than output_interval = 0.001 s. Lengthen it"),
-        ({"output_interval": 9e-7}, "asks for 1.11e+06 outputs, and 1,000,000 is the limit. Lengthen the interval"),
+        ({"output_interval": 9e-7}, "requires 1.11e+06 outputs; the limit is 1,000,000. Lengthen the interval"),
         ({"output_interval": 1.0 + 1e-9}, "output_interval = 1.000000001 s is longer than duration = 1 s"),
-        ({"max_step": 1e-15}, "max_step = 1e-15 s asks for 1e+15 time steps at least, and 1,000,000,000 is the limit"),
+        ({"max_step": 1e-15}, "max_step = 1e-15 s requires at least 1e+15 time steps; the limit is 1,000,000,000"),
         ({"rtol": 1.0}, "must be less than 1"),
         ({"spectral_radius": -0.1}, "must be at least 0"),
         ({"integrator": "euler"}, "is not a valid choice"),
         (
             {"start_at": 0.5},
-            'start_at = 0.5 s does not fit start = "equilibrium", a belt at rest. Set start = "steady"',
+            'start_at = 0.5 s is incompatible with start = "equilibrium", a belt at rest. Set start = "steady"',
         ),
         ({"start": "steady", "start_at": -0.5}, "must be at least 0"),
-        ({"frame": "travelling", "force_tolerance": 0.01}, 'does not fit frame = "travelling", which is not refined'),
+        (
+            {"frame": "travelling", "force_tolerance": 0.01},
+            'is incompatible with frame = "travelling", which is not refined',
+        ),
         (
             {"frame": "staying", "mesh": "uniform", "force_tolerance": 0.01},
-            'does not fit mesh = "uniform", which is not',
+            'is incompatible with mesh = "uniform", which is not',
         ),
         ({"frame": "staying", "force_tolerance": 1.0}, "must be less than 1"),
-        ({"frame": "staying", "start": "laid"}, 'start = "laid" does not fit frame = "staying". Set start'),
-        ({"frame": "staying", "integrator": "bdf"}, 'integrator = "bdf" does not fit frame = "staying"'),
-        ({"frame": "staying", "joint": "multipliers"}, 'joint = "multipliers" does not fit frame = "staying"'),
+        ({"frame": "staying", "start": "laid"}, 'start = "laid" is incompatible with frame = "staying". Set start'),
+        ({"frame": "staying", "integrator": "bdf"}, 'integrator = "bdf" is incompatible with frame = "staying"'),
+        ({"frame": "staying", "joint": "multipliers"}, 'joint = "multipliers" is incompatible with frame = "staying"'),
     ],
 )
 def test_what_does_not_fit_is_refused(settings: dict[str, Any], sentence: str) -> None:

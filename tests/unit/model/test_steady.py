@@ -20,7 +20,7 @@ def test_it_survives_the_file(drive: Drive) -> None:
     [
         ({"mesh": "fine"}, "mesh"),
         ({"force_tolerance": 1.5}, "force_tolerance = 1.5 must be less than 1"),
-        ({"mesh": "uniform", "force_tolerance": 0.1}, 'force_tolerance = 0.1 does not fit mesh = "uniform"'),
+        ({"mesh": "uniform", "force_tolerance": 0.1}, 'force_tolerance = 0.1 is incompatible with mesh = "uniform"'),
     ],
 )
 def test_message(given: dict[str, Any], sentence: str) -> None:

@@ -73,13 +73,13 @@ def test_a_drive_with_a_curve_is_written_and_read(drive: Drive) -> None:
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"stretch_law": "measured", "axial_stiffness": 1e4}, "needs the curve. Give"),
-        ({"stretch_curve": CURVE, "stretch_law": "green"}, 'does not fit stretch_law = "green"'),
+        ({"stretch_law": "measured", "axial_stiffness": 1e4}, "needs a curve. Give"),
+        ({"stretch_curve": CURVE, "stretch_law": "green"}, 'is incompatible with stretch_law = "green"'),
         ({"stretch_curve": CURVE, "axial_stiffness": 1e4}, "exclude each other"),
         ({"stretch_curve": {"strains": [0.0, 0.1], "tensions": [0.0, 0.0]}}, "tensions must increase"),
         ({"stretch_curve": {"strains": [0.2, 0.1], "tensions": [1.0, 2.0]}}, "strains must increase"),
-        ({"stretch_curve": {"strains": [0.0, 0.1], "tensions": [5.0, 9.0]}}, "begins without strain and tension"),
-        ({"stretch_curve": {"strains": [0.0], "tensions": [0.0]}}, "no point with a strain"),
+        ({"stretch_curve": {"strains": [0.0, 0.1], "tensions": [5.0, 9.0]}}, "must start at the origin"),
+        ({"stretch_curve": {"strains": [0.0], "tensions": [0.0]}}, "no point above zero strain"),
         ({"stretch_curve": {"strains": [0.1], "tensions": [5.0], "unit": 1}}, "belt.stretch_curve.unit"),
     ],
 )

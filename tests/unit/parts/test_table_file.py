@@ -37,7 +37,7 @@ def test_a_relative_path_starts_at_the_folder_of_the_drive(write: Any) -> None:
     path = write("0,1\n2,3\n")
     found = read_table(path.name, path.parent, 2)
     assert found == read_table(str(path), None, 2) == (("", ""), [[0.0, 1.0], [2.0, 3.0]])
-    with pytest.raises(ValueError, match=r'file = "points\.csv" cannot be read: .* starts at the folder of the drive'):
+    with pytest.raises(ValueError, match=r'file = "points\.csv" cannot be read: .* start at the folder of the drive'):
         read_table("points.csv", path.parent / "elsewhere", 2)
 
 

@@ -36,5 +36,5 @@ def test_friction_with_its_limits(run: Run, ax: Axes) -> None:
 
 @pytest.mark.parametrize("pulley", ["idler", 2, -1])
 def test_unknown_pulley_is_a_model_error(run: Run, ax: Axes, pulley: str | int) -> None:
-    with pytest.raises(ModelError, match="Its pulleys are: driver, driven"):
+    with pytest.raises(ModelError, match="Choose one of driver, driven"):
         plot.contact_forces(run, pulley, ax=ax)

@@ -84,7 +84,7 @@ def test_files_hold_a_panel_for_each_span(run_up: Run, tmp_path: Path) -> None:
         ({"variable": "energy"}, "Choose from: pulley_speed, pulley_angle, span_tension"),
         ({"of": "driver"}, "Choose one of driver-driven, driven-driver"),
         ({"of": 2}, "Choose one of driver-driven, driven-driver"),
-        ({"pulley": "idler"}, "Its pulleys are: driver, driven"),
+        ({"pulley": "idler"}, "Choose one of driver, driven"),
     ],
 )
 def test_what_is_not_there_is_a_model_error(run_up: Run, ax: Axes, wrong: dict[str, Any], message: str) -> None:

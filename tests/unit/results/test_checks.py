@@ -118,7 +118,7 @@ def test_the_driver_need_not_come_first(turning: Callable[..., Run], run: Run) -
 
 
 LAW = 'friction_law = "force_slope"\ncreep_rate_factor = 1e5'
-LEAVE_OUT = "leave out contact.friction_law and contact."
+LEAVE_OUT = "omit contact.friction_law and contact."
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ LEAVE_OUT = "leave out contact.friction_law and contact."
     [
         (LAW, f"{LEAVE_OUT}creep_rate_factor:"),
         ('friction_law = "coefficient_slope"\ncreep_velocity = 0.1', f"{LEAVE_OUT}creep_velocity:"),
-        ("creep_ratio = 0.05", "lower contact.creep_ratio = 5.0e-02 to 5e-03"),
+        ("creep_ratio = 0.05", "reduce contact.creep_ratio from 5.0e-02 to 5e-03"),
     ],
 )
 def test_slip_of_the_friction_law(

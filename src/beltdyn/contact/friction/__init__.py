@@ -1,4 +1,4 @@
-"""Friction laws, a law a file (Eqs. 20 and 22, Fig. 3): importing one here puts it on the list."""
+"""Friction laws, one per file (Eqs. 20 and 22, Fig. 3); importing one here registers it."""
 
 from beltdyn.contact.friction.coefficient_slope import CoefficientSlope as CoefficientSlope
 from beltdyn.contact.friction.force_slope import ForceSlope as ForceSlope

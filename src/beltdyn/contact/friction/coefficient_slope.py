@@ -22,7 +22,7 @@ class CoefficientSlope(NamedTuple):
         return np.full(np.broadcast_shapes(*map(np.shape, (normal, friction, rim))), self.creep_velocity)
 
     def smoothed(self, factor: float) -> "CoefficientSlope":
-        """Fully used at a slip velocity that is larger by a factor."""
+        """The law with its saturation at a slip velocity larger by a factor."""
         return CoefficientSlope(self.creep_velocity * factor)
 
 
@@ -58,5 +58,5 @@ def coefficient_slope(
     return -ratio * slip * normal, -ratio * normal, -ratio * slip, 0.0
 
 
-_KEY = Parameter("creep_velocity", "m/s", "the slip velocity at which friction is fully used")
+_KEY = Parameter("creep_velocity", "m/s", "the slip velocity at which friction saturates")
 register(FrictionLaw("coefficient_slope", CoefficientSlope, coefficient_slope, (_KEY,)))

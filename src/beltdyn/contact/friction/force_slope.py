@@ -23,7 +23,7 @@ class ForceSlope(NamedTuple):
         return np.broadcast_to(creep, np.broadcast_shapes(np.shape(creep), np.shape(rim)))
 
     def smoothed(self, factor: float) -> "ForceSlope":
-        """Fully used at a slip velocity that is larger by a factor."""
+        """The law with its saturation at a slip velocity larger by a factor."""
         return ForceSlope(self.creep_rate_factor / factor)
 
 

@@ -1,4 +1,4 @@
-"""What a friction law provides, and the list of all of them."""
+"""The contract of friction laws, and their register."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
@@ -10,10 +10,10 @@ from beltdyn.contact.parameter import Parameter
 
 
 class FrictionParameters(Protocol):
-    """Parameters of a friction law: a named tuple of numbers, which knows where the law saturates."""
+    """Parameters of a friction law, a named tuple of numbers with its saturation."""
 
     def saturation(self, normal: ArrayLike, friction: ArrayLike, rim: ArrayLike) -> FloatArray:
-        """Slip velocity at which friction is fully used, m/s.
+        """Slip velocity at which friction saturates, m/s.
 
         Parameters
         ----------
@@ -26,11 +26,11 @@ class FrictionParameters(Protocol):
         """
 
     def smoothed(self, factor: float) -> Any:
-        """The same law, with friction fully used at a slip velocity that is larger by a factor."""
+        """The same law with its saturation at a slip velocity larger by a factor."""
 
 
 class FrictionLaw(NamedTuple):
-    """A friction law in the list."""
+    """A registered friction law."""
 
     name: str
     """Its name in a drive file."""
@@ -48,5 +48,5 @@ LAWS: dict[str, FrictionLaw] = {}
 
 
 def register(law: FrictionLaw) -> None:
-    """Add a friction law to the list."""
+    """Register a friction law."""
     LAWS[law.name] = law

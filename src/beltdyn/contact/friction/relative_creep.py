@@ -1,4 +1,4 @@
-"""Coulomb friction, used in part up to a creep velocity that grows with the speed of the rim.
+"""Coulomb friction, regularised below a creep velocity proportional to rim speed.
 
 f_t = -mu f_n clip(v_t / v_c, -1, 1) with v_c = sqrt((s v_r)^2 + v_0^2), where v_r is the speed of the rim.  Elastic
 creep is a fraction of the belt's speed too, so that one creep ratio s serves from a crawl to full speed.
@@ -30,7 +30,7 @@ class RelativeCreep(NamedTuple):
         return np.broadcast_to(creep, np.broadcast_shapes(np.shape(creep), np.shape(normal), np.shape(friction)))
 
     def smoothed(self, factor: float) -> "RelativeCreep":
-        """Fully used at a slip velocity that is larger by a factor."""
+        """The law with its saturation at a slip velocity larger by a factor."""
         return RelativeCreep(self.creep_ratio * factor, self.standstill_creep * factor)
 
 
@@ -69,8 +69,6 @@ def relative_creep(
     return force, -share * normal, -share * slip, -force * law.creep_ratio * scaled / (creep * creep)
 
 
-_RATIO = Parameter(
-    "creep_ratio", "", "the slip velocity over the speed of the rim at which friction is fully used", found=True
-)
-_STANDSTILL = Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at a standstill", found=True)
+_RATIO = Parameter("creep_ratio", "", "the slip velocity at which friction saturates, over the rim speed", found=True)
+_STANDSTILL = Parameter("standstill_creep", "m/s", "the same slip velocity on a pulley at standstill", found=True)
 register(FrictionLaw("relative_creep", RelativeCreep, relative_creep, (_RATIO, _STANDSTILL)))

@@ -1,4 +1,4 @@
-"""Laws of the normal force, a law a file (Eq. 17): importing one here puts it on the list."""
+"""Laws of the normal force, one per file (Eq. 17); importing one here registers it."""
 
 from beltdyn.contact.normal.law import LAWS as LAWS
 from beltdyn.contact.normal.law import NormalForce as NormalForce

@@ -1,4 +1,4 @@
-"""What a law of the normal force provides, and the list of all of them."""
+"""The contract of laws of the normal force, and their register."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, Self
@@ -11,7 +11,7 @@ class NormalParameters(Protocol):
 
     @property
     def stiffness(self) -> float:
-        """k_p, N/m^2: how the force at rest grows with penetration; estimates of the belt at rest go by it."""
+        """k_p, N/m^2: the stiffness at rest, used by estimates of the belt at rest."""
 
     @property
     def damping(self) -> float:
@@ -31,13 +31,13 @@ class NormalForce(NamedTuple):
     by_rate: float
     """df_n/d(dd/dt), N s/m^2."""
     elastic: float
-    """The part of f_n that is stored and given back, which depends on d alone, N/m; the rest is lost."""
+    """The elastic part of f_n, which depends on d only, N/m; the rest is dissipated."""
     energy: float
     """Integral of that part over d, J/m."""
 
 
 class NormalLaw(NamedTuple):
-    """A law of the normal force in the list."""
+    """A registered law of the normal force."""
 
     name: str
     """Its name in a drive file."""
@@ -54,5 +54,5 @@ LAWS: dict[str, NormalLaw] = {}
 
 
 def register(law: NormalLaw) -> None:
-    """Add a law of the normal force to the list."""
+    """Register a law of the normal force."""
     LAWS[law.name] = law

@@ -1,4 +1,4 @@
-"""Penalty force that never pulls: f_n = max(k_p d + c_p dd/dt, 0) (Eq. 17 with a maximum)."""
+"""Penalty force that is never tensile: f_n = max(k_p d + c_p dd/dt, 0) (Eq. 17 with a maximum)."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from beltdyn.kernel import kernel
 
 
 class NoPull(NamedTuple):
-    """Parameters of a penalty force that never pulls."""
+    """Parameters of a penalty force that is never tensile."""
 
     stiffness: float
     """k_p, N/m per m of belt, that is N/m^2."""

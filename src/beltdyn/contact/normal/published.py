@@ -1,4 +1,4 @@
-"""Penalty force as printed: f_n = k_p d + c_p dd/dt (Eq. 17); a belt that leaves fast is pulled back by the damper."""
+"""Penalty force as published: f_n = k_p d + c_p dd/dt (Eq. 17); the damper pulls back a belt that leaves fast."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from beltdyn.kernel import kernel
 
 
 class Published(NamedTuple):
-    """Parameters of the penalty force as printed."""
+    """Parameters of the penalty force as published."""
 
     stiffness: float
     """k_p, N/m per m of belt, that is N/m^2."""

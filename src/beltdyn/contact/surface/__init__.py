@@ -1,4 +1,4 @@
-"""Surfaces of pulleys: the smooth circle, and kinds that depend on the angle of the pulley, a kind a file.
+"""Surfaces of pulleys: the smooth circle, and kinds that depend on the pulley angle, one per file.
 
 Importing a kind here puts it on the list.  A drive whose pulleys are all round has a system of its own type, whose
 kernels know of nothing else.
@@ -25,18 +25,18 @@ SHAPE = record(
     reach="f8",  # how far the surface goes beyond it, m
     **{parameter.name: "f8" for kind in KINDS.values() for parameter in kind.parameters},
 )
-"""The surface of a pulley; only the parameters of its kind count."""
+"""The surface of a pulley; only the parameters of its kind are used."""
 
 
 class RoundRims(NamedTuple):
-    """The surfaces of pulleys that are all smooth circles."""
+    """Surfaces of pulleys, all smooth circles."""
 
     radius: FloatArray
     """Effective radii, m, shape (P,)."""
 
 
 class ShapedRims(NamedTuple):
-    """The surfaces of pulleys of which some are not smooth circles."""
+    """Surfaces of pulleys, some of them shaped."""
 
     radius: FloatArray
     """Effective radii, m, shape (P,)."""
@@ -90,7 +90,7 @@ def _shaped_reach(surface: Shaped) -> float:
 
 
 outer_radius: Callable[[Any], float] = by_type({Round: _circle_reach, Shaped: _shaped_reach}, "outer_radius")
-"""Radius of the circle about the shaft that holds a surface, m."""
+"""Radius of the circle around a surface, about the shaft, m."""
 
 
 def _either(others: Any, numbered: tuple[int, Any]) -> Any:

@@ -1,4 +1,4 @@
-"""An eccentric pulley: a circle of the effective radius whose centre lies beside the shaft."""
+"""An eccentric pulley: a circle of the effective radius with its centre off the shaft."""
 
 from collections.abc import Mapping
 from math import cos, sin, sqrt

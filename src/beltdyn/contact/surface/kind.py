@@ -1,4 +1,4 @@
-"""What the surface of a pulley provides that is not a smooth circle, and the list of all kinds."""
+"""The contract of shaped pulley surfaces, and their register."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -7,7 +7,7 @@ from beltdyn.contact.parameter import Parameter
 
 
 class Gap(NamedTuple):
-    """Where a point stands against a surface."""
+    """Position of a point relative to a surface."""
 
     penetration: float
     """Distance from the surface, m, positive inside."""
@@ -19,7 +19,7 @@ class Gap(NamedTuple):
 
 
 class SurfaceKind(NamedTuple):
-    """A kind of surface in the list."""
+    """A registered kind of surface."""
 
     name: str
     """Its name in a drive file."""
@@ -27,7 +27,7 @@ class SurfaceKind(NamedTuple):
     """Kernel: the gap of a point from its place x, y against the shaft in the frame that turns with the pulley (m), the
     effective radius (m), and the parameters as fields of a record."""
     reach: Callable[[Mapping[str, float]], float]
-    """How far the surface goes beyond the effective radius at most, m, from the parameters."""
+    """Largest deviation beyond the effective radius, m, from the parameters."""
     parameters: tuple[Parameter, ...]
     """Its keys in a drive file, and the fields of the record."""
 
@@ -37,5 +37,5 @@ KINDS: dict[str, SurfaceKind] = {}
 
 
 def register(kind: SurfaceKind) -> None:
-    """Add a kind of surface to the list."""
+    """Register a kind of surface."""
     KINDS[kind.name] = kind

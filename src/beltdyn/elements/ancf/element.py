@@ -1,4 +1,4 @@
-"""What the kernels of the paper's element get as first argument."""
+"""First argument of the kernels of the paper's element."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""The paper's element as others see it: a cubic centreline, and sections that shear (Eqs. 2 and 6)."""
+"""The element kind of the paper: a cubic centreline, and sections with shear (Eqs. 2 and 6)."""
 
 import numpy as np
 
@@ -28,7 +28,7 @@ def _upright(place: FloatArray, slope: FloatArray, _bend: FloatArray) -> FloatAr
 
 ANCF = ElementKind(
     name="ancf",
-    meaning="the paper's",
+    meaning="the paper's element",
     element=Ancf,
     coordinates=("r_x", "r_y", "dr_x/dx", "dr_y/dx", "dr_x/dy", "dr_y/dy"),
     vectors=(0, 2, 6, 8),

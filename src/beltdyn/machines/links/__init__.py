@@ -1,1 +1,1 @@
-"""The links of a hub chain: what couples the rim of a pulley with the bodies behind it."""
+"""The links of a hub chain, the couplings between the rim of a pulley and the bodies behind it."""

@@ -30,7 +30,7 @@ def friction_clutch(constants: np.record, scale: float, _twist: float, rate: flo
 
 
 class FrictionClutch(HubLink):
-    """A clutch that transmits a torque up to its capacity, and slips beyond it.
+    """A clutch that transmits torque up to its capacity and slips above it.
 
     Examples
     --------
@@ -44,6 +44,6 @@ class FrictionClutch(HubLink):
     kind: Literal["friction_clutch"] = Field(description="the kind of link")
     capacity: Torque = Field(gt=0, description="the largest torque, in N*m")
     locking_damping: TorsionalDamping = Field(
-        gt=0, description="the torque over the slip speed below the capacity, in N m s/rad"
+        gt=0, description="the torque over the slip speed below capacity, in N m s/rad"
     )
     schedule: Schedule | None = Field(None, description="the factor on the capacity over time, from 0 to 1")

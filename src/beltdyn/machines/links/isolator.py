@@ -44,4 +44,4 @@ class Isolator(HubLink):
 
     kind: Literal["isolator"] = Field(description="the kind of link")
     stiffness: TorsionalStiffness = Field(gt=0, description="the torque over the twist, in N*m/rad")
-    damping: TorsionalDamping = Field(0.0, ge=0, description="the torque over the rate of twist, in N m s/rad")
+    damping: TorsionalDamping = Field(0.0, ge=0, description="the torque over the twist rate, in N m s/rad")

@@ -1,4 +1,4 @@
-"""What a link of a hub chain provides: its keys, its constants, and its torque with exact derivatives."""
+"""The contract of a link of a hub chain: keys, constants, and torque with exact derivatives."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -12,7 +12,7 @@ from beltdyn.parts.quantity import Inertia
 
 
 class LinkTorque(NamedTuple):
-    """Torque from the front body of a link on the back one, counter-clockwise, and as much against the front one."""
+    """Torque of a link on its back body, counter-clockwise, and the opposite on its front body."""
 
     torque: float
     """N m."""
@@ -30,7 +30,7 @@ class LinkTorque(NamedTuple):
 
 
 class HubLink(Part):
-    """A coupling, and the body behind it.
+    """A coupling with the body behind it.
 
     A kind of link is a class with a field `kind`, and says as class attributes what kernels need. It may have a field
     `schedule`.
@@ -48,7 +48,7 @@ class HubLink(Part):
     inertia: Inertia = Field(0.0, ge=0, description="the moment of inertia of the body behind the link, in kg*m^2")
 
     def values(self, _turning: int) -> Mapping[str, Any]:
-        """Values of its constants on a pulley that an advancing belt turns counter-clockwise (1) or clockwise (-1)."""
+        """Its constants on a pulley turned counter-clockwise (1) or clockwise (-1) by the advancing belt."""
         return {name: getattr(self, name) for name in self.constants.names or ()}
 
     @property

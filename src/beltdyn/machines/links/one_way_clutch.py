@@ -34,7 +34,7 @@ def one_way_clutch(constants: np.record, _scale: float, _twist: float, rate: flo
 
 
 class OneWayClutch(HubLink):
-    """An overrunning clutch: it drives the body behind it in one sense only, and lets it run ahead.
+    """An overrunning clutch, which drives the body behind it in one sense only and lets it run ahead.
 
     It creeps while it drives: the torque is `locking_damping` times the slip speed.
 
@@ -49,15 +49,15 @@ class OneWayClutch(HubLink):
 
     kind: Literal["one_way_clutch"] = Field(description="the kind of link")
     locking_damping: TorsionalDamping = Field(
-        gt=0, description="the torque over the slip speed while it drives, in N m s/rad"
+        gt=0, description="the torque over the slip speed while driving, in N m s/rad"
     )
-    drag_torque: Torque = Field(0.0, ge=0, description="the largest torque while it overruns, in N*m")
+    drag_torque: Torque = Field(0.0, ge=0, description="the largest torque while overrunning, in N*m")
     drives: Literal["forward", "backward"] = Field(
         "forward",
-        description="the sense in which the rim drives: forward is that in which an advancing belt turns the pulley",
+        description="the driving sense of the rim; forward is the turning sense of the pulley by an advancing belt",
     )
 
     def values(self, turning: int) -> Mapping[str, Any]:
-        """Its constants, with the sense in which it drives."""
+        """Its constants, with the driving sense."""
         sense = turning if self.drives == "forward" else -turning
         return {"locking_damping": self.locking_damping, "drag_torque": self.drag_torque, "sense": sense}

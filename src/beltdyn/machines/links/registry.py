@@ -1,4 +1,4 @@
-"""Links of any kind: the type of a field that takes them, their rows, and the kernel that evaluates them."""
+"""Links of any kind: their field type, their rows, and the kernel that evaluates them."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -38,9 +38,9 @@ class PlacedLink(NamedTuple):
     front: int
     back: int
     turning: int
-    """Sense in which an advancing belt turns the pulley: 1 counter-clockwise, -1 clockwise."""
+    """Turning sense of the pulley by an advancing belt: 1 counter-clockwise, -1 clockwise."""
     schedule: int
-    """Number of the profile that is its schedule, or `NO_SCHEDULE`."""
+    """Number of the profile of its schedule, or `NO_SCHEDULE`."""
 
 
 def link_rows(placed: Sequence[PlacedLink]) -> Records:

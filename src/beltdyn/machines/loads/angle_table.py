@@ -1,4 +1,4 @@
-"""A torque over the angle of the shaft by its points, periodic and smooth; over the speed too, if there are several.
+"""A torque over the shaft angle through points, periodic and smooth, and optionally over speed.
 
 Between points it is a bicubic Hermite polynomial.  Its slopes at the points are those of Fritsch and Butland, which let
 no curve overshoot: SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
@@ -93,11 +93,11 @@ class _OverAngle(Load):
     torque_at = torque_over_angle
     next_kink = next_end
 
-    angles: tuple[Angle, ...] = Field(min_length=3, description="the angles of the points, in rad, within one cycle")
+    angles: tuple[Angle, ...] = Field(min_length=3, description="the angles of the points within one cycle, in rad")
     cycle: Angle = Field(
         tau,
         gt=0,
-        description="the angle after which the torque repeats itself, in rad; 4 pi of a four-stroke engine",
+        description="the period of the torque, in rad; 4 pi for a four-stroke engine",
     )
 
     @property
@@ -111,11 +111,11 @@ class _OverAngle(Load):
         whole, largest = self.angles[-1] - self.angles[0], float(np.abs(torques).max())
         if whole > self.cycle * (1.0 + _SAME):
             raise ValueError(
-                f"angles span {whole:g} rad, more than cycle = {self.cycle:g} rad. Raise cycle, or give one cycle"
+                f"angles span {whole:g} rad, more than cycle = {self.cycle:g} rad. Increase cycle, or give one cycle"
             )
         if self._closed and np.abs(torques[-1] - torques[0]).max() > _SAME * largest:
             raise ValueError(
-                f"angles {self.angles[0]:g} and {self.angles[-1]:g} rad are a cycle apart and differ in their torques. "
+                f"angles {self.angles[0]:g} and {self.angles[-1]:g} rad are one cycle apart with different torques. "
                 "Remove one of them"
             )
 
@@ -192,7 +192,7 @@ def _slopes_over_speed(speeds: FloatArray, torques: FloatArray) -> FloatArray:
 
 
 class AngleTable(_OverAngle):
-    """A torque over the angle of the shaft: smooth through points, and periodic.
+    """A torque over the shaft angle, smooth through points and periodic.
 
     Both are counter-clockwise positive. The points are `angles` and `torques`, or the two columns of the CSV file
     `file`, which is read when the table is made: a relative path starts at the folder of the drive file.
@@ -228,7 +228,7 @@ class AngleTable(_OverAngle):
 
 
 class AngleSpeedTable(_OverAngle):
-    """A torque over the angle and the speed of the shaft: smooth through points, periodic, constant outside the speeds.
+    """A torque over shaft angle and speed, smooth through points, periodic, constant outside the speeds.
 
     All are counter-clockwise positive. The points are `angles`, `speeds` and `torques`, or a CSV file `file`: its first
     line has the speeds behind a first cell, and each other line an angle and the torques there.
@@ -238,14 +238,14 @@ class AngleSpeedTable(_OverAngle):
         json_schema_extra=lambda schema: describe_file(
             schema,
             ("angles", "speeds", "torques"),
-            "a first line with the speeds behind any cell, and of lines with an angle and its torques",
+            "a first line of speeds after any cell, and lines of an angle and its torques",
         )
     )
 
     kind: Literal["angle_speed_table"] = Field(description="the kind of load")
     speeds: tuple[AngularSpeed, ...] = Field(min_length=2, description="the speeds of the points, in rad/s")
     torques: tuple[tuple[Torque, ...], ...] = Field(
-        min_length=3, description="the torques, in N*m: for each angle those at all speeds"
+        min_length=3, description="the torques, a list over the speeds for each angle, in N*m"
     )
 
     @model_validator(mode="before")

@@ -1,4 +1,4 @@
-"""Brakes: the torque of their clamping, which may differ in both senses, against the motion, smoothed at standstill.
+"""Brakes: a torque against the motion, possibly different in both senses, smoothed at standstill.
 
 M = -M_+ tanh(omega / omega_c) for omega > 0, -M_- tanh(omega / omega_c) else.  Of a band that a force F pulls, wrapped
 by phi (Euler-Eytelwein), M is F r (exp(mu phi) - 1) where the drum turns away from the force, F r (1 - exp(-mu phi))
@@ -52,7 +52,7 @@ def standstill(constants: np.record, _numbers: FloatArray, shaft: ShaftState, ri
 
 
 class Brake(Load):
-    """A brake with disc, shoes or plates, clamped over time: its torque opposes any motion.
+    """A disc, shoe or plate brake, clamped over time, whose torque opposes the motion.
 
     Examples
     --------
@@ -65,11 +65,11 @@ class Brake(Load):
     next_kink = standstill
 
     kind: Literal["brake"] = Field(description="the kind of load")
-    torque: BrakingProfile = Field(description="the torque of the sliding brake over time, in N*m")
+    torque: BrakingProfile = Field(description="the sliding torque of the brake over time, in N*m")
     backward_ratio: Ratio = Field(
-        1.0, ge=0, description="the torque against a clockwise motion, over that against a counter-clockwise one"
+        1.0, ge=0, description="the torque in clockwise rotation over that in counter-clockwise rotation"
     )
-    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque has reached 76 %, in rad/s")
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque reaches 76 %, in rad/s")
 
     def values(self) -> Mapping[str, Any]:
         """Torques over the command, and the creep speed."""
@@ -82,7 +82,7 @@ class Brake(Load):
 
 
 class BandBrake(Load):
-    """A brake with a band around a drum on the shaft, one end of it fixed, the other pulled over time.
+    """A band brake on a drum on the shaft, with one end fixed and the other pulled over time.
 
     Examples
     --------
@@ -99,14 +99,14 @@ class BandBrake(Load):
     next_kink = standstill
 
     kind: Literal["band_brake"] = Field(description="the kind of load")
-    force: ForceProfile = Field(description="the force on the pulled end over time, in N")
+    force: ForceProfile = Field(description="the force at the pulled end over time, in N")
     radius: Length = Field(gt=0, description="the radius of the drum, in m")
     friction: Ratio = Field(gt=0, description="the coefficient of friction between band and drum")
-    wrap: Angle = Field(gt=0, description="the angle of wrap, in rad")
+    wrap: Angle = Field(gt=0, description="the wrap angle, in rad")
     self_energising: Literal["counter-clockwise", "clockwise"] = Field(
-        "counter-clockwise", description="the sense of turning away from the pulled end, in which the brake is strong"
+        "counter-clockwise", description="the self-energizing sense of rotation, away from the pulled end"
     )
-    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque has reached 76 %, in rad/s")
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque reaches 76 %, in rad/s")
 
     def values(self) -> Mapping[str, Any]:
         """Torques over the force, and the creep speed."""

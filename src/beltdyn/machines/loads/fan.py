@@ -14,7 +14,7 @@ from beltdyn.parts.quantity import AngularSpeed, Power, Ratio
 
 
 class Fan(Load):
-    """A fan, blower or centrifugal pump: its torque grows with the square of the speed, from that of friction on.
+    """A fan, blower or centrifugal pump, with a torque quadratic in speed plus friction.
 
     Examples
     --------
@@ -26,12 +26,12 @@ class Fan(Load):
     torque_at = resistance
 
     kind: Literal["fan"] = Field(description="the kind of load")
-    rated_power: Power = Field(gt=0, description="the power at the shaft at the rated speed, in W")
-    rated_speed: AngularSpeed = Field(gt=0, description="the speed at the rated power, in rad/s, of either sense")
+    rated_power: Power = Field(gt=0, description="the shaft power at the rated speed, in W")
+    rated_speed: AngularSpeed = Field(gt=0, description="the speed at rated power, in rad/s, of either sign")
     friction_share: Ratio = Field(
-        0.0, ge=0, lt=1, description="the part of the rated torque that is friction and does not depend on the speed"
+        0.0, ge=0, lt=1, description="the fraction of the rated torque that is friction, independent of speed"
     )
-    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which friction has reached 76 %, in rad/s")
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which friction reaches 76 %, in rad/s")
 
     def values(self) -> Mapping[str, Any]:
         """Constants of a resistance."""

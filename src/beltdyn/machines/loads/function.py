@@ -1,4 +1,4 @@
-"""A torque of time, angle and speed by a function of Python; its derivatives by it too, or by central differences."""
+"""A torque as a Python function of time, angle and speed; derivatives given or by central differences."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal
@@ -53,7 +53,7 @@ def torque_of_function(constants: np.record, _numbers: FloatArray, shaft: ShaftS
 
 
 class FunctionLoad(Load):
-    """A torque of time (s), angle (rad) and speed (rad/s) of the shaft, by a function of Python; not in drive files.
+    """A torque as a Python function of time (s), angle (rad) and speed (rad/s) of the shaft; not for drive files.
 
     Numba compiles functions of numbers and `math`. Others are run by Python, and a warning says what that costs.
 
@@ -68,17 +68,17 @@ class FunctionLoad(Load):
     torque_at = torque_of_function
 
     kind: Literal["function"] = Field("function", description="the kind of load")
-    function: Any = Field(description="the torque, in N*m, as a function of time, angle and speed")
+    function: Any = Field(description="the torque as a function of time, angle and speed, in N*m")
     derivatives: Any = Field(
         None,
-        description="two functions of the same arguments, the derivatives of the torque with respect to angle and "
-        "speed; by default these are differences",
+        description="the derivatives of the torque with respect to angle and speed, two functions of the same "
+        "arguments; by default differences",
     )
     highest_order: Ratio = Field(
-        0.0, ge=0, description="the highest order over the angle that it contains, which time steps then resolve"
+        0.0, ge=0, description="the highest order over the angle, which time steps then resolve"
     )
     drives_to: AngularSpeed = Field(
-        0.0, description="the speed up to which it drives the shaft, in rad/s; 0 of what takes power"
+        0.0, description="the speed up to which it drives the shaft, in rad/s; 0 for a load"
     )
 
     @field_validator("function")
@@ -105,14 +105,14 @@ class FunctionLoad(Load):
 
     @property
     def only_named(self) -> bool:
-        """Whether it comes from a file, which keeps no more than the name of the function."""
+        """Whether it comes from a file, which keeps only the name of the function."""
         return isinstance(self.function, str)
 
     def values(self) -> Mapping[str, Any]:
         """Addresses of the functions."""
         if self.only_named:
             raise ModelError(
-                f'the function "{self.function}" of a load is not in the file, which has its name alone. In Python, '
+                f'the function "{self.function}" of a load is not in the file, which holds only its name. In Python, '
                 "replace the load by FunctionLoad(function=...)"
             )
         functions: list[Callable[[float, float, float], float]] = [self.function, *(self.derivatives or ())]
@@ -121,12 +121,12 @@ class FunctionLoad(Load):
 
     @property
     def orders(self) -> Sequence[float]:
-        """Those of its harmonics, and the highest that is given."""
+        """Orders of its harmonics, and the given highest order."""
         return [*super().orders, *([self.highest_order] if self.highest_order else [])]
 
     @property
     def has_mean(self) -> bool:
-        """False: nobody knows what a function depends on."""
+        """False: the dependence of a function is unknown."""
         return False
 
     @property

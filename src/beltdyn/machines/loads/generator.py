@@ -49,7 +49,7 @@ def generator_torque(constants: np.record, _numbers: FloatArray, shaft: ShaftSta
 
 @kernel
 def next_end_of_regulation(constants: np.record, _numbers: FloatArray, shaft: ShaftState, rising: bool) -> float:
-    """The next speed at which it cuts in or reaches the power that is asked for, in either sense."""
+    """The next speed at which it cuts in or reaches the demanded power, in either sense."""
     nearest, least = np.inf, constants.cut_in_speed
     rest = 1.0 - shaft.command / constants.full_field_power
     for sense in (-1.0, 1.0):
@@ -60,7 +60,7 @@ def next_end_of_regulation(constants: np.record, _numbers: FloatArray, shaft: Sh
 
 
 class Generator(Load):
-    """A generator or alternator whose voltage is regulated: it takes the power that is asked for, at any speed.
+    """A generator or alternator of regulated voltage, which draws the demanded power at any speed.
 
     Examples
     --------
@@ -77,12 +77,10 @@ class Generator(Load):
     next_kink = next_end_of_regulation
 
     kind: Literal["generator"] = Field(description="the kind of load")
-    power: PowerProfile = Field(description="the electrical power that is asked for, over time, in W")
-    efficiency: Ratio = Field(gt=0, le=1, description="the electrical power over that at the shaft, 0 to 1")
-    cut_in_speed: AngularSpeed = Field(gt=0, description="the speed from which on it gives power, in rad/s")
-    full_field_power: Power = Field(
-        gt=0, description="the electrical power that its full field approaches at high speed, in W"
-    )
+    power: PowerProfile = Field(description="the demanded electrical power over time, in W")
+    efficiency: Ratio = Field(gt=0, le=1, description="the electrical power over the shaft power, 0 to 1")
+    cut_in_speed: AngularSpeed = Field(gt=0, description="the least speed at which it gives power, in rad/s")
+    full_field_power: Power = Field(gt=0, description="the electrical power at full field and high speed, in W")
 
     @property
     def command(self) -> Profile:

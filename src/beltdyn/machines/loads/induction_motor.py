@@ -106,7 +106,7 @@ def limit_reached(constants: np.record, _numbers: FloatArray, shaft: ShaftState,
 
 
 class InductionMotor(Load):
-    """An induction motor by its catalogue: it drives below its synchronous speed, and brakes above it.
+    """An induction motor by catalogue data, which drives below its synchronous speed and brakes above it.
 
     Its torque is that of steady running at each speed; electrical transients, of some periods of the supply, are left
     out.
@@ -127,26 +127,22 @@ class InductionMotor(Load):
 
     kind: Literal["induction_motor"] = Field(description="the kind of load")
     rated_power: Power = Field(gt=0, description="the mechanical power at the rated speed, in W")
-    rated_speed: AngularSpeed = Field(
-        description="the speed at the rated power, in rad/s, negative for a motor that turns clockwise"
-    )
+    rated_speed: AngularSpeed = Field(description="the speed at rated power, in rad/s, negative for clockwise rotation")
     frequency: Frequency = Field(
-        50.0, gt=0, description="the rated frequency of the supply, in Hz; with the rated speed it gives the poles"
+        50.0, gt=0, description="the rated frequency of the supply, in Hz; it gives the number of poles"
     )
-    locked_rotor_ratio: Ratio = Field(gt=0, description="the torque at standstill, over the rated torque")
+    locked_rotor_ratio: Ratio = Field(gt=0, description="the torque at standstill over the rated torque")
     pull_up_ratio: Ratio | None = Field(
-        None, gt=0, description="the smallest torque between standstill and breakdown, over the rated torque"
+        None, gt=0, description="the smallest torque between standstill and breakdown over the rated torque"
     )
-    breakdown_ratio: Ratio = Field(gt=1, description="the largest torque below synchronous speed, over the rated one")
+    breakdown_ratio: Ratio = Field(gt=1, description="the largest torque below synchronous speed over the rated torque")
     star_until: Time | None = Field(
-        None, gt=0, description="the instant until which it starts in star, with a third of the torque, in s"
+        None, gt=0, description="the end of the star connection at start, with a third of the torque, in s"
     )
     supply: FrequencyProfile | None = Field(
-        None, description="the frequency of an inverter over time, in Hz; by default the rated one"
+        None, description="the frequency of an inverter over time, in Hz; by default the rated frequency"
     )
-    limit_ratio: Ratio | None = Field(
-        None, gt=0, description="the largest torque that the inverter allows, over the rated torque"
-    )
+    limit_ratio: Ratio | None = Field(None, gt=0, description="the torque limit of the inverter over the rated torque")
 
     @model_validator(mode="after")
     def _is_a_motor(self) -> Self:
@@ -160,15 +156,15 @@ class InductionMotor(Load):
             )
         if not self._breakdown_slip < _PULL_UP_SLIP:
             raise ValueError(
-                f"rated_speed = {self.rated_speed:g} rad/s is a slip of {self._rated_slip:.3g} from the synchronous "
-                f"speed of {abs(self.synchronous_speed):.4g} rad/s: breakdown would come at a slip of "
+                f"rated_speed = {self.rated_speed:g} rad/s means a slip of {self._rated_slip:.3g} from the synchronous "
+                f"speed of {abs(self.synchronous_speed):.4g} rad/s: breakdown would be at a slip of "
                 f"{self._breakdown_slip:.3g}. Correct rated_speed or frequency"
             )
         least = self.pull_up_ratio
         if least is not None and least > min(self.locked_rotor_ratio, self.breakdown_ratio):
             raise ValueError(
                 f"pull_up_ratio = {least:g} must not be above locked_rotor_ratio = {self.locked_rotor_ratio:g} and "
-                f"breakdown_ratio = {self.breakdown_ratio:g}: it is the smallest torque of the run-up. Lower it"
+                f"breakdown_ratio = {self.breakdown_ratio:g}: it is the smallest torque of the run-up. Reduce it"
             )
         return self
 
@@ -176,9 +172,9 @@ class InductionMotor(Load):
     def _has_one_way_to_start(self) -> Self:
         if self.star_until is not None and (self.supply is not None or self.schedule is not None):
             other = "supply" if self.supply is not None else "schedule"
-            raise ValueError(f"star_until and {other} exclude each other: keep one way to start")
+            raise ValueError(f"star_until and {other} exclude each other. Keep one starting method")
         if self.limit_ratio is not None and self.supply is None:
-            raise ValueError("has limit_ratio but no supply: only an inverter limits the torque. Give supply")
+            raise ValueError("has limit_ratio but no supply, although only an inverter limits torque. Give supply")
         return self
 
     @property
@@ -188,7 +184,7 @@ class InductionMotor(Load):
 
     @property
     def synchronous_speed(self) -> float:
-        """Speed without load at the rated frequency, rad/s: the nearest above the rated one, of any pairs of poles."""
+        """Synchronous speed at the rated frequency, rad/s, for the number of poles nearest above the rated speed."""
         field_speed = tau * self.frequency
         return copysign(field_speed / np.ceil(field_speed / abs(self.rated_speed) - 1.0), self.rated_speed)
 
@@ -202,7 +198,7 @@ class InductionMotor(Load):
         return self._rated_slip * (self.breakdown_ratio + sqrt(self.breakdown_ratio**2 - 1.0))
 
     def held_at(self, at: float) -> Mapping[str, Any]:
-        """It runs in delta after its start in star, and in star before, as by a schedule."""
+        """Its switch from star to delta, as a schedule."""
         if self.star_until is None:
             return {}
         star = {"schedule": Constant(value=_STAR)} if at < self.star_until else {}
@@ -224,7 +220,7 @@ class InductionMotor(Load):
 
     @property
     def factor(self) -> Profile | None:
-        """Its schedule, or the third of the torque that star gives."""
+        """Its schedule, or the third of the torque in star."""
         if self.star_until is None:
             return self.schedule
         return Step(time=self.star_until, before=_STAR, value=1.0)

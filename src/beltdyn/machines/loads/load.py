@@ -1,4 +1,4 @@
-"""What a load or motor provides: its keys, its constants, its torque with exact derivatives, and where that bends."""
+"""The contract of a load or motor: keys, constants, torque with exact derivatives, and kinks."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -16,7 +16,7 @@ from beltdyn.records import blank, fill
 
 
 class ShaftState(NamedTuple):
-    """What a shaft does at an instant, counter-clockwise positive, and what the load on it is told to do."""
+    """State of a shaft, counter-clockwise positive, and the command of its load."""
 
     time: float
     """s."""
@@ -58,7 +58,7 @@ class StateRate(NamedTuple):
 
 @kernel
 def no_state(_constants: np.record, _numbers: FloatArray, _shaft: ShaftState) -> StateRate:
-    """Rate of the state of a load that has none."""
+    """State rate of a load without a state."""
     return StateRate(0.0, 0.0, 0.0, 0.0)
 
 
@@ -108,7 +108,7 @@ class Load(Part):
         kind: str
 
     schedule: Schedule | None = Field(None, description="the factor on the torque over time, from 0 to 1")
-    harmonics: tuple[Harmonic, ...] = Field((), description="the harmonics of the torque over the angle of the shaft")
+    harmonics: tuple[Harmonic, ...] = Field((), description="the harmonics of the torque over the shaft angle")
 
     def values(self) -> Mapping[str, Any]:
         """Values of its constants."""
@@ -116,31 +116,31 @@ class Load(Part):
 
     @property
     def numbers(self) -> Sequence[float] | FloatArray:
-        """Numbers that its kernels get beside the constants, as many as it likes, as an array of shape (n,)."""
+        """Numbers for its kernels besides the constants, an array of any shape (n,)."""
         return ()
 
     @property
     def factor(self) -> Profile | None:
-        """The profile that multiplies its torque: its schedule, unless a kind makes another one."""
+        """The profile that multiplies its torque, by default its schedule."""
         return self.schedule
 
     @property
     def command(self) -> Profile | None:
-        """The profile whose value its kernels get, such as a set speed; None without."""
+        """The profile whose value is passed to its kernels, such as a set speed; None without one."""
         return None
 
     def held_at(self, at: float) -> Mapping[str, Any]:
-        """Arguments with which it stays as it is at an instant (s), beside those that are profiles; none by default."""
+        """Arguments that freeze it at an instant (s), besides its profiles; by default none."""
         return {}
 
     @property
     def state_lag(self) -> float | None:
-        """Time constant with which the state of its controller follows its rate, s; None without a state."""
+        """Time constant of the state of its controller, s; None without a state."""
         return None
 
     @property
     def orders(self) -> Sequence[float]:
-        """Orders of its torque over the angle: waves in a turn of the shaft.
+        """Orders of its torque: waves per turn of the shaft.
 
         The torque repeats itself with their largest common measure, and time steps resolve the highest.
         """
@@ -148,7 +148,7 @@ class Load(Part):
 
     @property
     def has_mean(self) -> bool:
-        """Whether its mean over the angle depends, without factor, on its command and the speed of the shaft alone."""
+        """Whether its mean torque over the angle, without factor, depends only on command and shaft speed."""
         return self.state_lag is None
 
     def torque_over(self, angles: FloatArray, speed: float, time: float = 0.0) -> FloatArray:
@@ -165,7 +165,7 @@ class Load(Part):
 
     @staticmethod
     def mean_numbers(constants: np.record, numbers: FloatArray) -> FloatArray:
-        """Numbers with which its torque, without harmonics, is the mean over the angle; by default the same.
+        """Numbers that give the mean torque over the angle, without harmonics; by default the same.
 
         Parameters
         ----------
@@ -182,5 +182,5 @@ class Load(Part):
 
     @property
     def driven_speed(self) -> float:
-        """Speed up to which it drives the shaft, rad/s; zero of a load, which takes power from a shaft that turns."""
+        """Speed up to which it drives the shaft, rad/s; zero for a load."""
         return 0.0

@@ -47,7 +47,7 @@ def kloss(constants: np.record, _numbers: FloatArray, shaft: ShaftState) -> Load
 
 
 class Motor(Load):
-    """An induction motor after Kloss: it drives below its synchronous speed, and brakes above it.
+    """An induction motor after Kloss, which drives below its synchronous speed and brakes above it.
 
     Examples
     --------
@@ -64,15 +64,13 @@ class Motor(Load):
 
     kind: Literal["motor"] = Field(description="the kind of load")
     breakdown_torque: Torque = Field(gt=0, description="the largest torque, in N*m")
-    breakdown_slip: Ratio = Field(gt=0, le=1, description="the slip at which the torque is largest, 0 to 1")
-    synchronous_speed: AngularSpeed = Field(
-        description="the speed without load, in rad/s, negative for a motor that turns clockwise"
-    )
+    breakdown_slip: Ratio = Field(gt=0, le=1, description="the slip at the largest torque, 0 to 1")
+    synchronous_speed: AngularSpeed = Field(description="the no-load speed, in rad/s, negative for clockwise rotation")
 
     @model_validator(mode="after")
     def _turns(self) -> Self:
         if self.synchronous_speed == 0:
-            raise ValueError("synchronous_speed = 0 leaves the slip undefined. Give another speed")
+            raise ValueError("synchronous_speed = 0 leaves the slip undefined. Give a speed other than zero")
         return self
 
     @property

@@ -17,7 +17,7 @@ from beltdyn.parts.quantity import AngularSpeed, Ratio, quantity
 
 
 class Pump(Load):
-    """A displacement pump, as with gears, vanes or pistons: its torque follows the pressure, at any speed.
+    """A displacement pump (gear, vane or piston), whose torque follows the pressure at any speed.
 
     Examples
     --------
@@ -33,10 +33,10 @@ class Pump(Load):
     torque_at = braking_torque
 
     kind: Literal["pump"] = Field(description="the kind of load")
-    displacement: Annotated[float, quantity("m^3")] = Field(gt=0, description="the volume in a turn, in m^3")
-    pressure: PressureProfile = Field(description="the rise of pressure over time, in Pa")
+    displacement: Annotated[float, quantity("m^3")] = Field(gt=0, description="the displaced volume per turn, in m^3")
+    pressure: PressureProfile = Field(description="the pressure rise over time, in Pa")
     efficiency: Ratio = Field(gt=0, le=1, description="the hydraulic-mechanical efficiency, 0 to 1")
-    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque has reached 76 %, in rad/s")
+    creep_speed: AngularSpeed = Field(0.1, gt=0, description="the speed at which the torque reaches 76 %, in rad/s")
 
     def values(self) -> Mapping[str, Any]:
         """Torques over the pressure, and the creep speed."""
@@ -45,5 +45,5 @@ class Pump(Load):
 
     @property
     def command(self) -> Profile:
-        """The rise of pressure over time."""
+        """The pressure rise over time."""
         return self.pressure

@@ -1,4 +1,4 @@
-"""Loads of any kind: the type of a field that takes them, and the kernels that evaluate them."""
+"""Loads of any kind: their field type, and the kernels that evaluate them."""
 
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ else:
     AnyLoad = any_of(KINDS)
 
 NO_STATE = -1
-"""Stands for the place of a state where there is none."""
+"""Place of the state of a load without one."""
 
 SHAFT_LOAD = record(
     schedule="i8",  # number of the profile that multiplies it, or `NO_SCHEDULE`

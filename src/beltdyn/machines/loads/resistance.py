@@ -39,7 +39,7 @@ def resistance(constants: np.record, _numbers: FloatArray, shaft: ShaftState) ->
 
 
 class Resistance(Load):
-    """A torque that opposes the motion of the shaft: constant (as dry friction), linear, quadratic in the speed.
+    """A torque that opposes the motion of the shaft: constant (dry friction), linear or quadratic in speed.
 
     Examples
     --------
@@ -51,12 +51,12 @@ class Resistance(Load):
     torque_at = resistance
 
     kind: Literal["resistance"] = Field(description="the kind of load")
-    constant: Torque = Field(0.0, ge=0, description="the part that does not depend on the speed, in N*m")
+    constant: Torque = Field(0.0, ge=0, description="the part independent of speed, in N*m")
     creep_speed: AngularSpeed = Field(
-        0.1, gt=0, description="the speed at which the constant part has reached 76 %, in rad/s"
+        0.1, gt=0, description="the speed at which the constant part reaches 76 %, in rad/s"
     )
-    linear: TorsionalDamping = Field(0.0, ge=0, description="the part linear in the speed, in N m s/rad")
-    quadratic: QuadraticDamping = Field(0.0, ge=0, description="the part quadratic in the speed, in N m s^2/rad^2")
+    linear: TorsionalDamping = Field(0.0, ge=0, description="the part linear in speed, in N m s/rad")
+    quadratic: QuadraticDamping = Field(0.0, ge=0, description="the part quadratic in speed, in N m s^2/rad^2")
 
     @model_validator(mode="after")
     def _resists(self) -> Self:

@@ -1,4 +1,4 @@
-"""Where a number lies in a table."""
+"""Search in a table."""
 
 from beltdyn.arrays import FloatArray
 from beltdyn.kernel import kernel
@@ -6,7 +6,7 @@ from beltdyn.kernel import kernel
 
 @kernel
 def first_above(numbers: FloatArray, first: int, end: int, value: float) -> int:
-    """Place of the first of ascending numbers that is above a value.
+    """Index of the first of ascending numbers above a value.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A motor with a speed controller: proportional and integral action, a limit of the torque, and no windup.
+"""A motor with a speed controller: PI action, torque limit, anti-windup.
 
     M = clip(K_p (e + z / T_i), limits),    e = set speed - omega,    dz/dt = M / K_p - z / T_i
 
@@ -64,7 +64,7 @@ def servo_rate(constants: np.record, numbers: FloatArray, shaft: ShaftState) -> 
 
 
 class ServoMotor(Load):
-    """A servo motor, or any motor with a speed controller: it holds a set speed as far as its torque allows.
+    """A servo motor, or any motor with a speed controller, which holds a set speed within its torque limit.
 
     Examples
     --------
@@ -82,25 +82,23 @@ class ServoMotor(Load):
 
     kind: Literal["servo_motor"] = Field(description="the kind of load")
     speed: SpeedProfile = Field(description="the set speed over time, in rad/s")
-    proportional_gain: TorsionalDamping = Field(gt=0, description="the torque over the error of speed, in N m s/rad")
+    proportional_gain: TorsionalDamping = Field(gt=0, description="the torque over the speed error, in N m s/rad")
     integral_time: Time = Field(
-        gt=0, description="the time in which a lasting error of speed adds the same torque once more, in s"
+        gt=0, description="the integral time, after which a constant speed error doubles the torque, in s"
     )
-    torque_limit: Torque = Field(gt=0, description="the largest torque of either sense, in N*m")
+    torque_limit: Torque = Field(gt=0, description="the largest torque in either sense, in N*m")
     stall_torque: Torque | None = Field(
-        None, gt=0, description="the torque at standstill that the full voltage of a DC motor gives, in N*m"
+        None, gt=0, description="the stall torque of a DC motor at full voltage, in N*m"
     )
     no_load_speed: AngularSpeed | None = Field(
-        None, gt=0, description="the speed without load that the full voltage of a DC motor gives, in rad/s"
+        None, gt=0, description="the no-load speed of a DC motor at full voltage, in rad/s"
     )
-    lag: Time = Field(
-        1e-3, gt=0, description="the time constant with which the integral part follows, as of a current loop, in s"
-    )
+    lag: Time = Field(1e-3, gt=0, description="the time constant of the integral part, as of a current loop, in s")
 
     @model_validator(mode="after")
     def _has_a_whole_line_of_voltage(self) -> Self:
         if (self.stall_torque is None) != (self.no_load_speed is None):
-            raise ValueError("stall_torque and no_load_speed are two points of one line. Give both, or none")
+            raise ValueError("stall_torque and no_load_speed define one line together. Give both, or remove both")
         return self
 
     def values(self) -> Mapping[str, Any]:

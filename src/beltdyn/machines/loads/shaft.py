@@ -1,4 +1,4 @@
-"""What loads and motors apply to a shaft, over time, speed and angle."""
+"""Torques of loads and motors on a shaft, over time, speed and angle."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -29,7 +29,7 @@ class ShaftLoads(NamedTuple):
 
 
 def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, int]], first_state: int) -> ShaftLoads:
-    """Loads of all pulleys laid end to end.
+    """Loads of all pulleys, concatenated.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def shaft_loads(loads: Sequence[Sequence[Load]], profiles: Sequence[tuple[int, i
 
 
 def mean_loads(loads: ShaftLoads) -> ShaftLoads:
-    """Loads by their means over the angles of shafts.
+    """Loads by their means over shaft angles.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def _state(item: np.record, states: FloatArray) -> float:
 def state_rate(
     profiles: Profiles, loads: ShaftLoads, number: int, time: float, angle: float, speed: float, states: FloatArray
 ) -> StateRate:
-    """Rate of the state of a load's controller, with what its torque on the shaft feels of it.
+    """Rate of the state of a load's controller, with its effect on the torque.
 
     Arguments are those of `shaft_torque`; the load has such a state.
     """
@@ -141,7 +141,7 @@ def state_rate(
 def load_bend(
     profiles: Profiles, loads: ShaftLoads, number: int, time: float, speed: float, rate: float
 ) -> tuple[float, float]:
-    """Where a load bends, with a speed that changes evenly and what commands it now.
+    """Next kink of a load at constant acceleration and its present command.
 
     Parameters
     ----------

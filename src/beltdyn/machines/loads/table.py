@@ -1,4 +1,4 @@
-"""A torque over the speed by its points."""
+"""A torque over speed by points."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal, Self
@@ -62,7 +62,7 @@ def next_point(constants: np.record, numbers: FloatArray, shaft: ShaftState, ris
 
 
 class LoadTable(Load):
-    """A torque over the speed: linear between points, constant before the first and after the last.
+    """A torque over speed, linear between points, constant before the first and after the last.
 
     Both are counter-clockwise positive. The points are `speeds` and `torques`, or the two columns of the CSV file
     `file`, which is read when the table is made: a relative path starts at the folder of the drive file.

@@ -1,1 +1,1 @@
-"""Prescribed speeds, torques and schedules over time, and harmonics over the angle of a shaft."""
+"""Prescribed speeds, torques and schedules over time, and harmonics over the shaft angle."""

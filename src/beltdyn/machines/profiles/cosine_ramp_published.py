@@ -26,7 +26,7 @@ class CosineRampPublished(Rise[Value], Generic[Value]):
     @model_validator(mode="after")
     def _ends_after_time_zero(self) -> Self:
         if self.end <= 0:
-            raise ValueError(f"end = {self.end:g} s must be later than time zero. Raise end, or use cosine_ramp")
+            raise ValueError(f"end = {self.end:g} s must be later than time zero. Increase end, or use cosine_ramp")
         return self
 
     def segments(self) -> Records:

@@ -1,4 +1,4 @@
-"""Harmonics of a speed that was measured over the angle of a crank.
+"""Harmonics of a speed measured over the crank angle.
 
 With the measured speed w(theta) and its mean over time m, the angle of the mean speed is u = m t, dt = dtheta / w, and
 the harmonics are those of w(theta(u)) / m over u.
@@ -24,7 +24,7 @@ _LEAST = 1e-3
 
 
 class CrankSpeed(Part):
-    """A speed over the angle of a crank, periodic, as it was measured: only its ratio to the mean counts.
+    """A measured speed over the crank angle, periodic; only its ratio to the mean is used.
 
     The points are `angles` and `speeds`, or the two columns of the CSV file `file`.
     """
@@ -33,11 +33,9 @@ class CrankSpeed(Part):
         json_schema_extra=lambda schema: describe_file(schema, ("angles", "speeds"), "two columns, angles and speeds")
     )
 
-    angles: tuple[Angle, ...] = Field(min_length=4, description="the angles of the points, in rad, within one cycle")
+    angles: tuple[Angle, ...] = Field(min_length=4, description="the angles of the points within one cycle, in rad")
     speeds: tuple[AngularSpeed, ...] = Field(min_length=4, description="the speeds at these angles, in rad/s")
-    cycle: Angle = Field(
-        tau, gt=0, description="the angle after which the speed repeats itself, in rad; 4 pi of a four-stroke engine"
-    )
+    cycle: Angle = Field(tau, gt=0, description="the period of the speed, in rad; 4 pi for a four-stroke engine")
 
     @model_validator(mode="before")
     @classmethod
@@ -49,8 +47,8 @@ class CrankSpeed(Part):
         check_points("angles", self.angles, "speeds", self.speeds)
         if min(self.speeds) * max(self.speeds) <= 0.0:
             raise ValueError(
-                f"speeds go from {min(self.speeds):g} to {max(self.speeds):g} rad/s: a crank that stands still or "
-                "turns back has no speed over its angle. Give the speed over time, as a profile"
+                f"speeds range from {min(self.speeds):g} to {max(self.speeds):g} rad/s: a crank that stops or reverses "
+                "has no speed over its angle. Give the speed over time, as a profile"
             )
         whole = self.angles[-1] - self.angles[0]
         if whole >= self.cycle * (1.0 + _SAME):
@@ -58,7 +56,7 @@ class CrankSpeed(Part):
         return self
 
     def harmonics(self) -> tuple[Harmonic, ...]:
-        """Harmonics over the angle of the mean speed, from the longest wave on, down to a thousandth of the largest."""
+        """Harmonics over the angle of the mean speed, down to a thousandth of the largest, longest wave first."""
         ratio = self._over_mean_angle()
         spectrum = 2.0 * np.fft.rfft(ratio)[1 : (ratio.size + 1) // 2] / ratio.size
         amplitudes, phases = np.abs(spectrum), np.angle(spectrum)
@@ -91,7 +89,7 @@ _NOISE = 1e-9
 
 
 _OF_A_CRANK = frozenset({"file", *CrankSpeed.model_fields})
-"""Keys of a measured speed, and of no harmonic."""
+"""Keys of a measured speed, not of a harmonic."""
 
 
 def _measured(value: Any, info: ValidationInfo) -> Any:
@@ -104,4 +102,4 @@ def _measured(value: Any, info: ValidationInfo) -> Any:
 SpeedHarmonics = Annotated[
     tuple[Harmonic, ...], BeforeValidator(_measured, json_schema_input_type=tuple[Harmonic, ...] | CrankSpeed)
 ]
-"""Harmonics of a speed, or the table of a measured one."""
+"""Harmonics of a speed, or the table of a measured speed."""

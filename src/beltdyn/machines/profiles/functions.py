@@ -12,7 +12,7 @@ from beltdyn.machines.profiles.profile import SEGMENT, Profile, segment_integral
 from beltdyn.records import Records, offsets, record, records
 
 NO_SCHEDULE = -1
-"""Stands for the number of a profile where there is none."""
+"""Number of a missing profile."""
 
 PROFILE = record(
     segment="i8",  # its first segment; the last is that before the first of the next row
@@ -36,7 +36,7 @@ class Profiles(NamedTuple):
 
 
 def profile_rows(profiles: Sequence[Profile | None], harmonics: Sequence[Sequence[Harmonic]]) -> Profiles:
-    """Profiles laid end to end.
+    """Profiles, concatenated.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def command_value(profiles: Profiles, number: int, time: float) -> float:
 
 @kernel
 def after_jump(time: float) -> float:
-    """The next number after an instant (s): there a profile that jumps at the instant has jumped."""
+    """The next floating-point number after an instant (s), where a jump at the instant has happened."""
     return float(np.nextafter(time, np.inf))
 
 
@@ -120,7 +120,7 @@ def profile_integral(profiles: Profiles, number: int, time: float) -> float:
 
 
 def go_on(profiles: Profiles, numbers: Sequence[int], time: float, values: Sequence[float]) -> None:
-    """Let integrals go on from given values at a time, as angles of prescribed speeds do.
+    """Continue integrals from given values at a time, as for angles of prescribed speeds.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def go_on(profiles: Profiles, numbers: Sequence[int], time: float, values: Seque
 
 @kernel
 def profile_bend(profiles: Profiles, number: int, time: float) -> tuple[float, float]:
-    """Where a profile bends: its next kink, and the angular frequency of the wave that it is until then.
+    """The next kink of a profile, and the angular frequency of its wave until then.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ HARMONIC = record(
 
 
 class Harmonic(Part):
-    """A wave over the angle theta of a shaft: amplitude cos(order theta + phase).
+    """A harmonic over the shaft angle theta: amplitude cos(order theta + phase).
 
     Examples
     --------
@@ -28,13 +28,13 @@ class Harmonic(Part):
     2.0
     """
 
-    order: Ratio = Field(gt=0, description="the number of waves in a turn of the shaft, such as 2 or 0.5")
-    amplitude: Ratio = Field(description="the amplitude, over the value without harmonics")
-    phase: Angle = Field(0.0, description="the phase at the angle zero, in rad")
+    order: Ratio = Field(gt=0, description="the number of waves per turn of the shaft, such as 2 or 0.5")
+    amplitude: Ratio = Field(description="the amplitude over the value without harmonics")
+    phase: Angle = Field(0.0, description="the phase at angle zero, in rad")
 
 
 def harmonic_rows(groups: Sequence[Sequence[Harmonic]]) -> tuple[IntArray, Records]:
-    """Harmonics laid end to end.
+    """Harmonics, concatenated.
 
     Parameters
     ----------

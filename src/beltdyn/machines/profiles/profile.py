@@ -36,12 +36,12 @@ class Profile(Part, Generic[Value]):
 
     @classmethod
     def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
-        """Name a profile of any quantity by its kind alone."""
+        """Name a profile of any quantity by its kind."""
         return cls.__name__
 
     @abstractmethod
     def segments(self) -> Records:
-        """Give the closed form of the profile, piece by piece.
+        """The closed form of the profile, piece by piece.
 
         Returns
         -------
@@ -64,7 +64,7 @@ class Profile(Part, Generic[Value]):
         return segments
 
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants of kinks and jumps that a time integrator must step onto, s: none unless a kind says so."""
+        """Instants of kinks and jumps that a time integrator must step onto, s; by default none."""
         return ()
 
     def at(self, times: ArrayLike) -> FloatArray:

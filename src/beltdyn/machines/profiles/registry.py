@@ -1,4 +1,4 @@
-"""Types of fields that take a profile of any kind."""
+"""Field types for a profile of any kind."""
 
 from typing import TYPE_CHECKING, Annotated
 

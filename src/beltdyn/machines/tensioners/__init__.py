@@ -1,1 +1,1 @@
-"""Tensioners: what presses a pulley against the belt."""
+"""Tensioners, which press a pulley against the belt."""

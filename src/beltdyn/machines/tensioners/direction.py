@@ -14,7 +14,7 @@ def _unit(vector: tuple[float, float]) -> tuple[float, float]:
     """Make a vector one metre long; one that is so already stays as it is."""
     length = float(np.hypot(*vector))
     if length == 0:
-        raise ValueError("points nowhere: at least one component must differ from zero")
+        raise ValueError("has zero length: at least one component must differ from zero")
     if abs(length - 1) <= _ROUNDING:
         return vector
     return vector[0] / length, vector[1] / length

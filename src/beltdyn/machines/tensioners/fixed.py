@@ -1,4 +1,4 @@
-"""A tensioner that is set before the drive runs."""
+"""A tensioner set before the drive runs."""
 
 from typing import Literal
 
@@ -10,7 +10,7 @@ from beltdyn.parts.quantity import Coordinate
 
 
 class FixedTensioner(Tensioner):
-    """A pulley that is moved along a line before the drive runs, and held there.
+    """A pulley moved along a line before the drive runs, and held there.
 
     Examples
     --------
@@ -19,5 +19,5 @@ class FixedTensioner(Tensioner):
     """
 
     kind: Literal["fixed"] = Field(description="the kind of tensioner")
-    direction: Direction = Field(description="the direction in which the take-up moves the pulley, as [x, y]")
-    take_up: Coordinate = Field(0.0, description="the distance by which the pulley is moved from its center, in m")
+    direction: Direction = Field(description="the direction of the take-up, as [x, y]")
+    take_up: Coordinate = Field(0.0, description="the displacement of the pulley from its center, in m")

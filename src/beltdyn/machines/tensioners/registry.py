@@ -1,4 +1,4 @@
-"""Tensioners of any kind: the type of a field that takes them, their rows, and the kernels that evaluate them."""
+"""Tensioners of any kind: their field type, their rows, and the kernels that evaluate them."""
 
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,7 @@ TENSIONER = record(
     kind="i8",  # place among the kinds that move
     **constants_of(_MOVING),
 )
-"""A tensioner that moves, with the constants of its kind; those of the others are zero."""
+"""A spring-loaded tensioner with the constants of its kind; those of other kinds are zero."""
 
 tensioner_center = choice("tensioner_center", {k: v.center_at for k, v in _MOVING.items()}, ["q"])
 tensioner_force = choice("tensioner_force", {k: v.force_at for k, v in _MOVING.items()}, ["q", "velocity"])

@@ -47,7 +47,7 @@ def rotary_center(constants: np.record, q: float) -> Center:
 
 
 class RotaryTensioner(MovingTensioner):
-    """A pulley on an arm, pressed against the belt by a torsional spring about the pivot of the arm.
+    """A pulley on an arm, pressed against the belt by a torsional spring at the pivot.
 
     Examples
     --------
@@ -66,18 +66,16 @@ class RotaryTensioner(MovingTensioner):
     )
     mass: Mass = Field(0.0, ge=0, description="the mass of the arm, without the pulley, for its weight, in kg")
     center_of_mass: Ratio = Field(
-        0.5, description="the place of the arm's center of mass, from 0 at the pivot to 1 at the pulley's center"
+        0.5, description="the position of the arm's center of mass, from 0 at the pivot to 1 at the pulley's center"
     )
-    preload: Torque = Field(description="the moment of the spring at the pulley's center, in N*m")
-    rate: TorsionalStiffness = Field(0.0, ge=0, description="the rate of the spring, in N*m/rad")
+    preload: Torque = Field(description="the spring moment at the given pulley center, in N*m")
+    rate: TorsionalStiffness = Field(0.0, ge=0, description="the spring rate, in N*m/rad")
     damping: TorsionalDamping = Field(0.0, ge=0, description="the viscous damping, in N m s/rad")
-    tensioning_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path gets longer, in N*m")
-    yielding_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path gets shorter, in N*m")
-    creep_speed: AngularSpeed = Field(
-        0.01, gt=0, description="the speed at which dry friction has reached 76 %, in rad/s"
-    )
+    tensioning_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path lengthens, in N*m")
+    yielding_friction: Torque = Field(0.0, ge=0, description="the dry friction while the path shortens, in N*m")
+    creep_speed: AngularSpeed = Field(0.01, gt=0, description="the speed at which dry friction reaches 76 %, in rad/s")
     stops: tuple[ArmAngle, ArmAngle] | None = Field(
-        None, description="the lower and the upper stop, from the pulley's center the way the path gets longer, in rad"
+        None, description="the lower and upper stops, zero at the given center, positive as the path lengthens, in rad"
     )
     stop_stiffness: TorsionalStiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N*m/rad")
     stop_damping: TorsionalDamping = Field(0.0, ge=0, description="the damping of the stops, in N m s/rad")
@@ -98,7 +96,7 @@ class RotaryTensioner(MovingTensioner):
         found = float(gradient @ np.array([-arm[1], arm[0]])) / length
         if abs(found) < LEAST_LEVERAGE:
             raise ValueError(
-                f'the arm of the tensioner of "{self.pulley}" cannot tension the belt: turning it hardly changes the '
+                f'the arm of the tensioner of "{self.pulley}" cannot tension the belt: its rotation hardly changes the '
                 "length of the path. Move its pivot"
             )
         return found

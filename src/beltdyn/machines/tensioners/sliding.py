@@ -1,4 +1,4 @@
-"""A tensioner that slides along a line: center c + q u."""
+"""A tensioner sliding along a line: center c + q u."""
 
 from collections.abc import Mapping
 from typing import Any, Literal
@@ -30,7 +30,7 @@ def sliding_center(constants: np.record, q: float) -> Center:
 
 
 class SlidingTensioner(MovingTensioner):
-    """A pulley that slides along a line, pressed by a spring in `direction`.
+    """A pulley sliding along a line, pressed by a spring in `direction`.
 
     Examples
     --------
@@ -42,16 +42,16 @@ class SlidingTensioner(MovingTensioner):
     center_at = sliding_center
 
     kind: Literal["sliding"] = Field(description="the kind of tensioner")
-    direction: Direction = Field(description="the direction in which the spring presses the pulley, as [x, y]")
-    mass: Mass = Field(0.0, ge=0, description="the mass that slides with the pulley, without it, in kg")
-    preload: Force = Field(description="the force of the spring at the pulley's center, in N")
-    rate: Stiffness = Field(0.0, ge=0, description="the rate of the spring, in N/m")
+    direction: Direction = Field(description="the direction of the spring force on the pulley, as [x, y]")
+    mass: Mass = Field(0.0, ge=0, description="the sliding mass without the pulley, in kg")
+    preload: Force = Field(description="the spring force at the given pulley center, in N")
+    rate: Stiffness = Field(0.0, ge=0, description="the spring rate, in N/m")
     damping: Damping = Field(0.0, ge=0, description="the viscous damping, in N*s/m")
-    tensioning_friction: Force = Field(0.0, ge=0, description="the dry friction while the path gets longer, in N")
-    yielding_friction: Force = Field(0.0, ge=0, description="the dry friction while the path gets shorter, in N")
-    creep_speed: Speed = Field(1e-3, gt=0, description="the speed at which dry friction has reached 76 %, in m/s")
+    tensioning_friction: Force = Field(0.0, ge=0, description="the dry friction while the path lengthens, in N")
+    yielding_friction: Force = Field(0.0, ge=0, description="the dry friction while the path shortens, in N")
+    creep_speed: Speed = Field(1e-3, gt=0, description="the speed at which dry friction reaches 76 %, in m/s")
     stops: tuple[Coordinate, Coordinate] | None = Field(
-        None, description="the lower and the upper stop, from the pulley's center along the direction, in m"
+        None, description="the lower and upper stops, from the given pulley center along the direction, in m"
     )
     stop_stiffness: Stiffness | None = Field(None, gt=0, description="the stiffness of the stops, in N/m")
     stop_damping: Damping = Field(0.0, ge=0, description="the damping of the stops, in N*s/m")
@@ -62,7 +62,7 @@ class SlidingTensioner(MovingTensioner):
         if found < LEAST_LEVERAGE:
             raise ValueError(
                 f'the tensioner of "{self.pulley}" cannot tension the belt: a metre along its direction lengthens the '
-                f"path by {found:.3g} m. Choose a direction in which the path gets longer"
+                f"path by {found:.3g} m. Choose a direction that lengthens the path"
             )
         return found
 

@@ -1,4 +1,4 @@
-"""What a tensioner provides: its keys, its constants, where it holds its pulley, and how it presses it."""
+"""The contract of a tensioner: keys, constants, position of its pulley, and force."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
@@ -13,7 +13,7 @@ from beltdyn.parts.part import Part
 from beltdyn.parts.quantity import Name
 
 LEAST_LEVERAGE = 1e-3
-"""Smallest part of a unit motion of the pulley's center that must lengthen the path."""
+"""Least lengthening of the path per unit motion of the pulley's center."""
 
 
 class Center(NamedTuple):
@@ -28,12 +28,12 @@ class Center(NamedTuple):
 
 
 class Tensioner(Part):
-    """What holds a pulley other than at a fixed place."""
+    """A movable support of a pulley."""
 
     if TYPE_CHECKING:
         kind: str
 
-    pulley: Name = Field(description="the name of the pulley that it carries")
+    pulley: Name = Field(description="the name of its pulley")
 
     @property
     def anchor(self) -> tuple[float, float] | None:
@@ -42,7 +42,7 @@ class Tensioner(Part):
 
 
 class MovingTensioner(Tensioner):
-    """A spring presses the pulley against the belt; the coordinate q is zero at the center that the pulley is given.
+    """A spring-loaded tensioner; its coordinate q is zero at the given center of the pulley.
 
     q grows where the path of the belt gets longer. The units of the numbers differ: m and N along a line, rad and
     N m about a pivot.
@@ -71,22 +71,22 @@ class MovingTensioner(Tensioner):
         if self.stops is None:
             if self.stop_stiffness is not None or self.stop_damping != 0:
                 raise ValueError(
-                    "stops is missing: stop_stiffness and stop_damping belong to stops. Give stops = [lower, upper]"
+                    "stops is missing, but stop_stiffness or stop_damping is given. Give stops = [lower, upper]"
                 )
             return self
         lower, upper = self.stops
         if not lower <= 0 <= upper or lower == upper:
             raise ValueError(
-                f"stops = [{lower:g}, {upper:g}] must be a lower and an upper one with zero between, the place of the "
-                "pulley's center"
+                f"stops = [{lower:g}, {upper:g}] must be a lower and an upper stop on both sides of zero, the given "
+                "pulley center"
             )
         if self.stop_stiffness is None:
-            raise ValueError("stop_stiffness is missing: stops are springs. Give stop_stiffness")
+            raise ValueError("stop_stiffness is missing, but stops are springs. Give stop_stiffness")
         return self
 
     @abstractmethod
     def leverage(self, center: FloatArray, gradient: FloatArray) -> float:
-        """How much of the motion of the pulley's center lengthens the path, dL/ds.
+        """Lengthening of the path per motion of the pulley's center, dL/ds.
 
         Parameters
         ----------
@@ -124,7 +124,7 @@ class MovingTensioner(Tensioner):
 
     @abstractmethod
     def weighing_mass(self, mass: float) -> float:
-        """Mass at the center of the pulley that weighs on q as tensioner and pulley do, kg.
+        """Mass at the pulley center with the same weight force on q as tensioner and pulley, kg.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class MovingTensioner(Tensioner):
 
     @abstractmethod
     def reach(self, center: FloatArray) -> float:
-        """Way of the pulley's center in a unit of q: 1, or the length of the arm in m."""
+        """Travel of the pulley's center per unit of q: 1, or the length of the arm in m."""
 
     @property
     def spring(self) -> dict[str, float]:
@@ -149,5 +149,5 @@ class MovingTensioner(Tensioner):
         }
 
     def written(self, position: float) -> str:
-        """Write a position, m or rad, with its unit."""
+        """Format a position, m or rad, with its unit."""
         return f"{np.degrees(position):.4g}°" if self.turns else f"{position:.4g} m"

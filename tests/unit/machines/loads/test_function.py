@@ -70,14 +70,16 @@ def test_no_other_process_gets_a_function(carrying: Drive, tmp_path: Path) -> No
         simulate_all({tmp_path / "run.nc": carrying}, told.append)
     assert told == []
     assert list(tmp_path.iterdir()) == []
-    with pytest.raises(ModelError, match="goes to other processes as a text"):
+    with pytest.raises(ModelError, match="other processes get a drive as text"):
         pickle.dumps(carrying)
 
 
 def test_a_result_keeps_the_name_of_the_function(carrying: Drive) -> None:
     read = loads(carrying.text)
     assert read.pulleys[1].load[0].arguments["function"] == "brake"
-    with pytest.raises(ModelError, match='the function "brake" of a load is not in the file, which has its name alone'):
+    with pytest.raises(
+        ModelError, match='the function "brake" of a load is not in the file, which holds only its name'
+    ):
         machine_arrays(read.pulleys)
 
 

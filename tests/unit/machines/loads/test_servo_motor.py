@@ -94,7 +94,7 @@ def test_its_state_stands_behind_the_hub_chains_and_has_no_kinetic_energy() -> N
     [
         ({"integral_time": 0.0}, "must be greater than 0"),
         ({"torque_limit": -1.0}, "must be greater than 0"),
-        ({"stall_torque": 60.0}, "stall_torque and no_load_speed are two points of one line. Give both, or none"),
+        ({"stall_torque": 60.0}, "stall_torque and no_load_speed define one line together. Give both, or remove both"),
     ],
 )
 def test_errors(changes: dict[str, Any], sentence: str) -> None:

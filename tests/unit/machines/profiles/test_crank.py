@@ -63,7 +63,7 @@ def test_a_file_in_degrees_and_rpm(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"speeds": (1.0, 2.0, -1.0, 2.0)}, "speeds go from -1 to 2 rad/s: a crank that stands still or"),
+        ({"speeds": (1.0, 2.0, -1.0, 2.0)}, "speeds range from -1 to 2 rad/s: a crank that stops or"),
         ({"speeds": (1.0, 2.0)}, "needs at least 4 entries"),
         ({"cycle": 2.0}, "angles span 3 rad, more than cycle = 2 rad. Give one cycle"),
         ({"angles": (0.0, 2.0, 1.0, 3.0)}, "angles must increase, but 1 follows 2"),

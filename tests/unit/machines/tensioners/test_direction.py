@@ -39,5 +39,5 @@ def test_more_than_rounding_is_taken_out(length: float) -> None:
 
 
 def test_no_direction() -> None:
-    with pytest.raises(ModelError, match="points nowhere: at least one component must differ from zero"):
+    with pytest.raises(ModelError, match="has zero length: at least one component must differ from zero"):
         direction(0.0, 0.0)

@@ -41,7 +41,7 @@ def test_an_arm_that_hardly_lengthens_the_path_is_refused(side: float) -> None:
     """As one that points along the bisector of the spans does; a thousandth of its motion is the least."""
     along, across = np.array([0.6, 0.8]), side * np.array([-0.8, 0.6])
     for part in (0.0, 0.5e-3):
-        with pytest.raises(ValueError, match=r"turning it hardly changes the length of the path\. Move its pivot"):
+        with pytest.raises(ValueError, match=r"its rotation hardly changes the length of the path\. Move its pivot"):
             ARM.leverage(CENTER, along + part * across)
     assert ARM.leverage(CENTER, along + 1.5e-3 * across) == pytest.approx(side * 1.5e-3, rel=1e-12)
 

@@ -152,7 +152,7 @@ def test_the_force_of_a_spring() -> None:
     assert tensioner_force(arrays("sliding")[0], 0.1, 0.5)[0] == pytest.approx(expected, rel=1e-15)
 
 
-STOPS = "stops = .* must be a lower and an upper one with zero between"
+STOPS = "stops = .* must be a lower and an upper stop on both sides of zero"
 
 
 @pytest.mark.parametrize("stops", [(-0.2, 0.0), (0.0, 0.3), (-0.2, 0.3)])

@@ -42,5 +42,5 @@ def test_pulleys_are_known_by_name_and_by_number(run: Run, pulley: str | int, nu
 
 @pytest.mark.parametrize("pulley", ["idler", 2, -1])
 def test_unknown_pulley(run: Run, pulley: str | int) -> None:
-    with pytest.raises(ModelError, match="Its pulleys are: driver, driven"):
+    with pytest.raises(ModelError, match="Choose one of driver, driven"):
         pulley_number(run, pulley)

@@ -28,8 +28,8 @@ def test_what_bounds_steps(drive: Drive, settings: dict[str, float], steps: int,
 def test_remedies_are_those_of_the_drives_own_law(drive: Drive) -> None:
     often = Statistics(steps=1000, rejected_steps=400)
     own = step_bound(drive.replace(contact={"friction": 0.5}), often, 0.1)
-    assert "raise contact.creep_ratio = " in own
+    assert "increase contact.creep_ratio from " in own
     assert "creep_rate_factor" not in own
     given = {"friction": 0.5, "friction_law": "coefficient_slope", "creep_velocity": 1e-4}
     said = step_bound(drive.replace(contact=given), often, 0.1)
-    assert "leave out contact.friction_law and contact.creep_velocity" in said
+    assert "omit contact.friction_law and contact.creep_velocity" in said

@@ -74,8 +74,8 @@ def test_rows_of_a_table_are_points(drive: Drive, tmp_path: Path) -> None:
         ([WIDTH | {"values": [-1.0]}], {}, "belt.width = -1"),
         ([{"path": "pulley[driver].speed", "values": [12.0]}], {}, "speed"),
         ([WIDTH], {"sampling": "sobol"}, "are not bounds"),
-        ([WIDTH, WIDTH], {}, "stands twice"),
-        ([], {}, "points come from a table, or from groups"),
+        ([WIDTH, WIDTH], {}, "is given twice"),
+        ([], {}, "needs points from a table or from groups"),
         ([WIDTH], {"table": "a.csv"}, "Give one of them"),
         ([WIDTH], {"analysis": "stedy"}, 'Did you mean "steady"'),
         (
