@@ -160,8 +160,8 @@ def test_elements_without_ends_cannot_be_tied_by_multipliers(drive: Drive) -> No
     with pytest.raises(ModelError) as caught:
         drive.replace(belt=beams, simulation=drive.simulation.replace(joint="multipliers"))
     assert str(caught.value) == (
-        'simulation.joint = "multipliers" is incompatible with belt.discretization = "three-node-beam", whose elements have '
-        'no ends to join. Choose joint = "shared_node", or discretization = "ancf".'
+        'simulation.joint = "multipliers" is incompatible with belt.discretization = "three-node-beam", whose elements '
+        'have no ends to join. Choose joint = "shared_node", or discretization = "ancf".'
     )
 
 

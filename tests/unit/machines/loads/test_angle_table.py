@@ -109,16 +109,16 @@ def test_files(tmp_path: Path) -> None:
     ("kind", "given", "sentence"),
     [
         (AngleTable, CRANK | {"cycle": "360 deg"}, "angles span 12.0428 rad, more than cycle = 6.28319 rad"),
-        (AngleTable, CRANK | {"torques": [1.0, 2.0, 3.0]}, "angles has 24 numbers and torques has 3"),
+        (AngleTable, CRANK | {"torques": [1.0, 2.0, 3.0]}, "angles has 24 numbers but torques has 3"),
         (
             AngleTable,
             CRANK | {"angles": [0.0, 0.0, 1.0], "torques": [0, 0, 0]},
             "angles must increase, but 0 follows 0",
         ),
         (AngleTable, CRANK | {"angles": [0, 1, 4 * np.pi], "torques": [0, 0, 1]}, "one cycle apart with different"),
-        (AngleSpeedTable, GRID | {"speeds": [1.0, 2.0]}, "speeds has 2 numbers and torques has 3"),
+        (AngleSpeedTable, GRID | {"speeds": [1.0, 2.0]}, "speeds has 2 numbers but torques has 3"),
         (AngleSpeedTable, GRID | {"speeds": [1.0, 2.0, 2.0]}, "speeds must increase, but 2 follows 2"),
-        (AngleSpeedTable, GRID | {"torques": [[1.0, 1.0, 1.0]] * 3}, "angles has 24 numbers and torques has 3"),
+        (AngleSpeedTable, GRID | {"torques": [[1.0, 1.0, 1.0]] * 3}, "angles has 24 numbers but torques has 3"),
         (
             AngleTable,
             {"kind": "angle_table", "file": "x.csv", "angles": [0]},

@@ -22,7 +22,7 @@ MOTOR = {"kind": "motor", "breakdown_torque": "12 N m", "breakdown_slip": 0.2, "
         (
             LoadTable,
             {"kind": "table", "speeds": [0.0, 1.0, 2.0], "torques": [1.0, 2.0]},
-            "speeds has 3 numbers and torques has 2: each speed needs one torque",
+            "speeds has 3 numbers but torques has 2. Give one torque for each speed",
         ),
         (
             LoadTable,
