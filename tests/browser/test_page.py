@@ -139,19 +139,19 @@ def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(shoot: Shoot, open_pag
     page.get_by_role("tab", name="simulation").click()
     enter(page, "duration [s]", "30 ms")
     analyse(page, "run")
-    page.get_by_role("button", name="Look at it").first.click()
+    page.get_by_role("button", name="Show report").first.click()
     report = page.frame_locator("iframe.bd-report")
     report.locator("canvas").first.wait_for()
     report.locator(".bk-Figure").first.wait_for()
     place_of_report = page.locator("iframe.bd-report").bounding_box()["y"]
     assert page.get_by_role("button", name="Result file", exact=True).first.bounding_box()["y"] < place_of_report
     shoot(page, "newcomer_report")
-    for button, ending in (("Result file", ".nc"), ("Report", ".html")):
+    for button, ending in (("Result file", ".nc"), ("Download report", ".html")):
         with page.expect_download() as kept:
             page.get_by_role("button", name=button, exact=True).first.click()
         assert kept.value.suggested_filename.endswith(ending)
     page.get_by_role("button", name="Save", exact=True).click()
-    page.get_by_label("name of the file").fill("mine")
+    page.get_by_label("file name").fill("mine")
     page.get_by_role("dialog").get_by_role("button", name="Save").click()
     page.get_by_text("mine.toml", exact=True).wait_for()
     text = (folder / "mine.toml").read_text(encoding="utf-8")
@@ -159,7 +159,7 @@ def test_a_newcomer_goes_from_an_empty_canvas_to_a_report(shoot: Shoot, open_pag
     assert data["pulley"][1]["load"] == [{"kind": "resistance", "constant": "5 N m"}]
     assert (data["belt"]["profile"], data["belt"]["ribs"]) == ("PJ", 8)
     assert data["tensioner"][0]["pulley"] == "pulley 3"
-    assert "# Everything turns and counts counter-clockwise positive." in text
+    assert "# Speeds, torques and angles are positive counter-clockwise." in text
     assert 'installed_tension = "300 N"  # at rest; the length follows' in text
     begin_empty(page)
     page.get_by_role("button", name="Open", exact=True).click()
@@ -209,10 +209,10 @@ def test_an_optimisation_finds_a_drive_file(shoot: Shoot, open_page: Open, folde
     safety = page.locator("tr", has_text="slip_safety at least 3").locator("td")
     assert [float(one) for one in safety.all_inner_texts()[1:3]] == pytest.approx([4.66, 3.0], rel=0.01)
     with page.expect_download() as kept:
-        page.get_by_role("button", name="Drive file found").click()
+        page.get_by_role("button", name="Resulting drive file").click()
     best = tomllib.loads(Path(kept.value.path()).read_text(encoding="utf-8"))
     assert 150.0 < float(best["belt"]["installed_tension"].removesuffix(" N")) < 300.0
-    page.get_by_role("button", name="Look at it").first.click()
+    page.get_by_role("button", name="Show report").first.click()
     page.frame_locator("iframe.bd-report").get_by_role("heading", name="Where it comes from").wait_for()
 
 

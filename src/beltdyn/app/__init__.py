@@ -1,1 +1,1 @@
-"""The page on which a drive is laid out and run: a server on this machine, for a browser on this machine."""
+"""The browser page for editing and simulating a drive, served on this machine only."""

@@ -1,4 +1,4 @@
-"""Analyses on the page: started with a button, with progress, cancelled, and what they gave."""
+"""Analyses on the page: start, progress, cancellation and results."""
 
 import math
 from collections.abc import Callable
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from beltdyn.app.watching import Glimpse
 
 _OFTEN = 0.25
-"""Time between two looks at an analysis, s."""
+"""Polling interval of an analysis, s."""
 
 
 class AnalysisView:
@@ -31,7 +31,7 @@ class AnalysisView:
     session : Session
         The drive, with the analyses of the tab.
     watch : callable
-        Is given what a run looks like while it is computed, and None when there is nothing more to watch.
+        Called with snapshots of a run while it is computed, and with None at its end.
     """
 
     def __init__(self, session: Session, watch: Callable[["Glimpse | None"], None]) -> None:
@@ -61,7 +61,7 @@ class AnalysisView:
         self.update()
 
     def update(self) -> None:
-        """Bring what can be started in line with the drive."""
+        """Enable or disable buttons according to the drive."""
         running = self._session.job is not None
         self._start.set_enabled(self._session.draft.drive is not None and not running)
         self._cancel.set_visibility(running)
@@ -74,7 +74,7 @@ class AnalysisView:
             self._inputs = {one: self._input(one) for one in options_of(str(self._name.value))}
 
     def _input(self, one: Option) -> ui.input | ui.select:
-        """A field of an option; of one that is a file a list of those in the folder."""
+        """A field of an option, for a file option a list of files in the folder."""
         name = one.name.strip("_")
         box: ui.input | ui.select
         if one.suffixes:
@@ -105,7 +105,7 @@ class AnalysisView:
             return
         missing = [one.name for one in self._inputs if one.required and one.name not in options]
         if missing:
-            self._state.text = f"{name} needs {' and '.join(missing)}."
+            self._state.text = f"{name} needs the option{'s' * (len(missing) > 1)} {' and '.join(missing)}."
             return
         folder = Path(mkdtemp(dir=session.workspace.results))
         result = ANALYSES[name].result_file(folder / Path(session.name or "drive.toml").name)
@@ -115,10 +115,10 @@ class AnalysisView:
         self.update()
 
     def cancel(self) -> None:
-        """End the analysis, and keep what was computed."""
+        """Stop the analysis, and keep the results computed so far."""
         if self._session.job is not None:
             self._session.job.cancel()
-            self._state.text = "ending …"
+            self._state.text = "stopping …"
 
     def _look(self) -> None:
         job = self._session.follow_job()
@@ -150,7 +150,7 @@ class AnalysisView:
                 show_parts((glimpse.pulleys,))
 
     def _show_outcomes(self) -> None:
-        """Show what has ended since, and take away what the session keeps no more."""
+        """Show new outcomes, and remove those that the session has dropped."""
         there = self._session.outcomes
         for old in [one for one in self._cards if all(one[0] is not outcome for _, outcome in there)]:
             old[1].delete()
@@ -177,10 +177,10 @@ class AnalysisView:
         with ui.row().classes("gap-2") as buttons:
             if (report := outcome.report) is not None:
                 address = app.add_static_file(local_file=report)
-                _button("Look at it", "movie", lambda: _open(frame, address)).mark("look")
-                ui.link("in a tab of its own", address, new_tab=True).classes("self-center")
-                _button("Report", "download", partial(ui.download.file, report)).mark("report")
-            for text, file in (("Result file", outcome.result), ("Drive file found", outcome.best)):
+                _button("Show report", "movie", lambda: _open(frame, address)).mark("look")
+                ui.link("open in new tab", address, new_tab=True).classes("self-center")
+                _button("Download report", "download", partial(ui.download.file, report)).mark("report")
+            for text, file in (("Result file", outcome.result), ("Resulting drive file", outcome.best)):
                 if file is not None:
                     _button(text, "download", partial(ui.download.file, file)).mark(text)
         buttons.move(target_index=0)
@@ -194,7 +194,7 @@ def _button(text: str, icon: str, on_click: Callable[[], None]) -> ui.button:
 
 
 def _open(frame: ui.element, address: str) -> None:
-    """Show a report, in which the drive moves, in the page; a second click puts it away."""
+    """Show a report in the page; a second click hides it."""
     if frame.default_slot.children:
         frame.clear()
         return

@@ -1,4 +1,4 @@
-"""The process that computes numbers for the tabs, so that the page never waits."""
+"""The process that computes numbers for the tabs, so that the page does not block."""
 
 import asyncio
 import multiprocessing
@@ -12,7 +12,7 @@ from beltdyn.app.computing import Answer, Asked, answer, begin, compile_ahead
 
 
 class Calculator:
-    """A process that answers one question after the other; it is started with the first."""
+    """A process that answers requests one after another, started with the first."""
 
     def __init__(self) -> None:
         self._spawning = multiprocessing.get_context("spawn")
@@ -23,11 +23,11 @@ class Calculator:
 
     @property
     def preparing(self) -> bool:
-        """Whether kernels are compiled, which answers may wait for."""
+        """Whether kernels are being compiled."""
         return self._compiles.is_set() or self._compiles_ahead.is_set()
 
     def look_ahead(self, asked: Asked) -> None:
-        """Load or compile what answers need, before there is a question.
+        """Load or compile kernels in advance.
 
         What a drive at rest needs is loaded by the process that answers; running and modes are left to one of their
         own, which begins when the drive is at rest.
@@ -55,7 +55,7 @@ class Calculator:
         return self._pool
 
     async def ask(self, asked: Asked) -> Answer:
-        """Compute what a tab wants to know.
+        """Compute the numbers of a tab.
 
         Parameters
         ----------
@@ -71,12 +71,10 @@ class Calculator:
             return await asyncio.get_running_loop().run_in_executor(self._process(), answer, asked)
         except BrokenProcessPool:
             self.close()
-            return Answer(
-                (), (), "the process that computes has ended unexpectedly. Change something to start it anew.", 0.0
-            )
+            return Answer((), (), "the computing process ended unexpectedly. Any change of the drive restarts it.", 0.0)
 
     def close(self) -> None:
-        """End the processes, whatever they are at, before what they share with this one is gone."""
+        """End the processes at once, before resources shared with them are released."""
         with self._starting:
             pool, self._pool = self._pool, None
             ahead, self._ahead = self._ahead, None

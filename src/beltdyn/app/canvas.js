@@ -12,7 +12,7 @@ export default {
   template: `
    <div>
     <div v-if="lost" class="bd-lost" role="alert">
-      The server has ended, and this page with it. Start it anew: beltdyn app.
+      The server has stopped. Restart it: beltdyn app.
       <a :href="kept" :download="name">Keep the drive file</a>
     </div>
     <svg ref="svg" :class="['bd-canvas', { 'bd-watching': live }]" role="application" :viewBox="viewBox" preserveAspectRatio="xMidYMid meet"

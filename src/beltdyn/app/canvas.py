@@ -1,4 +1,4 @@
-"""The canvas in the browser: shows a scene, and tells what is done on it."""
+"""The canvas in the browser: shows a scene and reports actions on it."""
 
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
@@ -31,22 +31,22 @@ class Canvas(Element, component="canvas.js"):
         self.on("choose", lambda event: on_choose(_told(event).get("number")))
 
     def keep(self, text: str, name: str) -> None:
-        """Give the browser the drive file, which is offered there should the server end."""
+        """Pass the drive file to the browser, which offers it for download if the server ends."""
         self._props["text"], self._props["name"] = text, name
 
     def show(self, scene: Mapping[str, Any], selected: int | None) -> None:
-        """Show a scene, with a pulley marked."""
+        """Show a scene with a highlighted pulley."""
         self._props["scene"] = dict(scene)
         self._props["selected"] = -1 if selected is None else selected
         self.update()
         self.run_method("follow", None)
 
     def follow(self, scene: Mapping[str, Any]) -> None:
-        """Show a scene while something is dragged, until the next call of `show`."""
+        """Show a scene during dragging, until the next call of `show`."""
         self.run_method("follow", scene)
 
     def watch(self, seen: "Glimpse | None") -> None:
-        """Show a run at one instant in place of the belt at rest, or the drive again with None."""
+        """Show a snapshot of a run instead of the belt at rest, or the drive again with None."""
         self._props["live"] = None if seen is None else seen.drawn
         self.update()
 

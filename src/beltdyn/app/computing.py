@@ -1,4 +1,4 @@
-"""What the numbers below the canvas are computed by, in a process of its own: rest, steady running and modes."""
+"""Computation of the numbers below the canvas in a separate process: rest, steady running and modes."""
 
 import multiprocessing
 import os
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
 _MODES = 6
 _MOST_TABS = 8
-"""Tabs whose last steady running is remembered."""
+"""Number of tabs with a cached steady running."""
 
 
 class Asked(NamedTuple):
-    """What a tab wants to know.
+    """The request of a tab.
 
     Attributes
     ----------
@@ -84,18 +84,18 @@ _known: dict[str, _Known] = {}
 
 
 _compiles: SharedEvent | None = None
-"""What is set while this process compiles kernels for an answer."""
+"""An event, set while this process compiles kernels."""
 
 
 def prepare() -> None:
-    """Make the process ready: it leaves Ctrl-C to the server, and ends with it."""
+    """Initialise the process: the server handles Ctrl-C, and the process ends with it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore")
     threading.Thread(target=_follow_parent, daemon=True).start()
 
 
 def begin(compiles: SharedEvent) -> None:
-    """Make the process that answers ready.
+    """Initialise the computing process.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def _tell_by(flag: SharedEvent) -> None:
 
 
 def compile_ahead(asked: Asked, compiles: SharedEvent) -> None:
-    """Load or compile what running and modes need, before there is a question.
+    """Load or compile the kernels of steady running and modes in advance.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def _follow_parent() -> None:
 
 
 def answer(asked: Asked) -> Answer:
-    """Compute what a tab wants to know; an error is an answer too."""
+    """Compute the numbers of a tab; errors are returned as answers."""
     begun = time.perf_counter()
     try:
         parts, told = {"rest": _rest, "running": _running, "modes": _modes}[asked.what](asked)
@@ -207,7 +207,7 @@ def _steady(asked: Asked) -> Run:
 
 
 def given_speed(drive: Drive, number: int) -> float:
-    """Speed at which a pulley is driven at the end of the simulation, by its speed or a motor, rad/s."""
+    """Driven speed of a pulley at the end of the simulation, prescribed or by a motor, rad/s."""
     pulley = drive.pulleys[number]
     if pulley.speed is not None:
         return float(pulley.speed.at([drive.simulation.end])[0])

@@ -1,4 +1,4 @@
-"""The drive file while it is edited: what it holds, its text with the comments, and what was there before."""
+"""The drive file during editing: data, text with comments, and history."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -12,14 +12,14 @@ _MOST_STATES = 200
 
 
 class State(NamedTuple):
-    """A drive file at one time: its text, and the data in it, which nobody changes."""
+    """A state of a drive file: its text and its data, not to be changed."""
 
     text: str
     data: dict[str, Any]
 
 
 class Document:
-    """A drive file that is edited: its data may be wrong for a while, its text is TOML at any time.
+    """A drive file being edited: its data may be invalid temporarily, its text is always TOML.
 
     Comments and the order of the text are kept by tomlkit. Where the text that it gives would say something else than
     the data, the whole file is written anew, without comments.
@@ -43,12 +43,12 @@ class Document:
 
     @property
     def text(self) -> str:
-        """The file as it stands."""
+        """The present text."""
         return self._states[self._place].text
 
     @property
     def data(self) -> dict[str, Any]:
-        """What it holds; not to be changed."""
+        """The present data, not to be changed."""
         return self._states[self._place].data
 
     @property
@@ -67,11 +67,11 @@ class Document:
         return self._place + 1 < len(self._states)
 
     def preview(self, edits: Sequence[Edit]) -> dict[str, Any]:
-        """Give the data as they would be, and change nothing."""
+        """Return the data with some edits, without changing the document."""
         return changed_data(self.data, edits)
 
     def apply(self, edits: Sequence[Edit]) -> None:
-        """Change the drive file by some edits, which are one step of undo.
+        """Apply edits as a single undo step.
 
         Raises
         ------
@@ -83,7 +83,7 @@ class Document:
             self._append(State(self._text_with(edits, data), data))
 
     def replace(self, text: str) -> None:
-        """Put another text in its place, which can be undone.
+        """Replace the text, as an undo step.
 
         Raises
         ------
@@ -94,11 +94,11 @@ class Document:
             self._append(State(text, parse_toml(text)))
 
     def undo(self) -> None:
-        """Go back to the state before, if there is one."""
+        """Return to the previous state, if any."""
         self._place = max(self._place - 1, 0)
 
     def redo(self) -> None:
-        """Go on to the state after, if there is one."""
+        """Advance to the next state, if any."""
         self._place = min(self._place + 1, len(self._states) - 1)
 
     def _append(self, state: State) -> None:

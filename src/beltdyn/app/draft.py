@@ -1,4 +1,4 @@
-"""What the data of a drive file say: a drive, or what is wrong and where."""
+"""The data of a drive file as a drive, or as errors with locations."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -12,11 +12,11 @@ from beltdyn.parts.messages import Told, told_apart
 from beltdyn.parts.toml_edits import Location
 
 _FILES = ("file", "catalogue")
-"""Keys whose values are paths of files that are read."""
+"""Keys with paths of input files."""
 
 
 class Draft(NamedTuple):
-    """A drive file that may be wrong.
+    """A possibly invalid drive file.
 
     Attributes
     ----------
@@ -33,16 +33,16 @@ class Draft(NamedTuple):
     told: list[Told]
 
     def told_at(self, location: Location) -> list[str]:
-        """What is wrong with a value, or with a group as a whole."""
+        """Errors of a value, or of a group as a whole."""
         return [one.sentence for one in self.told if one.location == location]
 
     def told_below(self, location: Location) -> list[str]:
-        """What is wrong with a value, or with anything in it."""
+        """Errors of a value, or of anything inside it."""
         return [one.sentence for one in self.told if one.location[: len(location)] == location]
 
 
 def draft(data: Mapping[str, Any], folder: Path, *, only_laid_out: bool = False) -> Draft:
-    """Find out what is wrong with a drive file.
+    """Check a drive file.
 
     Parameters
     ----------
@@ -61,8 +61,8 @@ def draft(data: Mapping[str, Any], folder: Path, *, only_laid_out: bool = False)
     outside = [
         Told(
             location,
-            f"{'.'.join(map(str, location))} = {value!r} lies outside {folder}, where this page reads files. "
-            "Copy it there.",
+            f"{'.'.join(map(str, location))} = {value!r} is outside {folder}, the only folder that this page reads. "
+            "Copy the file there.",
         )
         for location, value in _paths((), data)
         if not (folder / value).resolve().is_relative_to(folder.resolve())

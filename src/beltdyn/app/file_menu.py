@@ -1,4 +1,4 @@
-"""Open, save and download the drive file, and begin with an example."""
+"""Open, save and download the drive file, and start from an example."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ class FileMenu:
     session : Session
         The drive.
     update : callable
-        Is called when another drive is there.
+        Called after another drive is loaded.
     """
 
     def __init__(self, session: Session, update: Callable[[], None]) -> None:
@@ -34,8 +34,8 @@ class FileMenu:
 
     def show_gallery(self) -> None:
         """Offer an empty drive file and the examples."""
-        with self._dialog("Begin with") as dialog:
-            self._offer(dialog, Example("empty_canvas", "A belt without pulleys: place them yourself.", EMPTY))
+        with self._dialog("New drive") as dialog:
+            self._offer(dialog, Example("empty_canvas", "A belt without pulleys, to start from scratch.", EMPTY))
             for one in examples():
                 self._offer(dialog, one)
 
@@ -50,10 +50,10 @@ class FileMenu:
 
     def show_files(self) -> None:
         """Offer the drive files of the folder."""
-        with self._dialog(f"Open a drive file of {self._session.workspace.folder.root}") as dialog:
+        with self._dialog(f"Open a drive file in {self._session.workspace.folder.root}") as dialog:
             names = self._session.workspace.folder.files()
             if not names:
-                ui.label("There is no drive file in it.")
+                ui.label("This folder has no drive files.")
             for name in names:
                 self._offer_file(dialog, name)
 
@@ -67,11 +67,11 @@ class FileMenu:
 
     @contextmanager
     def _dialog(self, title: str) -> Iterator[ui.dialog]:
-        """A dialog with a list, which goes away once it is closed."""
+        """A dialog with a list, deleted when it is closed."""
         with ui.dialog(value=True) as dialog, ui.card().classes("w-full"):
             ui.label(title).classes("text-subtitle1")
             if self._session.document.changed:
-                ui.label("What is not saved is lost.").classes("bd-message bd-warning")
+                ui.label("Unsaved changes will be lost.").classes("bd-message bd-warning")
             with ui.list().classes("w-full").props("dense separator"):
                 yield dialog
         dialog.on("hide", dialog.delete)
@@ -86,18 +86,14 @@ class FileMenu:
             self.ask_name()
 
     def _save(self, name: str | None = None) -> None:
-        ui.notify(f"{self._session.save(name)} is saved.", type="positive")
+        ui.notify(f"Saved: {self._session.save(name)}", type="positive")
         self._update()
 
     def ask_name(self) -> None:
-        """Save under a name that is asked for."""
+        """Ask for a name, and save."""
         with ui.dialog(value=True) as dialog, ui.card():
             ui.label(f"Save in {self._session.workspace.folder.root}")
-            name = (
-                ui.input("name of the file", value=self._session.name or "drive.toml")
-                .props("autofocus")
-                .mark("file name")
-            )
+            name = ui.input("file name", value=self._session.name or "drive.toml").props("autofocus").mark("file name")
 
             def save() -> None:
                 if self._tried(lambda: self._save(name.value or "")):
@@ -110,7 +106,7 @@ class FileMenu:
         dialog.on("hide", dialog.delete)
 
     def download(self) -> None:
-        """Hand the drive file to the browser."""
+        """Download the drive file in the browser."""
         ui.download.content(
             self._session.document.text.encode(), (self._session.name or "drive.toml").rpartition("/")[2], "text/plain"
         )

@@ -1,4 +1,4 @@
-"""The folder that the page may read and write: drive files in it, and nothing outside."""
+"""The only folder that the page reads and writes."""
 
 import os
 from pathlib import Path
@@ -11,7 +11,7 @@ from beltdyn.results.atomic import atomic_path
 
 _SUFFIX = ".toml"
 _DEEPEST = 3
-"""Folders within folders that are looked into."""
+"""Largest depth of subfolders."""
 _MOST_FILES = 200
 _MOST_FOLDERS = 500
 
@@ -50,7 +50,7 @@ class Folder:
         return sorted(found[:_MOST_FILES], key=lambda name: (name.count("/"), name))
 
     def path(self, name: str) -> Path:
-        """Find the file of a name.
+        """The path of a file by its name.
 
         Parameters
         ----------
@@ -66,7 +66,7 @@ class Folder:
         named = name if name.endswith(_SUFFIX) else f"{name}{_SUFFIX}"
         hidden = any(part.startswith(".") for part in Path(named).parts)
         if not name or len(name) > 200 or "\0" in name or hidden or not self._holds(Path(named)):
-            raise ModelError(f'"{shorten(name)}" is no name of a file in {self.root}. Give one such as "drive.toml".')
+            raise ModelError(f'"{shorten(name)}" is not a file name in {self.root}. Give a name such as "drive.toml".')
         return (self.root / named).resolve()
 
     def read(self, name: str) -> str:
@@ -81,9 +81,9 @@ class Folder:
         try:
             return read_text(path, LONGEST_TOML)
         except UnicodeDecodeError as error:
-            raise ModelError(f"{path} is not a text in UTF-8. A drive file is TOML.") from error
+            raise ModelError(f"{path} is not UTF-8 text. A drive file is TOML.") from error
         except (OSError, ValueError) as error:
-            raise ModelError(f"{path} cannot be read: {reason(error)}. Check its name.") from error
+            raise ModelError(f"{path} cannot be read: {reason(error)}. Check the path.") from error
 
     def write(self, name: str, text: str, known: str | None = None) -> Path:
         """Write a drive file.
@@ -109,10 +109,10 @@ class Folder:
         """
         path = self.path(name)
         if path.exists() and (known is None or self.read(name) != known):
-            changed = "is there already" if known is None else "was changed by another program"
-            raise ModelError(f"{path} {changed}, and would be overwritten. Save under another name.")
+            changed = "already exists" if known is None else "was changed by another program"
+            raise ModelError(f"{path} {changed} and would be overwritten. Save under another name.")
         if not path.parent.is_dir():
-            raise ModelError(f"{path.parent} is no folder. Make it, or save elsewhere.")
+            raise ModelError(f"{path.parent} is not a folder. Create it, or save elsewhere.")
         with atomic_path(path, lambda _: True) as temporary:
             temporary.write_text(text, encoding="utf-8")
         return path

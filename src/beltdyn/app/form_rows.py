@@ -1,4 +1,4 @@
-"""A form as a list of rows: keys, groups with what is in them, lists with their entries; and what rows change."""
+"""A form as a list of rows (keys, groups, list entries), and the edits by rows."""
 
 from collections.abc import Iterator, Mapping, Set
 from typing import Any, Literal, NamedTuple
@@ -34,7 +34,7 @@ class Row(NamedTuple):
 
     @property
     def shape(self) -> tuple[object, ...]:
-        """What makes it another row, and not only another value."""
+        """Properties that need a new row, not only a new value."""
         choices = self.field.choices if self.field is not None else ()
         return self.what, self.depth, self.location, self.kinds, choices
 
@@ -78,7 +78,7 @@ def _rows_of(data: Mapping[str, Any], one: Field, opened: Set[Location], depth: 
 
 
 def edits_of_value(data: Mapping[str, Any], location: Location, value: Any) -> list[Edit]:
-    """Edits that give a key a value, or leave it open with None; none where it has that value."""
+    """Edits that set a key, or remove it with None; empty if the value is unchanged."""
     if value_at(data, location) == value and type(value_at(data, location)) is type(value):
         return []
     if value is None:
@@ -89,7 +89,7 @@ def edits_of_value(data: Mapping[str, Any], location: Location, value: Any) -> l
 
 
 def edits_of_kind(data: Mapping[str, Any], location: Location, kind: str | None) -> list[Edit]:
-    """Edits that make a group one of a kind, with the values that both kinds have, or take it away with None."""
+    """Edits that change the kind of a group and keep common values, or remove it with None."""
     group = value_at(data, location)
     if kind is None:
         return [] if group is None else [Edit("remove", location)]
@@ -102,7 +102,7 @@ def edits_of_kind(data: Mapping[str, Any], location: Location, kind: str | None)
 
 
 def edits_of_entry(data: Mapping[str, Any], location: Location, kind: str | None) -> list[Edit]:
-    """Edits that add an entry to a list, of a kind if it has one."""
+    """Edits that append an entry to a list, with its kind if any."""
     entries = value_at(data, location)
     if entries is not None and not isinstance(entries, list):
         return [Edit("set", location, [{"kind": kind} if kind else {}])]

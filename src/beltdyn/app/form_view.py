@@ -1,4 +1,4 @@
-"""A form on the page: a widget for each row, values and messages that follow the drive file."""
+"""A form on the page: a widget per row, with values and messages of the drive file."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -22,7 +22,7 @@ class FormView:
     session : Session
         The drive.
     apply : callable
-        Is given the edits of what a user enters.
+        Called with the edits of a user's input.
     """
 
     def __init__(self, session: Session, apply: Callable[[list[Edit]], None]) -> None:
@@ -36,7 +36,7 @@ class FormView:
         self._box = ui.column().classes("w-full gap-1")
 
     def show(self, location: Location | None) -> None:
-        """Show the group at a location, with values and messages as they stand; nothing with None."""
+        """Show the group at a location with its present values and messages; nothing for None."""
         data = self._session.document.data
         found = [] if location is None else list(rows(data, location, self._opened))
         same = location == self._location and [one.shape for one in found] == [one.shape for one in self._rows]
@@ -58,7 +58,7 @@ class FormView:
                     getattr(self, f"_build_{row.what}")(row)
 
     def _fill(self) -> None:
-        """Bring values and messages up to date, and keep the widgets: whoever types goes on typing."""
+        """Update values and messages but keep the widgets, so that typing is not interrupted."""
         draft = self._session.draft
         for row in self._rows:
             widget = self._widgets.get(row.location)
@@ -95,7 +95,7 @@ class FormView:
             widget: Any = ui.checkbox(label, on_change=lambda event: self._enter(field, event.value))
         elif field.form == "choice":
             shown = self._shown(field)
-            label = f"{label} ({field.default} unless chosen)" if field.default else label
+            label = f"{label} (default: {field.default})" if field.default else label
             widget = ui.select(
                 list(field.choices),
                 label=label,

@@ -1,4 +1,4 @@
-"""The forms beside the canvas: the keys of a group of the drive file, from the schema of the model."""
+"""The forms beside the canvas: the keys of a group of the drive file, from the JSON schema."""
 
 import re
 from collections.abc import Mapping
@@ -24,11 +24,11 @@ _SHORT_OF: Mapping[str, tuple[str, ...]] = {
     "limits": ("largest_slip", "largest_hub_load", "largest_tension", "least_margin"),
     "tensioner": ("pulley", "direction", "pivot", "preload", "rate", "mass", "inertia", "stops", "take_up"),
 }
-"""Keys of each group that are shown from the start, in this order; the others are shown where they are given."""
+"""Keys of each group shown by default, in this order; others are shown if given."""
 
 
 class Field(NamedTuple):
-    """A key of a group, as a form shows it.
+    """A key of a group in a form.
 
     Attributes
     ----------
@@ -67,12 +67,12 @@ class Field(NamedTuple):
 
     @property
     def text(self) -> str:
-        """What the file gives, as it is typed."""
+        """The value of the file as typed."""
         return as_text(self.value)
 
 
 def as_text(value: Any) -> str:
-    """Write a value as it is typed into a form; several numbers with commas between."""
+    """Format a value as typed into a form; several numbers separated by commas."""
     if value is None:
         return ""
     if isinstance(value, bool):
@@ -83,7 +83,7 @@ def as_text(value: Any) -> str:
 
 
 def as_value(form: Form, text: str) -> Any:
-    """Read what was typed: a number where it is one, and else text, which the model judges; None for nothing."""
+    """Parse typed text: a number if possible, otherwise text for validation; None if empty."""
     text = text.strip()
     if not text:
         return None
@@ -104,7 +104,7 @@ def _number_or_text(text: str) -> int | float | str:
 
 
 def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
-    """List the keys of a group of the drive file, those first that are shown from the start.
+    """List the keys of a group of the drive file, those shown by default first.
 
     Parameters
     ----------
@@ -137,14 +137,14 @@ def fields(data: Mapping[str, Any], location: Location) -> list[Field]:
 
 
 def kinds(data: Mapping[str, Any], location: Location) -> tuple[str, ...]:
-    """Kinds of what may stand at a location; none where there are no kinds."""
+    """Possible kinds at a location; empty without kinds."""
     locations = ErrorLocation(Drive, data)
     parent = _tagged(locations, data, location[:-1])
     return _kinds(locations.locate((*parent, location[-1]))[1])
 
 
 def value_at(data: Any, location: Location) -> Any:
-    """What stands at a location; None where nothing does."""
+    """The value at a location; None without one."""
     for step in location:
         try:
             data = data[step]

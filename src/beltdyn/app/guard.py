@@ -1,4 +1,4 @@
-"""Who may talk to the server: a browser on this machine that knows the address, and no other page in it."""
+"""Access control of the server: only a browser on this machine that knows the address, and no other pages."""
 
 import secrets
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping
@@ -11,7 +11,7 @@ Send = Callable[[Message], Awaitable[None]]
 Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 LARGEST_REQUEST = 5_000_000
-"""Bytes of the longest request, or message of a socket."""
+"""Limit of a request or socket message, bytes."""
 _HEADERS = (
     (b"referrer-policy", b"no-referrer"),
     (b"x-content-type-options", b"nosniff"),
@@ -25,12 +25,12 @@ _HEADERS = (
 
 
 def new_token() -> str:
-    """A word that nobody can guess, which stands in the address."""
+    """A secret token in the address."""
     return secrets.token_urlsafe(24)
 
 
 class Guard:
-    """An application that lets through what may come through, and answers the rest itself.
+    """An application that forwards permitted requests and rejects all others.
 
     A page of another site may send requests to a server on this machine, and find its port; what it cannot do is to
     know the token, to be of the same origin, or, by a name of its own that leads to this machine, to send the right
@@ -64,22 +64,22 @@ class Guard:
         await self._application(scope, _bounded(receive), _with_headers(send))
 
     def refusal(self, scope: Scope) -> tuple[int, str] | None:
-        """Status and reason with which a request is refused; None for one that is let through."""
+        """Status and reason of a rejected request; None for a permitted one."""
         headers = [(name.lower(), value) for name, value in scope["headers"]]
         hosts = [value for name, value in headers if name == b"host"]
         origins = [value for name, value in headers if name == b"origin"]
         lengths = [value for name, value in headers if name == b"content-length"]
         if len(hosts) != 1 or hosts[0] not in self._hosts:
-            return 421, "This server answers to its own address only."
+            return 421, "This server answers only to its own address."
         if any(origin not in self._origins for origin in origins):
-            return 403, "This page is not for other pages."
+            return 403, "Other pages may not access this page."
         if scope["type"] == "websocket" and not origins:
-            return 403, "A socket must say where it comes from."
+            return 403, "A socket request needs an Origin header."
         parts = str(scope["path"]).split("/", 2)
         if len(parts) < 3 or not secrets.compare_digest(parts[1].encode(), self._token.encode()):
-            return 404, "Open the address that `beltdyn app` has shown, with all its letters."
+            return 404, "Open the complete address printed by `beltdyn app`."
         if any(not length.isdigit() or int(length) > LARGEST_REQUEST for length in lengths):
-            return 413, f"A request may have {LARGEST_REQUEST:,} bytes."
+            return 413, f"The limit of a request is {LARGEST_REQUEST:,} bytes."
         return None
 
 

@@ -1,4 +1,4 @@
-"""Analyses that take their time: each in a process of its own, with progress, which can be cancelled."""
+"""Long analyses, each in a separate process with progress and cancellation."""
 
 import math
 import multiprocessing
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from beltdyn.app.watching import Glimpse
 
 _GRACE = 5.0
-"""Time that a cancelled analysis has to close its file, s."""
+"""Time for a cancelled analysis to close its file, s."""
 _OFTEN = 0.1
-"""Time between two steps that are told, s."""
+"""Interval of progress reports, s."""
 
 
 class Step(NamedTuple):
-    """How far an analysis has come.
+    """The progress of an analysis.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ _STARTING = Step(0.0, "starting", math.nan)
 
 
 class Outcome(NamedTuple):
-    """How an analysis ended.
+    """The outcome of an analysis.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class Outcome(NamedTuple):
 
 
 class Job:
-    """An analysis in a process of its own.
+    """An analysis in a separate process.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Job:
         self._listener.start()
 
     def poll(self) -> None:
-        """Take in what the process has told."""
+        """Receive messages of the process."""
         if self.outcome is None and self._ending is not None:
             self.outcome = self._ending
             self.close()
@@ -126,14 +126,14 @@ class Job:
                 self.step = said
             self._ending = said
         except (EOFError, OSError):
-            self._ending = Outcome("failed", "the process that computes has ended unexpectedly, as for want of memory.")
+            self._ending = Outcome("failed", "the computing process ended unexpectedly, possibly for lack of memory.")
 
     def cancel(self) -> None:
-        """End it, and keep what was computed."""
+        """Stop it, and keep the results computed so far."""
         self._stop.set()
 
     def close(self) -> None:
-        """End the process, whatever it is at."""
+        """End the process at once."""
         self._stop.set()
         self._process.join(_GRACE if self.outcome is not None else 0.0)
         if self._process.is_alive():
@@ -183,7 +183,7 @@ class _Teller:
         self._begun: dict[str, tuple[float, float]] = {}
 
     def tell(self, progress: Any) -> None:
-        """Tell of progress, and look at a run."""
+        """Report progress, and take snapshots of a run."""
         now = time.perf_counter()
         if now - self._last < _OFTEN:
             return
@@ -196,7 +196,7 @@ class _Teller:
         self._told.send(self._step)
 
     def tell_of_compilation(self, compiles: bool) -> None:
-        """Tell when the analysis waits for its kernels, and when it goes on."""
+        """Report when the analysis waits for kernels, and when it continues."""
         self._told.send(self._step._replace(phase=PREPARING) if compiles else self._step)
 
     def _remaining(self, progress: Any, part: float, now: float) -> float:

@@ -1,4 +1,4 @@
-"""Numbers below the canvas: the drive at rest, in steady running, and its modes, which follow each change."""
+"""Numbers below the canvas, updated with each change: rest, steady running and modes."""
 
 import time
 from uuid import uuid4
@@ -17,11 +17,11 @@ from beltdyn.results.rest_sheet import rest_sheet
 _TITLES = {"rest": "At rest", "running": "Running", "modes": "Modes"}
 _PERCENT, _MINUTE = 0.01, 60.0
 _OFTEN, _SOON = 0.5, 2.0
-"""Time between two looks at what an answer waits for, and time after which that is said, s."""
+"""Polling interval of a pending answer, and delay before its state is shown, s."""
 
 
 class Slider(ui.slider):
-    """A slider that the browser moves at once; the library's own waits for the server, and loses keys meanwhile."""
+    """A slider moved by the browser at once; that of the library waits for the server and loses keys."""
 
     LOOPBACK = False
 
@@ -65,7 +65,7 @@ class NumbersView:
         return slider
 
     def update(self) -> None:
-        """Show the numbers of the drive as it stands; nothing where it is wrong."""
+        """Show the numbers of the present drive; nothing for an invalid one."""
         session = self._session
         what = "rest" if self._calculator is None else str(self._what.value)
         if self._calculator is not None:

@@ -1,4 +1,4 @@
-"""Analyses that the page offers, and their options, which are those of the functions."""
+"""Analyses offered by the page, with the options of their functions."""
 
 from functools import cache
 from inspect import Parameter, signature
@@ -13,9 +13,9 @@ from beltdyn.errors import ModelError
 from beltdyn.parts.error_location import shorten
 
 _SHARED = ("output", "progress", "overwrite", "start", "checkpoint")
-"""What the page gives itself, or does not need: its runs are not resumed."""
+"""Options set by the page or not needed: its runs are not resumed."""
 _SUFFIXES = {"table": (".csv",), "measured": (".csv",), "study": (".toml",), "compare": (".nc",)}
-"""Option that is a file -> what such files end with; of others files of all these kinds are offered."""
+"""File option -> suffixes of its files; other file options offer all of these."""
 
 
 class Option(NamedTuple):
@@ -46,12 +46,12 @@ class Option(NamedTuple):
 
     @property
     def suffixes(self) -> tuple[str, ...]:
-        """What the names of its files end with, of an option that is a file; nothing of others."""
+        """Suffixes of the files of a file option; empty for others."""
         every = tuple(dict.fromkeys(one for suffixes in _SUFFIXES.values() for one in suffixes))
         return _SUFFIXES.get(self.name, every) if self.kind is Path else ()
 
     def read(self, text: str) -> str | int | float:
-        """Read what was typed, or the name of the file that was chosen.
+        """Parse typed text, or the name of a chosen file.
 
         Raises
         ------
@@ -72,7 +72,7 @@ class Option(NamedTuple):
 
 @cache
 def offered() -> dict[str, str]:
-    """Analyses that take a drive file, plain options and further files, with what they tell."""
+    """Analyses of a drive file with plain options and files, with their purposes."""
     return {
         name: one.purpose
         for name, one in ANALYSES.items()
@@ -82,7 +82,7 @@ def offered() -> dict[str, str]:
 
 @cache
 def options_of(name: str) -> tuple[Option, ...]:
-    """Options of an analysis that are texts, numbers or files; those that must be given come first."""
+    """Options of an analysis that are texts, numbers or files, required ones first."""
     found = []
     told = {one.arg_name: one.description or "" for one in parse(ANALYSES[name].function.__doc__ or "").params}
     for one in _own(name):

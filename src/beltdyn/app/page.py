@@ -21,7 +21,7 @@ from beltdyn.parts.toml_edits import Edit
 _TABS = ("drive", "belt", "pulley", "tensioner", "contact", "simulation", "limits")
 _LISTS = ("pulley", "tensioner")
 _BLUE = "#1d5f9e"
-"""White text on it, and it on white, have a contrast of 6.6."""
+"""Contrast with white 6.6."""
 _TENSIONER_KINDS = ("rotary", "sliding", "fixed")
 
 
@@ -42,7 +42,7 @@ class Page:
         self._tensioner = 0
 
     async def build(self) -> None:
-        """Make the page, with the drive that the tab had before it was loaded again."""
+        """Build the page, with the drive of the tab before a reload."""
         ui.add_css(files("beltdyn.app").joinpath("page.css").read_text(encoding="utf-8"))
         await ui.context.client.connected()
         kept = app.storage.tab.get("session")
@@ -111,7 +111,7 @@ class Page:
         self._tabs.value = self._tab
 
     def update(self) -> None:
-        """Bring everything in line with the drive."""
+        """Update everything to the present drive."""
         session = self.session
         self._title.text = session.title
         self._undo.set_enabled(session.document.can_undo)
@@ -133,10 +133,10 @@ class Page:
                 label.on("click", lambda one=one: self._go_to(one.location))
         if self.session.document.lost_comments:
             self.session.document.lost_comments = False
-            ui.notify("The file had to be written anew, without its comments. Undo brings them back.", type="warning")
+            ui.notify("The file was rewritten without its comments. Undo restores them.", type="warning")
 
     def _go_to(self, location: tuple[int | str, ...]) -> None:
-        """Open the form in which an error stands."""
+        """Open the form of an error."""
         if not location or location[0] not in _TABS:
             return
         if location[0] == "pulley" and len(location) > 1:
@@ -154,7 +154,7 @@ class Page:
         self._form.show(self._location())
 
     def _location(self) -> tuple[int | str, ...] | None:
-        """Where the group of the form stands."""
+        """Location of the group of the form."""
         if self._tab == "drive":
             return ()
         if self._tab == "pulley":
@@ -171,7 +171,7 @@ class Page:
             button = ui.button(str(one.get("name", number + 1)), on_click=lambda number=number: self.choose(number))
             button.props(f"dense no-caps size=sm {'' if chosen else 'outline'}")
         if self.session.selected is None:
-            ui.label("Choose a pulley, here or on the canvas.").classes("text-caption")
+            ui.label("Select a pulley here or on the canvas.").classes("text-caption")
 
     def _list_tensioners(self) -> None:
         listed = groups(self.session.document.data, "tensioner")
@@ -203,12 +203,12 @@ class Page:
         self._update_forms()
 
     def apply(self, edits: list[Edit]) -> None:
-        """Change the drive file, and show what follows."""
+        """Change the drive file, and update the page."""
         self.session.apply(edits)
         self.update()
 
     def act(self, told: Mapping[str, Any]) -> None:
-        """Do what was done on the canvas; while a drag goes on only show what would follow."""
+        """Apply an action on the canvas; during a drag only preview it."""
         edits = self.session.edits_of(told.get("action"), told)
         if told.get("done"):
             self.session.apply(edits)
@@ -219,14 +219,14 @@ class Page:
             self._canvas.follow(scene(self.session.preview(edits), settled=False))
 
     def choose(self, number: object) -> None:
-        """Choose a pulley, and open its form."""
+        """Select a pulley, and open its form."""
         self.session.choose(number)
         if self.session.selected is not None:
             self._tabs.value = "pulley"
         self.update()
 
     def add_pulley(self) -> None:
-        """Add a pulley beside those that are there."""
+        """Add a pulley beside the existing ones."""
         left, _, right, bottom = scene(self.session.draft)["extent"]
         count = len(groups(self.session.document.data, "pulley"))
         x = (right + 0.35 * (right - left) if count else (left + right) / 2) / 1e3
@@ -237,12 +237,12 @@ class Page:
         self.act({"action": action, "number": self.session.selected, "done": True})
 
     def undo(self) -> None:
-        """Take the last change back."""
+        """Undo the last change."""
         self.session.undo()
         self.update()
 
     def redo(self) -> None:
-        """Make the change again that was taken back."""
+        """Redo the undone change."""
         self.session.redo()
         self.update()
 

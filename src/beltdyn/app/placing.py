@@ -1,4 +1,4 @@
-"""What is done on the canvas, as edits of the drive file: place, move, size, put on the back, add and remove."""
+"""Canvas actions as edits of the drive file: place, move, resize, flip, add and remove."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,33 +17,33 @@ _SMALLEST_RADIUS = 0.005
 _LARGEST_SHARE = 0.45
 """Largest radius of a new pulley, over the distance of its center from other pulleys' surfaces."""
 _DISK = 0.02 * 2700.0
-"""Mass of a square metre of an aluminium disk 20 mm thick, kg: what a new pulley is taken for."""
+"""Mass per square metre of an aluminium disk 20 mm thick, kg, assumed for a new pulley."""
 _ARM = 2.5
 """Length of the arm of a new tensioner, over the radius of its pulley."""
 _TENSION = 300.0
-"""Tension for which a new tensioner's spring is chosen where the file asks for none, N."""
+"""Default tension for the spring of a new tensioner, N."""
 _DRIVER = {"kind": "cosine_ramp", "start": 0.02, "end": 0.2, "value": "1500 rpm"}
 
 
 def move(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
-    """Put the center of a pulley to a place, m."""
+    """Set the center of a pulley, m."""
     return _point(data, ("pulley", number, "center"), groups(data, "pulley")[number].get("center"), x, y)
 
 
 def nudge(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
-    """Move the center of a pulley by a step, m; nothing where it cannot be read."""
+    """Move the center of a pulley by a step, m; nothing if it is invalid."""
     one = next((each for each in circles(data) if each.number == number), None)
     return [] if one is None else move(data, number, one.x + right, one.y + up)
 
 
 def grow(data: Mapping[str, Any], number: int, more: float) -> list[Edit]:
-    """Make the radius of a pulley larger, m; nothing where it cannot be read."""
+    """Increase the radius of a pulley, m; nothing if it is invalid."""
     one = next((each for each in circles(data) if each.number == number), None)
     return [] if one is None else resize(data, number, one.radius + more)
 
 
 def nudge_pivot(data: Mapping[str, Any], number: int, right: float, up: float) -> list[Edit]:
-    """Move the pivot of a tensioner by a step, m; nothing where it cannot be read."""
+    """Move the pivot of a tensioner by a step, m; nothing if it is invalid."""
     given = groups(data, "tensioner")[number].get("pivot")
     point = [length_in(one) for one in given] if isinstance(given, list) and len(given) == 2 else [None, None]
     x, y = point
@@ -51,12 +51,12 @@ def nudge_pivot(data: Mapping[str, Any], number: int, right: float, up: float) -
 
 
 def move_pivot(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
-    """Put the pivot of a tensioner to a place, m."""
+    """Set the pivot of a tensioner, m."""
     return _point(data, ("tensioner", number, "pivot"), groups(data, "tensioner")[number].get("pivot"), x, y)
 
 
 def turn_direction(data: Mapping[str, Any], number: int, x: float, y: float) -> list[Edit]:
-    """Let a tensioner slide towards a place, m."""
+    """Point the direction of a sliding tensioner at a position, m."""
     one = groups(data, "tensioner")[number]
     carried = next((each for each in circles(data) if each.name == one.get("pulley")), None)
     if carried is None:
@@ -74,7 +74,7 @@ def _point(data: Mapping[str, Any], location: tuple[int | str, ...], given: obje
 
 
 def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
-    """Give a pulley a radius, m, or the diameter where it is given by that."""
+    """Set the radius of a pulley, m, or its diameter if that is given."""
     one, radius = groups(data, "pulley")[number], max(radius, _SMALLEST_RADIUS / 10)
     if "diameter" in one and "radius" not in one:
         return [Edit("set", ("pulley", number, "diameter"), written_like(2 * radius, one["diameter"], "m"))]
@@ -82,21 +82,21 @@ def resize(data: Mapping[str, Any], number: int, radius: float) -> list[Edit]:
 
 
 def flip(data: Mapping[str, Any], number: int) -> list[Edit]:
-    """Put a pulley on the other side of the belt."""
+    """Move a pulley to the other side of the belt."""
     if read_side(groups(data, "pulley")[number].get("side")) == "outside":
         return [Edit("remove", ("pulley", number, "side"))]
     return [Edit("set", ("pulley", number, "side"), "outside")]
 
 
 def remove(data: Mapping[str, Any], number: int) -> list[Edit]:
-    """Take a pulley away, and the tensioners that carry it."""
+    """Remove a pulley and its tensioners."""
     name = groups(data, "pulley")[number].get("name")
     carriers = [place for place, one in enumerate(groups(data, "tensioner")) if one.get("pulley") == name]
     return [Edit("remove", ("pulley", number)), *(Edit("remove", ("tensioner", place)) for place in carriers[::-1])]
 
 
 def rename(data: Mapping[str, Any], number: int, name: str) -> list[Edit]:
-    """Give a pulley another name, and tell the tensioners that carry it."""
+    """Rename a pulley, also in its tensioners."""
     before = groups(data, "pulley")[number].get("name")
     carriers = [place for place, one in enumerate(groups(data, "tensioner")) if one.get("pulley") == before]
     edits = [Edit("set", ("pulley", number, "name"), name)]
@@ -104,14 +104,14 @@ def rename(data: Mapping[str, Any], number: int, name: str) -> list[Edit]:
 
 
 def shift(data: Mapping[str, Any], number: int, places: int) -> list[Edit]:
-    """Let the belt meet a pulley earlier or later, around the list."""
+    """Move a pulley in the belt order, cyclically."""
     pulleys = groups(data, "pulley")
     target = (number + places) % len(pulleys)
     return [Edit("remove", ("pulley", number)), Edit("insert", ("pulley", target), dict(pulleys[number]))]
 
 
 def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit]:
-    """Let a tensioner of a kind carry a pulley: it presses the belt the way that lengthens the path.
+    """Add a tensioner of a kind to a pulley, pressing in the direction that lengthens the path.
 
     Its spring is such that the belt has the installed tension of the file, or 300 N, with the pulley where it stands.
     """
@@ -142,7 +142,7 @@ def new_tensioner(draft: Draft, number: int, kind: str, place: int) -> list[Edit
 
 
 def add(draft: Draft, x: float, y: float, base: Any = None) -> list[Edit]:
-    """Add a pulley at a place, m, where the belt can meet it: in the nearest span, on the side that it takes.
+    """Add a pulley at a position, m, in the nearest span and on the possible side.
 
     The first one is given a speed; the others turn freely, with the inertia of an aluminium disk.
     """

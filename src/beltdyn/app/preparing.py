@@ -1,13 +1,13 @@
-"""When kernels are compiled: once on a machine, for up to a minute, in which the page has to say what it waits for."""
+"""Tell the page when Numba compiles kernels."""
 
 from collections.abc import Callable
 
-PREPARING = "preparing kernels (compiled once on a machine, for up to a minute)"
-"""What is said meanwhile."""
+PREPARING = "compiling kernels (once per machine, up to a minute)"
+"""The state shown meanwhile."""
 
 
 def tell_of_compilation(tell: Callable[[bool], None]) -> None:
-    """Tell from now on when this process compiles.
+    """Report compilation of this process from now on.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ def tell_of_compilation(tell: Callable[[bool], None]) -> None:
     from numba.core.event import Event, Listener, register
 
     class Teller(Listener):  # type: ignore[misc]
-        """Counts the functions that are being compiled: those that a function calls are compiled within it."""
+        """Counts functions being compiled, with nested calls."""
 
         depth = 0
 

@@ -1,4 +1,4 @@
-"""What the canvas draws: pulleys, the belt's path and tensioners, in millimetres with y down."""
+"""The drawing of the canvas: pulleys, belt path and tensioners, in millimetres with y down."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,17 +15,17 @@ from beltdyn.parts.quantity import to_si
 
 MILLIMETRES = 1e3
 _EMPTY = (-250.0, -150.0, 250.0, 150.0)
-"""What an empty canvas shows, mm."""
+"""Extent of an empty canvas, mm."""
 _FEW = 2
-"""Pulleys from which on they alone say how much is shown."""
+"""Number of pulleys above which they alone set the extent."""
 _SMALLEST = 60.0
-"""Shorter side of what is shown at least, mm."""
+"""Least shorter side of the extent, mm."""
 _SEEN = 0.004
-"""Way of a tensioner from its given place, over the size of the drive, from which on its rest is drawn beside it."""
+"""Travel of a tensioner over the size of the drive above which its rest position is drawn separately."""
 
 
 class Circle(NamedTuple):
-    """A pulley as far as the data tell of it: m."""
+    """A pulley as far as its data are valid, m."""
 
     number: int
     name: str
@@ -36,7 +36,7 @@ class Circle(NamedTuple):
 
 
 def length_in(value: object) -> float | None:
-    """Read a length or coordinate, m; none where it cannot be read."""
+    """Parse a length or coordinate, m; None if it is invalid."""
     try:
         number = to_si(value, "m") if isinstance(value, str) else float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
@@ -45,7 +45,7 @@ def length_in(value: object) -> float | None:
 
 
 def circles(data: Mapping[str, Any]) -> list[Circle]:
-    """Read the pulleys that have a center and a size, whatever else is wrong."""
+    """Parse the pulleys with valid center and size."""
     found = []
     for number, one in enumerate(groups(data, "pulley")):
         center, radius = one.get("center"), length_in(one.get("radius"))
@@ -63,13 +63,13 @@ def circles(data: Mapping[str, Any]) -> list[Circle]:
 
 
 def groups(data: Mapping[str, Any], key: str) -> list[Mapping[str, Any]]:
-    """The groups of a list in a drive file; whatever is no group is empty."""
+    """The groups of a list in a drive file; entries that are not groups become empty."""
     found = data.get(key)
     return [one if isinstance(one, Mapping) else {} for one in found] if isinstance(found, list) else []
 
 
 def scene(draft: Draft, *, settled: bool = True) -> dict[str, Any]:
-    """Say what the canvas draws.
+    """The drawing of the canvas.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def scene(draft: Draft, *, settled: bool = True) -> dict[str, Any]:
 
 
 def sketched(found: Sequence[Circle]) -> Path | None:
-    """The path around pulleys where it can be drawn, though no belt may run there; without the belt's offsets."""
+    """The path around pulleys if it can be drawn, even if no belt can run there; without belt offsets."""
     if len(found) < 2:
         return None
     radii = np.array([one.radius if one.side == "inside" else -one.radius for one in found])

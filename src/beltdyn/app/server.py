@@ -1,4 +1,4 @@
-"""The server: on this machine alone, at a port that is free, under an address that nobody else can guess."""
+"""The server, on this machine only, at a free port and a secret address."""
 
 import asyncio
 import socket
@@ -96,7 +96,7 @@ def _listening(port: int) -> socket.socket:
         listening.close()
         reason = getattr(error, "strerror", None) or str(error)
         raise ModelError(
-            f"port = {port} cannot be used: {reason.lower()}. Choose another --port, or leave it out."
+            f"port = {port} cannot be used: {reason.lower()}. Choose another --port, or omit it."
         ) from error
     return listening
 

@@ -1,4 +1,4 @@
-"""A drive on the page of one tab: its file, what is chosen, and what is done with it."""
+"""The drive of one tab: file, selection and actions."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -14,7 +14,7 @@ from beltdyn.errors import ModelError
 from beltdyn.parts.toml_edits import Edit
 
 _FARTHEST = 1e3
-"""Coordinate up to which the canvas is believed, m."""
+"""Largest coordinate accepted from the canvas, m."""
 _MOST_RESULTS = 5
 _ON_PULLEYS: Mapping[str, Callable[[Mapping[str, Any], int, Mapping[str, float]], list[Edit]]] = {
     "move": lambda data, number, to: placing.move(data, number, to["x"], to["y"]),
@@ -60,18 +60,18 @@ class Session:
 
     @property
     def draft(self) -> Draft:
-        """What the drive file says as it stands."""
+        """The present drive file, checked."""
         if self._known is None or self._known[0] != self.document.text:
             self._known = self.document.text, draft(self.document.data, self.workspace.folder.root)
         return self._known[1]
 
     @property
     def title(self) -> str:
-        """Name of the file, with a mark where it is not saved."""
+        """Name of the file, with a mark for unsaved changes."""
         return f"{self.name or 'not saved yet'}{' *' if self.document.changed else ''}"
 
     def preview(self, edits: Sequence[Edit]) -> Draft:
-        """What the drive file would say with some edits, as far as the layout goes."""
+        """The drive file with some edits, checked up to the layout."""
         return draft(self.document.preview(edits), self.workspace.folder.root, only_laid_out=True)
 
     def apply(self, edits: Sequence[Edit]) -> None:
@@ -84,17 +84,17 @@ class Session:
         self._keep_selection()
 
     def undo(self) -> None:
-        """Take the last change back."""
+        """Undo the last change."""
         self.document.undo()
         self._keep_selection()
 
     def redo(self) -> None:
-        """Make the change again that was taken back."""
+        """Redo the undone change."""
         self.document.redo()
         self._keep_selection()
 
     def choose(self, number: object) -> None:
-        """Choose a pulley, or none."""
+        """Select a pulley, or nothing."""
         self.selected = number if isinstance(number, int) and not isinstance(number, bool) else None
         self._keep_selection()
 
@@ -103,7 +103,7 @@ class Session:
             self.selected = None
 
     def edits_of(self, action: object, arguments: Mapping[str, object]) -> list[Edit]:
-        """Edits of what was done on the canvas, as the browser tells of it; none where that makes no sense.
+        """Edits of an action reported by the canvas; empty if it is meaningless.
 
         Parameters
         ----------
@@ -127,13 +127,13 @@ class Session:
         return []
 
     def new_tensioner(self, kind: str) -> list[Edit]:
-        """Edits that add a tensioner, which carries the chosen pulley if there is one, and else the last."""
+        """Edits that add a tensioner to the selected pulley, or else to the last one."""
         pulleys, tensioners = (groups(self.document.data, key) for key in ("pulley", "tensioner"))
         number = self.selected if self.selected is not None else len(pulleys) - 1
         return placing.new_tensioner(self.draft, number, kind, len(tensioners)) if number >= 0 else []
 
     def follow_job(self) -> Job | None:
-        """The analysis that is computed, if any. One that has ended becomes an outcome; the oldest goes with its files.
+        """The running analysis, if any. A finished one becomes an outcome; the oldest is removed with its files.
 
         The page may be shown several times, as where it was loaded again a moment ago.
         """
@@ -154,7 +154,7 @@ class Session:
         return None
 
     def start(self, text: str, name: str | None = None) -> None:
-        """Begin with a drive file.
+        """Start from the text of a drive file.
 
         Raises
         ------
@@ -164,9 +164,7 @@ class Session:
         try:
             self.document = Document(text)
         except ValueError as error:
-            raise ModelError(
-                f"{name or 'the drive file'} is not valid TOML: {error}. Correct the file there."
-            ) from error
+            raise ModelError(f"{name or 'the drive file'} is not valid TOML: {error}. Correct the file.") from error
         self.name, self.selected = name, None
 
     def open(self, name: str) -> None:
@@ -174,7 +172,7 @@ class Session:
         self.start(self.workspace.folder.read(name), name)
 
     def save(self, name: str | None = None) -> str:
-        """Save the drive file, by default under its name, and say where.
+        """Save the drive file, by default under its name, and return its path.
 
         Raises
         ------
@@ -183,7 +181,7 @@ class Session:
         """
         target = name or self.name
         if target is None:
-            raise ModelError("the drive has no file yet. Give it a name.")
+            raise ModelError("the drive has no file yet. Give a file name.")
         known = self.document.saved if target == self.name else None
         path = self.workspace.folder.write(target, self.document.text, known)
         self.name, self.document.saved = path.relative_to(self.workspace.folder.root).as_posix(), self.document.text

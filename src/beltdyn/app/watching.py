@@ -1,4 +1,4 @@
-"""A run as it stands while it is computed: the belt in colour, the pulleys where they are, and numbers."""
+"""Snapshots of a run being computed: coloured belt, pulley positions and numbers."""
 
 import time
 from itertools import pairwise
@@ -17,11 +17,11 @@ from beltdyn.results import Run, open_run
 from beltdyn.results.sheet_parts import Table
 
 _OFTEN = 0.4
-"""Time between two looks at least, s."""
+"""Least interval of snapshots, s."""
 _SHARE = 20.0
-"""Time between two looks over the time that one takes, at least."""
+"""Least interval of snapshots over the cost of one."""
 _PIECES = 60
-"""Pieces of the belt that have a colour of their own."""
+"""Number of separately coloured pieces of the belt."""
 
 
 class Glimpse(NamedTuple):
@@ -47,7 +47,7 @@ class Glimpse(NamedTuple):
 
 
 class Watcher:
-    """Looks into a result file that grows, now and then, so that the run is hardly slower.
+    """Reads a growing result file at intervals that hardly slow the run.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Watcher:
         self._seen = -1.0
 
     def look(self) -> Glimpse | None:
-        """Give the latest instant with fields along the belt; nothing if it is too early, or none is new."""
+        """Return the latest instant with fields along the belt; None if it is too early, or not new."""
         begun = time.perf_counter()
         if begun < self._next or not self._result.exists():
             return None

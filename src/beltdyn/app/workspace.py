@@ -1,4 +1,4 @@
-"""What all tabs share: the folder, the drive file that a new tab opens, and the examples."""
+"""Data shared by all tabs: folder, first drive file, and examples."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,7 +11,7 @@ from beltdyn.model.examples import example_texts
 
 EMPTY = """\
 # A belt drive for beltdyn. Numbers are in SI units (m, kg, s, N, rad); "25 mm" or "720 rpm" work too.
-# Everything turns and counts counter-clockwise positive.
+# Speeds, torques and angles are positive counter-clockwise.
 
 [belt]
 profile = "PK"               # beltdyn catalogue lists the profiles
@@ -22,7 +22,7 @@ installed_tension = "300 N"  # at rest; the length follows
 duration = 0.5
 output_interval = "1 ms"
 """
-"""The drive file to begin with: a belt without pulleys."""
+"""The empty drive file: a belt without pulleys."""
 _USUAL = "alternator_drive"
 
 
@@ -35,7 +35,7 @@ class Example(NamedTuple):
 
 
 class Workspace:
-    """What all tabs share.
+    """Data shared by all tabs.
 
     Parameters
     ----------
@@ -56,20 +56,20 @@ class Workspace:
 
     @property
     def results(self) -> Path:
-        """A folder for results, which goes with the server."""
+        """A folder for results, removed with the server."""
         if self._results is None:
             self._results = TemporaryDirectory(prefix="beltdyn-app-", ignore_cleanup_errors=True)
         return Path(self._results.name)
 
     @property
     def usual_drive(self) -> str:
-        """The drive file that a new tab opens, or else an example: most drives need the kernels that it needs."""
+        """The drive file of a new tab, or else an example: most drives need its kernels."""
         if self.first is not None:
             return self.folder.read(self.first)
         return next(one.text for one in examples() if one.name == _USUAL)
 
     def close(self) -> None:
-        """End what works for the tabs."""
+        """End the processes of the tabs."""
         for job in self.jobs:
             job.close()
         if self.calculator is not None:
@@ -79,7 +79,7 @@ class Workspace:
 
 
 def examples() -> list[Example]:
-    """The drives of the gallery; what each is stands in the first lines of its file."""
+    """The drives of the gallery, described by the first lines of their files."""
     found = []
     for name, text in example_texts().items():
         about = " ".join(line.lstrip("# ") for line in text.partition("\n\n")[0].splitlines() if line[:1] == "#")

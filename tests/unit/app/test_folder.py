@@ -12,7 +12,7 @@ from beltdyn.errors import ModelError
     "name", ["../x.toml", "/etc/x.toml", "a/../../x", "", " ", ".hidden.toml", ".git/x.toml", "a\0b", "x" * 300]
 )
 def test_names_that_lead_outside_are_refused(tmp_path: Path, name: str) -> None:
-    with pytest.raises(ModelError, match="no name of a file"):
+    with pytest.raises(ModelError, match="is not a file name"):
         Folder(tmp_path).path(name)
 
 
@@ -39,14 +39,14 @@ def test_a_file_is_written_and_replaced_only_as_it_is_known(tmp_path: Path) -> N
     folder = Folder(tmp_path)
     path = folder.write("new", "a = 1\n")
     assert path == tmp_path.resolve() / "new.toml"
-    with pytest.raises(ModelError, match="is there already"):
+    with pytest.raises(ModelError, match="already exists"):
         folder.write("new.toml", "a = 2\n")
     folder.write("new.toml", "a = 2\n", known="a = 1\n")
     path.write_text("a = 3\n", encoding="utf-8")
     with pytest.raises(ModelError, match="changed by another program"):
         folder.write("new.toml", "a = 4\n", known="a = 2\n")
     assert folder.read("new") == "a = 3\n"
-    with pytest.raises(ModelError, match="no folder"):
+    with pytest.raises(ModelError, match="is not a folder"):
         folder.write("none/x.toml", "")
 
 

@@ -270,7 +270,7 @@ def test_what_an_answer_waits_for_is_said(workspace: Workspace, monkeypatch: pyt
     workspace.calculator = Compiles()
 
     async def journey(user: User) -> None:
-        await user.should_see("preparing kernels (compiled once on a machine, for up to a minute): 0 s")
+        await user.should_see("compiling kernels (once per machine, up to a minute): 0 s")
         compiled.set()
         await user.should_see("at rest, computed in 0.12 s")
 

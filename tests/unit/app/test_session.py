@@ -79,10 +79,10 @@ def test_a_file_is_saved_under_its_name_and_another(session: Session, tmp_path: 
     assert tomllib.loads((tmp_path / "drive.toml").read_text(encoding="utf-8"))["pulley"][0]["side"] == "outside"
     assert session.save("other").endswith("other.toml")
     assert session.name == "other.toml"
-    with pytest.raises(ModelError, match="is there already"):
+    with pytest.raises(ModelError, match="already exists"):
         session.save("drive.toml")
     session.start(EMPTY)
-    with pytest.raises(ModelError, match="Give it a name"):
+    with pytest.raises(ModelError, match="Give a file name"):
         session.save()
 
 

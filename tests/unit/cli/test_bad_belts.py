@@ -82,7 +82,7 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
         ('belt: catalogue = "nix.toml" cannot be read', "no such file", "folder of the drive file"),
     ),
     "catalogue is a folder": ('profile = "mine"\nribs = 2\ncatalogue = "."', ("is a directory",)),
-    "catalogue not text": ('profile = "mine"\nribs = 2\ncatalogue = "binary.toml"', ("not a text in UTF-8",)),
+    "catalogue not text": ('profile = "mine"\nribs = 2\ncatalogue = "binary.toml"', ("not UTF-8 text",)),
     "catalogue not TOML": ('profile = "mine"\nribs = 2\ncatalogue = "words.toml"', ("not valid TOML", "line 1")),
     "catalogue by number": ('profile = "mine"\nribs = 2\ncatalogue = 3', ("belt.catalogue = 3 must be text",)),
     "entry is a number": ('profile = "mine"\nribs = 2\ncatalogue = "number.toml"', ("mine must be a group of keys",)),

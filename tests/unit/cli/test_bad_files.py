@@ -9,7 +9,7 @@ Refuse = Callable[[list[str]], str]
 
 
 def test_missing_file(refuse: Refuse, tmp_path: Path) -> None:
-    assert "nix.toml cannot be read: no such file or directory. Check its name." in refuse(
+    assert "nix.toml cannot be read: no such file or directory. Check the path." in refuse(
         ["check", str(tmp_path / "nix.toml")]
     )
 
@@ -20,7 +20,7 @@ def test_folder(refuse: Refuse, tmp_path: Path) -> None:
 
 def test_binary_file(refuse: Refuse, tmp_path: Path) -> None:
     (tmp_path / "drive.toml").write_bytes(b"\x89HDF\r\n\x1a\n")
-    assert "is not a text in UTF-8" in refuse(["static", str(tmp_path / "drive.toml")])
+    assert "is not UTF-8 text" in refuse(["static", str(tmp_path / "drive.toml")])
 
 
 def test_empty_file(refuse: Refuse, tmp_path: Path) -> None:

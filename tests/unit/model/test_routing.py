@@ -99,7 +99,7 @@ def test_crossed() -> None:
         pytest.param(
             (LEFT, ("idler", 0.24, -0.1, 0.155, "outside"), RIGHT),
             {"pitch_offset": 0.005, "back_offset": 0.005},
-            ('between "left" and "idler"', "above 0.265 m", "0.26 m apart", "Move them apart"),
+            ('between "left" and "idler"', "above 0.265 m", "it is 0.26 m", "Move them apart"),
             id="no tangent",
         ),
         pytest.param(
