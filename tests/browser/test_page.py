@@ -336,7 +336,7 @@ def test_a_server_that_is_killed_is_told_of_and_the_drive_can_be_kept(
     page.keyboard.press("Delete")
     page.wait_for_function("document.querySelectorAll('.bd-pulley').length === 2")
     server.process.kill()
-    page.get_by_text("The server has ended").wait_for()
+    page.get_by_text("The server has stopped").wait_for()
     shoot(page, "killed")
     with page.expect_download() as kept:
         page.get_by_role("link", name="Keep the drive file").click()

@@ -17,7 +17,7 @@ EXPECTED = {
     "two_pulley": [
         "the contact between belt and pulleys is so soft that it reduces the belt tension by 5.8%",
         "contact.damping = 10 N s/m^2 is 0.5% of critical",
-        "with contact.creep_rate_factor = 1e+05 friction builds up 7 times more slowly",
+        "contact.creep_rate_factor = 1e+05: friction builds up 7 times more slowly",
         "the belt has too few elements for peak pressure (over 100%), mean pressure",
     ],
 }

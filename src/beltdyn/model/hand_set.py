@@ -120,13 +120,13 @@ def _friction(drive: Drive, chosen: Drive, installation: Installation) -> Iterat
         added = _ADDED * (_AT / lengths) ** _POWER
         how = f"by up to {added:.0%}" if added < 1.0 else "by a multiple"
         yield Finding(
-            f"with {said} friction builds up {factor:.0f} times more slowly with slip than by default.",
+            f"{said}: friction builds up {factor:.0f} times more slowly with slip than by default.",
             f"Under load slip is too large, {how}, as are friction losses; tensions change little.",
             f"{remedy}.",
         )
     elif factor < 1.0 / _STEEP:
         yield Finding(
-            f"with {said} friction builds up {1.0 / factor:.0f} times more steeply with slip than by default.",
+            f"{said}: friction builds up {1.0 / factor:.0f} times more steeply with slip than by default.",
             "No result improves by 3%; time steps become short, and steady running may not be found.",
             f"{remedy}.",
         )
@@ -136,8 +136,7 @@ def _moment_arm(drive: Drive, installation: Installation) -> Iterator[Finding]:
     share = float(np.max(installation.penetrations / drive.radii))
     if drive.contact.moment_arm == "point" and share > _ARM:
         yield Finding(
-            'with contact.moment_arm = "point" friction acts at the belt, which has sunk in by '
-            f"{share:.1%} of a radius.",
+            f'contact.moment_arm = "point": friction acts at the belt, which has sunk in by {share:.1%} of a radius.',
             f"Friction torques are too small by that share, and friction may generate power: losses are wrong by up "
             f"to {share:.1%} of the power.",
             'Set contact.moment_arm = "rim", or increase contact.stiffness.',

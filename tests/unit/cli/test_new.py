@@ -33,7 +33,7 @@ def test_example_names_the_file(tmp_path: Path, run_main: RunMain, monkeypatch: 
 
 def test_unknown_example_lists_the_names(refuse: Callable[[list[str]], str]) -> None:
     message = refuse(["new", "--example", "tractor"])
-    assert f"example 'tractor' is not known. Choose one of {', '.join(EXAMPLES)}." in " ".join(message.split())
+    assert f"example 'tractor' does not exist. Choose one of {', '.join(EXAMPLES)}." in " ".join(message.split())
 
 
 def test_an_existing_file_is_kept(tmp_path: Path, refuse: Callable[[list[str]], str]) -> None:

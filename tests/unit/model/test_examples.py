@@ -16,5 +16,7 @@ def test_hyphens_and_suffix_are_accepted() -> None:
 
 
 def test_an_unknown_example_lists_those_there_are() -> None:
-    with pytest.raises(ModelError, match=r"'nothing' is not known\. Choose one of accessory_drive, .*washing_machine"):
+    with pytest.raises(
+        ModelError, match=r"'nothing' does not exist\. Choose one of accessory_drive, .*washing_machine"
+    ):
         example("nothing")

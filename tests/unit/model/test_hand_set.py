@@ -59,22 +59,22 @@ def test_numbers_that_spoil(drive: Drive, key: str, factor: float, words: str, f
     (text,) = found(changed)
     assert text.startswith(f"contact.{key} = ")
     assert words in text
-    assert f"Leave out contact.{key}" in text
+    assert f"Omit contact.{key}" in text
     assert text in advise(changed, install(changed))
 
 
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        ({"friction_law": "coefficient_slope", "creep_velocity": 1.0}, "contact.creep_velocity = 1 lets"),
-        ({"friction_law": "force_slope", "creep_rate_factor": 100.0}, "contact.creep_rate_factor = 100 lets"),
+        ({"friction_law": "coefficient_slope", "creep_velocity": 1.0}, "contact.creep_velocity = 1: friction"),
+        ({"friction_law": "force_slope", "creep_rate_factor": 100.0}, "contact.creep_rate_factor = 100: friction"),
     ],
 )
 def test_slopes_of_other_laws(drive: Drive, law: dict[str, Any], words: str) -> None:
     """They are judged by the slip at which friction is fully used, at full speed."""
     (text,) = found(drive.replace(contact=drive.contact.replace(**law)))
     assert text.startswith(words)
-    assert "Leave out contact.friction_law, contact.creep" in text
+    assert "Omit contact.friction_law, contact.creep" in text
 
 
 def test_friction_at_the_point_of_a_belt_that_sinks_in(drive: Drive) -> None:

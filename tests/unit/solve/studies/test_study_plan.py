@@ -44,7 +44,7 @@ def test_together_and_one_at_a_time(drive: Drive) -> None:
     speed = SPEED | {"steps": 3}
     assert len(plan(drive, WIDTH, speed, sampling="together").values) == 3
     assert len(plan(drive, WIDTH, speed, sampling="one_at_a_time").values) == 1 + 2 + 3
-    with pytest.raises(ModelError, match="as many values of each number"):
+    with pytest.raises(ModelError, match="equally many values of each number"):
         plan(drive, WIDTH, SPEED, sampling="together")
 
 
