@@ -40,7 +40,7 @@ def example_text(name: str) -> str:
     found = example_texts()
     key = name.removesuffix(_SUFFIX).replace("-", "_")
     if key not in found:
-        raise ModelError(f"example {name!r} does not exist. Choose one of  {', '.join(found)}.")
+        raise ModelError(f"example {name!r} does not exist. Choose one of {', '.join(found)}.")
     return found[key]
 
 

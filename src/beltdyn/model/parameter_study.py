@@ -81,7 +81,9 @@ class ParameterStudy(Part):
         if twice:
             raise ValueError(f'number "{twice[0]}" is given twice. Remove one')
         if self.sampling == "together" and len({len(one.values) for one in self.numbers if not _is_text(one)}) > 1:
-            raise ValueError('sampling = "together" needs equally many values of each number. Add or remove values')
+            raise ValueError(
+                'sampling = "together" needs the same number of values for each [[number]]. Add or remove values'
+            )
         return self
 
 

@@ -44,7 +44,7 @@ def test_together_and_one_at_a_time(drive: Drive) -> None:
     speed = SPEED | {"steps": 3}
     assert len(plan(drive, WIDTH, speed, sampling="together").values) == 3
     assert len(plan(drive, WIDTH, speed, sampling="one_at_a_time").values) == 1 + 2 + 3
-    with pytest.raises(ModelError, match="equally many values of each number"):
+    with pytest.raises(ModelError, match="the same number of values for each"):
         plan(drive, WIDTH, SPEED, sampling="together")
 
 
@@ -76,7 +76,7 @@ def test_rows_of_a_table_are_points(drive: Drive, tmp_path: Path) -> None:
         ([WIDTH], {"sampling": "sobol"}, "are not bounds"),
         ([WIDTH, WIDTH], {}, "is given twice"),
         ([], {}, "needs points from a table or from groups"),
-        ([WIDTH], {"table": "a.csv"}, "Give one of them"),
+        ([WIDTH], {"table": "a.csv"}, "Give one of the two"),
         ([WIDTH], {"analysis": "stedy"}, 'Did you mean "steady"'),
         (
             [{"path": f"pulley[{k}].center[{j}]", "values": "1..2 m", "steps": 90} for k in (1, 2) for j in (1, 2)],
