@@ -8,9 +8,11 @@ import pytest
 
 from beltdyn.model import Drive, loads
 from beltdyn.results import Run, summarize
+from beltdyn.results.balance import LOSSES
 from beltdyn.results.checks import CHECKS
 from beltdyn.results.checks.energy import unbalanced_powers
 from beltdyn.results.checks.mesh import unresolved_by_mesh
+from beltdyn.results.checks.steady import COARSE_SETTINGS, STEADY_LOSSES, STEADY_SLIPS
 
 MakeRun = Callable[..., Run]
 TURN = 0.3
@@ -270,3 +272,29 @@ def test_a_span_beyond_the_tension_of_its_belt(turning: Callable[..., Run], run:
     (text,) = said(turning(rated, span_tension=tension), "is rated for 100 N")
     assert text.startswith("the span driver-driven carries 120 N at t = ")
     assert "1.2 times as wide" in text
+
+
+def test_losses_and_slip_off_those_of_steady_running(turning: Callable[..., Run]) -> None:
+    """Losses of the run are 3 % more in friction, and its slip is a tenth less; a percent of either is not said."""
+
+    def beside(losses: float, slip: float) -> Run:
+        run = turning()
+        found = summarize(run)
+        steady = {cause: abs(power) + 1.0 for cause, power in found.balance.losses.items()}
+        parts = {name: steady[cause] for name, cause in LOSSES.items()}
+        lost = sum(steady.values())
+        window = run.dataset["time"].values
+        for name, power in parts.items():
+            run.dataset[name][:] = window * (power + (losses * lost if name == "friction_loss" else 0.0))
+        run.dataset.attrs |= {
+            STEADY_LOSSES: list(parts.values()),
+            STEADY_SLIPS: [0.0, found.pulleys[1].slip / (1.0 + slip)],
+            COARSE_SETTINGS: "simulation.rtol = 0.01",
+        }
+        return Run(run.dataset, run.drive)
+
+    assert said(beside(0.01, 0.01), "steady running") == []
+    (warning,) = said(beside(0.03, -0.1), "steady running")
+    assert "losses are off by +3.0% (friction +3.0% of the losses)" in warning
+    assert "the slip of driven by -10.0% of the largest slip" in warning
+    assert "Leave out simulation.rtol = 0.01" in warning
