@@ -16,6 +16,7 @@ from beltdyn.errors import ModelError
 from beltdyn.parts.number_range import number_in
 from beltdyn.plot.drive import DrivePicture, size_of
 from beltdyn.plot.style import new_figure, styled
+from beltdyn.plot.view import spread
 from beltdyn.results import Run
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
 
@@ -74,7 +75,9 @@ def animate(
     figure = new_figure(size_of(run.drive))
     tension = run.dataset["belt_tension"].sel(field_time=slice(chosen[0], chosen[-1]))
     with film(figure, path, frame_rate, overwrite) as take:
-        picture = DrivePicture(run, figure.add_subplot(), Normalize(float(tension.min()), float(tension.max())))
+        picture = DrivePicture(
+            run, figure.add_subplot(), Normalize(*spread(float(tension.min()), float(tension.max()), "N"))
+        )
         for time in chosen:
             picture.show(run.fields_at(time))
             take()

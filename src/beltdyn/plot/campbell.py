@@ -9,12 +9,13 @@ from matplotlib.lines import Line2D
 
 from beltdyn.arrays import FloatArray
 from beltdyn.parts.quantity import RPM
+from beltdyn.plot.legends import name_lines
 from beltdyn.plot.modes import KINDS
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import INK, axes_or_new, color, label, new_figure, set_log_scale
 from beltdyn.results import Result
 
-_SIZE = (9.5, 8.5)
+_SIZE = (8.0, 7.5)
 _HEIGHTS = (2.0, 1.0)
 _ABOVE = 1.08
 """Upper end of the frequencies that are drawn, over the highest of a mode."""
@@ -131,9 +132,9 @@ def _name_line(ax: Axes, speed: FloatArray, line: FloatArray, top: float, name: 
 
 
 def _legend(ax: Axes, result: Result, others: list[Line2D]) -> None:
-    """Write the kinds of modes that there are, and other marks, beside the axes."""
+    """Write the kinds of modes that there are, and other marks, above the axes."""
     there = [kind for kind in KINDS if kind in result.dataset["kind"].values]
     lines = [Line2D([], [], color=color(KINDS.index(kind)), label=kind) for kind in there]
     if np.any(result.dataset["growth_rate"].values > 0.0):
         others = [*others, Line2D([], [], color=INK, marker="x", linestyle="", markersize=5, label="grows by itself")]
-    ax.legend(handles=[*lines, *others], loc="center left", bbox_to_anchor=(1.03, 0.5))
+    name_lines(ax, [*lines, *others])

@@ -9,18 +9,22 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from beltdyn.analyses import RUN, STATIC
 from beltdyn.arrays import FloatArray
 from beltdyn.plot.headline import at_instant
 from beltdyn.plot.panels import panels, rows
-from beltdyn.plot.registry import Choice, always, figure
+from beltdyn.plot.registry import Choice, always, figure, on_request
 from beltdyn.plot.style import INK, SHADE, axes_or_new, color, dash, label, reserve, unit
 from beltdyn.plot.wrap import Wrap, unwrap
 from beltdyn.results import Result, Run, StaticResult, derived
 
 Kind = Literal["normal", "friction"]
 _KILO = 1e3
+_ALIKE = 4.0
+"""Radii over each other up to which pressures have one scale."""
 
 
 def _pulleys(choice: Choice) -> list[list[str]]:
@@ -37,12 +41,19 @@ def _kinds_by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) ->
 
 def _by_pulleys(draw: Callable[..., Axes], run: Result, choice: Choice) -> Figure:
     """Lay out a panel for each pulley, with one legend for all."""
-    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(choice)])
-    page.legend(*page.axes[0].get_legend_handles_labels(), loc="outside upper right", ncols=2)
+    radii = [pulley.radius for pulley in run.drive.pulleys]
+    alike = max(radii) < _ALIKE * min(radii)
+    page = panels([[partial(draw, run, name) for name in row] for row in _pulleys(choice)], sharey=alike)
+    named = [
+        Line2D([], [], color=INK, label="pressure"),
+        Line2D([], [], color=INK, linestyle=dash(1), label="shear"),
+        Patch(color=SHADE, label="sliding part of the arc"),
+    ]
+    page.legend(handles=named[: 1 if isinstance(run, StaticResult) else 3], loc="outside lower left", ncols=3)
     return page
 
 
-@figure(always, _kinds_by_pulleys, of=(RUN, STATIC), compares=True)
+@figure(on_request, _kinds_by_pulleys, of=(RUN, STATIC), compares=True)
 def contact_forces(
     run: Run | StaticResult, pulley: str | int, time: float | None = None, kind: Kind = "normal", ax: Axes | None = None
 ) -> Axes:
@@ -142,11 +153,13 @@ def contact_pressure(
     arc = derived.contact_arc(run, number, time)
     ax = axes_or_new(ax)
     angle = np.degrees(arc["angle"].values)
-    for part, tint, style in (("pressure", color(number), "-"), ("shear", INK, dash(1))):
+    parts = (("pressure", color(number), "-"), ("shear", INK, dash(1)))
+    for part, tint, style in parts[: 1 if isinstance(run, StaticResult) else 2]:  # at rest nothing rubs
         ax.plot(angle, arc[part] / _KILO, color=tint, linestyle=style, label=str(arc[part].attrs["long_name"]))
+    ax.margins(x=0.0)
     _shade_sliding(ax, angle, arc["sliding"].values)
     ax.axhline(0.0, color="0.4", linewidth=0.8, zorder=1)
-    ax.set(xlabel="Angle from the inlet [°]", ylabel="On the belt [kPa]")
+    ax.set(xlabel="Angle from the inlet [°]", ylabel="Contact stress [kPa]")
     ax.set_title(_title(run, run.drive.pulleys[number].name, float(arc["time"])))
     if not run.resolution.resolves("peak pressure"):
         reserve(ax, f"peaks not resolved by {run.drive.elements} elements")

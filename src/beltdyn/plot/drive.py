@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 from matplotlib.path import Path as Outline
@@ -26,10 +27,12 @@ _ARROW_ANGLE = np.radians(60.0)
 _MARK = (0.84, 0.97)
 _ROOMY = 0.13
 _STEEP = 0.4
-_SIZE = 8.0
-_NARROW, _WIDE = 0.55, 1.1
-_LONG, _LONGEST, _WORDS = 0.25, 14.0, 2.2
-"""Height over width below which a drive is long; the widest figure, and what words take of its height, inches."""
+_WIDE, _HIGH, _NARROWEST = 7.0, 6.0, 4.0
+"""Width of a drive that is not long, and the greatest height and the least width of any, inches."""
+_LONG, _LONGEST = 0.25, 13.0
+"""Height over width below which a drive is long, and drawn wider; the greatest width, inches."""
+_BESIDE, _WORDS = 1.0, 2.2
+"""What words take of the width and of the height of a figure, inches."""
 _MARGIN = 0.04
 _ROUNDS = 8
 _HEADED = 1.6
@@ -113,13 +116,18 @@ def draw_rotation(ax: Axes, center: ArrayLike, radius: float, speed: float) -> N
 
 
 def size_of(drive: Drive) -> tuple[float, float]:
-    """Width and height of a figure of a drive, inches: as high as it needs, and wider for a long drive."""
+    """Width and height of a figure of a drive, inches: as wide and as high as it needs."""
     width, height = np.ptp(extent_of(drive, drive.path), axis=0)
     shape = float(height / width)
-    if shape < _LONG:
-        wide = min(_SIZE * _LONG / shape, _LONGEST)
-        return wide, wide * shape + _WORDS
-    return _SIZE, _SIZE * float(np.clip(shape, _NARROW, _WIDE))
+    wide = min(_WIDE * max(1.0, _LONG / shape), _LONGEST, max(_HIGH / shape, _NARROWEST))
+    return wide + _BESIDE, min(wide * shape, _HIGH) + _WORDS
+
+
+def fit_height(page: Figure, ax: Axes) -> None:
+    """Make a page of one drive no higher than the drive needs after room was made for all words beside it."""
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    needed = (page.get_figwidth() - _BESIDE) * (high - low) / (right - left) + _WORDS
+    page.set_figheight(min(page.get_figheight(), needed))
 
 
 def extent_of(drive: Drive, path: Path) -> FloatArray:

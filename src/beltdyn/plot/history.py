@@ -8,13 +8,17 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from beltdyn.parts.quantity import RPM
+from beltdyn.plot.legends import name_lines
 from beltdyn.plot.registry import figure, over_time
-from beltdyn.plot.style import SHADE, Dash, axes_or_new, color, dash, label, name_lines, reserve, unit
+from beltdyn.plot.style import SHADE, Dash, axes_or_new, color, dash, label, note, reserve, unit
+from beltdyn.plot.view import draw_limit, unit_of
 from beltdyn.results import Run
 from beltdyn.results.balance import losses_of
 from beltdyn.results.closure import largest_closure
 from beltdyn.results.incidents import GROSS_SLIP, SLACK, STOP, incidents
 
+_SHOWN = 0.01
+"""Part of the largest energy from which on one is drawn."""
 _ENERGIES = (
     "driver_work",
     "torque_work",
@@ -118,12 +122,16 @@ def span_tensions(run: Run, ax: Axes | None = None) -> Axes:
     ax = axes_or_new(ax)
     if not run.resolution.resolves("tension"):
         reserve(ax, f"off by about {run.resolution.errors['tension']:.0%} with {run.drive.elements} elements")
-    return mark_incidents(run, lines(run.dataset["span_tension"], ax), (GROSS_SLIP, SLACK, STOP))
+    lines(run.dataset["span_tension"], ax)
+    draw_limits(run, ax, "largest_tension", "least_tension")
+    return mark_incidents(run, ax, (GROSS_SLIP, SLACK, STOP))
 
 
 @figure(over_time)
 def energy(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the energy account over time: work put in, energy stored, energy lost; without what is always zero.
+    """Draw the energy balance over time: work done on the drive, energy stored, and the sum of all losses.
+
+    What stays below a hundredth of the largest energy is left out.
 
     Parameters
     ----------
@@ -149,16 +157,27 @@ def energy(run: Run, ax: Axes | None = None) -> Axes:
     """
     run.require_output()
     ax = axes_or_new(ax)
-    drawn = [name for name in (*_ENERGIES, *losses_of(run.dataset)) if bool((run.dataset[name] != 0.0).any())]
-    for number, name in enumerate(drawn):
-        variable = run.dataset[name]
-        style = "-" if name.endswith("energy") else dash(1 if name.endswith("work") else 2)
-        _line(ax, variable, str(variable.attrs["long_name"]), number, style)
-    closure = abs(largest_closure(run.dataset).error)
+    parts = {str(run.dataset[name].attrs["long_name"]): run.dataset[name] for name in _ENERGIES}
+    parts["Losses"] = sum((run.dataset[name] for name in losses_of(run.dataset)), xr.zeros_like(run.dataset["time"]))
+    largest = max(float(np.abs(values).max()) for values in parts.values())
+    for number, (name, values) in enumerate(parts.items()):
+        if float(np.abs(values).max()) > _SHOWN * largest:
+            style = "-" if name.endswith("energy") else dash(1 if name.startswith("Work") else 2)
+            _line(ax, values, name, number, style)
     ax.set(xlabel=label(run.dataset["time"]), ylabel=f"Energy [{unit(run.dataset[_ENERGIES[0]])}]")
-    ax.set_title(f"Closure error up to {closure:.1e} of the energy put in")
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    closure = abs(largest_closure(run.dataset).error)
+    note(ax, f"energy balance closes within {closure:.1e} of the energy put in")
+    name_lines(ax)
     return ax
+
+
+def draw_limits(run: Run, ax: Axes, *keys: str) -> None:
+    """Draw limits of the drive file that are stated, in the unit of the axes: slip in %."""
+    for key in keys:
+        limit = getattr(run.drive.limits, key)
+        if limit is not None:
+            value, units = (100.0 * limit, "%") if key == "largest_slip" else (limit, unit_of(ax))
+            draw_limit(ax, value, f"{key.replace('_', ' ')} {value:.4g} {units}".rstrip())
 
 
 def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:
@@ -194,16 +213,22 @@ def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:
     return ax
 
 
-def lines(variable: xr.DataArray, ax: Axes, names: Sequence[str] | None = None) -> Axes:
-    """Draw one line for each name along the second dimension, dashed unless it vibrates a lot; none without values."""
+def lines(
+    variable: xr.DataArray, ax: Axes, names: Sequence[str] | None = None, pulleys: Sequence[int] | None = None
+) -> Axes:
+    """Draw one line for each name along the second dimension, dashed unless it vibrates a lot; none without values.
+
+    A line has the color of the pulley of its number, or of the one named: a span that of the pulley which it leaves.
+    """
     vibrating = vibrates(variable)
     for number, name in enumerate(variable[variable.dims[1]].values if names is None else names):
         if bool(variable[:, number].isnull().all()):
             continue
+        pulley = number if pulleys is None else pulleys[number]
         if vibrating[number]:
-            ax.plot(variable["time"], variable[:, number], label=str(name), color=color(number), linewidth=0.8)
+            ax.plot(variable["time"], variable[:, number], label=str(name), color=color(pulley), linewidth=0.8)
         else:
-            _line(ax, variable[:, number], str(name), number, dash(number))
+            _line(ax, variable[:, number], str(name), pulley, dash(pulley))
     ax.set(xlabel=label(variable["time"]), ylabel=label(variable))
     name_lines(ax)
     return ax

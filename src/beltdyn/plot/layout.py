@@ -17,7 +17,7 @@ from beltdyn.machines import FixedTensioner, Tensioner
 from beltdyn.model import Drive, Installation, Path, install
 from beltdyn.model.clearance import crossings
 from beltdyn.model.end import End
-from beltdyn.plot.drive import arc, draw_rotation, extent_of, make_room, size_of, write_pulley
+from beltdyn.plot.drive import arc, draw_rotation, extent_of, fit_height, make_room, size_of, write_pulley
 from beltdyn.plot.saving import save
 from beltdyn.plot.style import COLORS, INK, PALE, axes_or_new, color, new_figure, styled
 from beltdyn.plot.tensioner import LINE, TENSIONER, draw_pivot, draw_stops
@@ -116,7 +116,7 @@ def save_layout(
     """
     path = FilePath(path)
     figure = new_figure(size_of(drive))
-    layout(drive, installation, figure.add_subplot())
+    fit_height(figure, layout(drive, installation, figure.add_subplot()))
     return save(figure, path, overwrite)
 
 

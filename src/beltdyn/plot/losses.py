@@ -1,19 +1,22 @@
-"""Where the power goes that is lost, of one run and of several."""
+"""Power losses by cause, of one run and of several."""
 
 from collections.abc import Sequence
 
 import xarray as xr
 from matplotlib.axes import Axes
 
-from beltdyn.plot.registry import figure, over_time
+from beltdyn.plot.legends import name_lines
+from beltdyn.plot.registry import figure, over_turns
 from beltdyn.plot.several import names_of_results
-from beltdyn.plot.style import INK, axes_or_new, color, name_lines
+from beltdyn.plot.style import INK, axes_or_new, color
 from beltdyn.results import Balance, Run, derived, power_balance
 from beltdyn.results.cycles import mean_window
 
 _ROOM = 0.8
 """Height of the bars of a cause, over the distance from one cause to the next."""
 _SMALL = 8.0
+_NEGLIGIBLE = 1e-3
+"""Part of the largest loss below which one is left out."""
 
 
 def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
@@ -22,11 +25,7 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
     for run in runs:
         run.require_output()
     balances = [power_balance(run.dataset, mean_window(run.dataset, run.drive)) for run in runs]
-    causes = [
-        cause
-        for cause in dict.fromkeys(cause for balance in balances for cause in balance.losses)
-        if any(balance.losses.get(cause, 0.0) != 0.0 for balance in balances)
-    ]
+    causes = _worth_drawing(balances)
     height = _ROOM / len(runs)
     for number, (balance, name) in enumerate(zip(balances, names_of_results(runs), strict=True)):
         places = [row - 0.5 * _ROOM + (number + 0.5) * height for row in range(len(causes))]
@@ -40,12 +39,12 @@ def _losses_of_several(runs: Sequence[Run], ax: Axes | None) -> Axes:
     return ax
 
 
-@figure(over_time, compares=_losses_of_several)
+@figure(over_turns, compares=_losses_of_several)
 def losses(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw where the power goes that is lost, by cause: means over the end of the run, as in the summary.
+    """Draw the power lost by cause: means over the end of the run, as in the summary.
 
-    Friction and contact damping are laid out by pulley, of a single run. What gives power, which no loss can, stands
-    left of zero.
+    Friction and contact damping are divided among the pulleys, for a single run. A negative loss is a numerical error.
+    Losses below a thousandth of the largest are left out.
 
     Parameters
     ----------
@@ -76,7 +75,7 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     by_pulley = derived.pulley_powers(run).map(lambda power: xr.DataArray(over.mean_of(power.values), dims="pulley"))
     by_pulley = by_pulley.assign_coords(pulley=run.dataset["pulley"])
     parts = {"friction": by_pulley["friction_power"], "contact damping": by_pulley["contact_damping_power"]}
-    drawn = {cause: power for cause, power in balance.losses.items() if power != 0.0 or cause in parts}
+    drawn = {cause: balance.losses[cause] for cause in _worth_drawing([balance])}
     for row, (cause, power) in enumerate(drawn.items()):
         ends = _stack(ax, row, parts[cause]) if cause in parts else (min(power, 0.0), max(power, 0.0))
         if cause not in parts:
@@ -86,6 +85,15 @@ def losses(run: Run, ax: Axes | None = None) -> Axes:
     ax.set_xlabel(f"Power lost [W] and its share of the power put in, mean from {over.start:.4g} to {over.end:.4g} s")
     name_lines(ax)
     return ax
+
+
+def _worth_drawing(balances: Sequence[Balance]) -> list[str]:
+    """Causes that are at least a thousandth of the largest one anywhere, losses or gains."""
+    powers = {cause: 0.0 for balance in balances for cause in balance.losses}
+    for cause in powers:
+        powers[cause] = max(abs(balance.losses.get(cause, 0.0)) for balance in balances)
+    largest = max(powers.values(), default=0.0)
+    return [cause for cause, power in powers.items() if power > _NEGLIGIBLE * largest]
 
 
 def _frame(ax: Axes, causes: Sequence[str]) -> None:

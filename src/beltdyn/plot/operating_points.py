@@ -8,15 +8,19 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.parts.quantity import SHOWN_UNITS
+from beltdyn.plot.legends import name_lines, name_once
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
-from beltdyn.plot.style import INK, axes_or_new, color, dash, label, name_lines, unit
+from beltdyn.plot.style import INK, axes_or_new, color, dash, label
 from beltdyn.results import Result
 
 _SHOWN = ("span_tension", "hub_load", "pulley_slip", "slip_safety", "efficiency", "tensioner_position")
 _PERCENT = ("pulley_slip", "efficiency")
+_ALL = 0.99
+"""Part of an arc that slides as a whole."""
 _SAFE = 10.0
 """Slip safety up to which it is drawn: more is enough."""
 _WARNED = 1.5
@@ -26,7 +30,9 @@ _WARNED = 1.5
 def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out a panel for each variable."""
     there = [name for name in _SHOWN if name in result.dataset]
-    return panels(rows([partial(draw, result, name) for name in there]), sharey=False)
+    page = panels(rows([partial(draw, result, name) for name in there]), sharey=False)
+    name_once(page)
+    return page
 
 
 def _over_both(result: Result) -> bool:
@@ -80,11 +86,14 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     for number, (name, line) in enumerate(_lines(values, axis)):
         mark = "o" if axis == "row" else None
         ax.plot(along, line, color=color(number), linestyle=dash(number), marker=mark, label=name)
+    if variable == "efficiency":
+        ax.update_datalim([(0.0, 100.0)], updatex=False)  # what is lost is the distance to it
+        ax.autoscale_view(scalex=False)
     if variable == "slip_safety":
         ax.axhline(_WARNED, color=INK, linewidth=0.7)
         ax.set_ylim(0.0, min(_SAFE, 1.1 * float(values.max())) if values.notnull().any() else _SAFE)
     title = str(values.attrs["long_name"]).partition(":")[0]
-    ax.set(xlabel=label(along), ylabel=f"{title} [{unit(values)}]")
+    ax.set(xlabel=label(along), ylabel=label(values.assign_attrs(long_name=title)))
     if values.ndim > 1:
         name_lines(ax)
     return ax
@@ -137,9 +146,10 @@ def efficiency_map(result: Result, ax: Axes | None = None) -> Axes:
 
 @figure(always, of=("traction",))
 def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
-    """Draw slip over torque past gross slip, with elastic creep and what the slope of the friction law adds to it.
+    """Draw slip over torque past gross slip, with elastic creep and what bending and the friction law add to it.
 
-    The vertical line is the largest torque by Euler's formula, with the tensions there.
+    A circle marks where the whole arc of a pulley begins to slide, and names the pulley. The vertical line is the
+    largest torque by Euler's formula, with the tensions there.
 
     Parameters
     ----------
@@ -170,15 +180,29 @@ def traction_curve(result: Result, ax: Axes | None = None) -> Axes:
         color=color(4),
         alpha=0.25,
         linewidth=0.0,
-        label="added by the friction law",
+        label="bending and friction law",
     )
     known = np.flatnonzero(np.isfinite(torque))
     if known.size:
         limit = float(dataset["capstan_torque"][known[np.argmax(torque[known])]])
-        ax.axvline(limit, color=INK, linestyle=dash(2), linewidth=1.0, label=f"Euler: {limit:.4g} N·m")
+        ax.axvline(limit, color=INK, linestyle=dash(2), linewidth=1.0, label=f"Euler's limit {limit:.4g} N·m")
+        _mark_gross_slip(ax, dataset, torque)
     ax.set(xlabel=f"Torque on {dataset.attrs['pulley']} [N·m]", ylabel="Slip [%]")
     name_lines(ax)
     return ax
+
+
+def _mark_gross_slip(ax: Axes, dataset: xr.Dataset, torque: FloatArray) -> None:
+    """Mark the first point at which the whole arc of a pulley slides, and name the pulley."""
+    slides = (dataset["sliding_arc"] > _ALL * dataset["wrap_angle"]).transpose("slip", "pulley").values
+    points = np.flatnonzero(slides.any(axis=1) & np.isfinite(torque))
+    if points.size:
+        first = points[0]
+        names = " and ".join(map(str, dataset["pulley"].values[slides[first]]))
+        at = float(torque[first]), 100.0 * float(dataset["slip"][first])
+        ax.plot(*at, "o", color=INK, markersize=8, markerfacecolor="none", linestyle="")
+        words = f"{names} slips\nat {at[0]:.4g} N·m"
+        ax.annotate(words, at, (-10, 4), textcoords="offset points", ha="right", va="bottom", fontsize=9)
 
 
 def _lines(values: xr.DataArray, axis: str) -> list[tuple[str, xr.DataArray]]:

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from beltdyn.plot.legends import name_lines
 from beltdyn.plot.panels import panels
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import INK, axes_or_new, color
@@ -68,7 +69,7 @@ def optimization(result: Result, *, ax: Axes | None = None) -> Axes:
     name = str(dataset["requirement"].values[0]).partition(" ")[2]
     ax.set(xlabel="Design", ylabel=f"{name} [{unit or '1'}]")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    ax.legend(fontsize=8)
+    name_lines(ax)
     return ax
 
 
@@ -82,5 +83,5 @@ def _numbers(result: Result, *, ax: Axes) -> Axes:
         ax.plot(number, parts[:, line], "o-", markersize=3, color=color(line), label=str(name))
     ax.set(xlabel="Design", ylabel="From least to largest [%]", ylim=(-5.0, 105.0))
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
-    ax.legend(fontsize=7)
+    name_lines(ax)
     return ax

@@ -12,8 +12,8 @@ from beltdyn.results import Result
 
 Item = TypeVar("Item")
 
-_PANEL = (4.2, 2.9)
-_COLUMNS = 4
+_PANEL = (3.7, 2.7)
+_COLUMNS = 3
 
 
 def one_panel(draw: Callable[..., Axes], run: Result, choice: object) -> Figure:

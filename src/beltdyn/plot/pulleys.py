@@ -1,6 +1,7 @@
 """Figures of the pulleys: hub loads, slip, capstan margin and powers."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -10,8 +11,8 @@ from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator
 
 from beltdyn.errors import ModelError
-from beltdyn.plot.history import envelope, lines, mark_incidents
-from beltdyn.plot.registry import Choice, figure, over_time
+from beltdyn.plot.history import draw_limits, envelope, lines, mark_incidents
+from beltdyn.plot.registry import Choice, figure, over_time, over_turns
 from beltdyn.plot.style import POLAR_SIZE, axes_or_new, color, label, new_figure, note, polar_or_new, shade
 from beltdyn.results import Run, derived, summarize
 from beltdyn.results.cycles import mean_window
@@ -21,9 +22,11 @@ _LARGEST_MARGIN = 10.0
 _RUNNING = 0.98
 """Part of its mean speed at the end from which on the driver counts as running."""
 _RINGS = 4
+_TOP: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 8}
+"""How words stand in the upper right corner."""
 
 
-@figure(over_time, compares=True)
+@figure(over_turns, compares=True)
 def slip(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the slip of the pulleys against the driver over time, and dotted the part of it that is elastic creep.
 
@@ -68,6 +71,7 @@ def slip(run: Run, ax: Axes | None = None) -> Axes:
     )
     note(ax, "\n".join(notes))
     _limit(ax, parts["slip"], _after_start(run, summary.start))
+    draw_limits(run, ax, "largest_slip")
     return mark_incidents(run, ax, (GROSS_SLIP,))
 
 
@@ -82,8 +86,8 @@ def _after_start(run: Run, latest: float) -> float:
 def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the factor on all loads at which the belt slides through on each pulley, over time; below 1 it slides.
 
-    Pulleys that hardly carry a load, whose margin is mostly above ten, are left out where others are below. A margin
-    that vibrates is drawn as a band from its least to its largest value within a hundredth of the time, and its median.
+    Pulleys that carry little load, whose margin is mostly above ten, are named and not drawn. A margin that vibrates is
+    drawn as a band from its least to its largest value within a hundredth of the time, and its median.
 
     Parameters
     ----------
@@ -108,14 +112,22 @@ def capstan_margins(run: Run, ax: Axes | None = None) -> Axes:
     'Capstan margin'
     """
     margins = derived.capstan_margins(run)
-    loaded = margins.median("time") < _LARGEST_MARGIN
-    ax = envelope(margins.where(np.isfinite(margins) & (loaded | ~loaded.any())), axes_or_new(ax))
+    margins, names = margins.where(np.isfinite(margins)), margins["pulley"].values
+    seen = (margins < _LARGEST_MARGIN).any("time").values
+    loaded = (margins.median("time") < _LARGEST_MARGIN).values
+    shown = loaded if loaded.any() else seen
+    ax = envelope(margins.where(xr.DataArray(shown, dims="pulley")), axes_or_new(ax))
     shade(ax, 0.0, 1.0, "gross slip")
+    if not shown.all():
+        above = ", ".join(map(str, names[~shown]))
+        words = f"above {_LARGEST_MARGIN:g}: {above} ↑"
+        ax.annotate(words, (1.0, 1.0), (-4, -4), "axes fraction", "offset points", **_TOP)
+    draw_limits(run, ax, "least_margin")
     ax.set_ylim(0.0, _LARGEST_MARGIN)
     return ax
 
 
-@figure(over_time, compares=True)
+@figure(over_turns, compares=True)
 def powers(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the power that comes in at each shaft over time; negative where a load takes it out.
 
@@ -205,7 +217,7 @@ def hub_loads(run: Run, pulley: str | int | None = None, ax: Axes | None = None)
 
 @figure(over_time, compares=True)
 def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
-    """Draw the sizes of the hub loads over time; the numbers are their means and largest values at the end of the run.
+    """Draw the sizes of the hub loads over time; the numbers are their means at the end of the run.
 
     Parameters
     ----------
@@ -232,14 +244,12 @@ def hub_load_sizes(run: Run, ax: Axes | None = None) -> Axes:
     run.require_output()
     loads = derived.hub_loads(run)["hub_load"]
     over = mean_window(run.dataset, run.drive)
-    means, largest = over.mean_of(loads.values), loads.values[over.first :].max(axis=0)
-    names = [
-        f"{pulley.name} {mean:.4g} N, up to {most:.4g} N"
-        for pulley, mean, most in zip(run.drive.pulleys, means, largest, strict=True)
-    ]
+    means = over.mean_of(loads.values)
+    names = [f"{pulley.name} {mean:.4g} N" for pulley, mean in zip(run.drive.pulleys, means, strict=True)]
     ax = lines(loads, axes_or_new(ax), names)
+    draw_limits(run, ax, "largest_hub_load")
     ax.set_ylim(bottom=0.0)
-    note(ax, f"means and largest values, from {over.start:.4g} to {over.end:.4g} s")
+    note(ax, f"numbers: means at the end, from {over.start:.4g} to {over.end:.4g} s")
     return ax
 
 
@@ -258,4 +268,4 @@ def _limit(ax: Axes, variable: xr.DataArray, from_: float) -> None:
     if known.size:
         low, high = min(float(known.min()), 0.0), max(float(known.max()), 0.0)
         margin = 0.1 * max(high - low, 1e-3)
-        ax.set_ylim(low - 3.0 * margin, high + margin)  # room for the notes below
+        ax.set_ylim(low - margin, high + margin)

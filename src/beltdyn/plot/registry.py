@@ -6,6 +6,7 @@ from functools import partial, wraps
 from inspect import signature
 from typing import Any, NamedTuple, ParamSpec
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -15,10 +16,13 @@ from beltdyn.plot.headline import headlines, write_headline
 from beltdyn.plot.panels import one_panel
 from beltdyn.plot.several import overlay
 from beltdyn.plot.style import styled
+from beltdyn.plot.view import show_enough
 from beltdyn.results import Result, Run
 from beltdyn.results.recorded import runs_steadily
 
 P = ParamSpec("P")
+_TURNS = 0.01
+"""Speed from which on a pulley turns, rad/s."""
 Together = Callable[[Sequence[Any], Axes | None], Axes]
 """What draws several results into one pair of axes."""
 
@@ -82,6 +86,11 @@ def over_time(run: Run) -> bool:
     return run.dataset.sizes["time"] > 1 and not runs_steadily(run.dataset)
 
 
+def over_turns(run: Run) -> bool:
+    """Draw a figure over time where the driver turns: at rest there is nothing in it."""
+    return over_time(run) and bool(np.abs(run.dataset["pulley_speed"].values[:, run.drive.reference]).max() > _TURNS)
+
+
 def figure(
     by_default: Callable[[Any], bool] = on_request,
     arrange: Callable[[Callable[..., Axes], Any, Choice], Figure] = one_panel,
@@ -131,6 +140,7 @@ def figure(
                 shows = [not isinstance(asked, str) or asked in pulleys_of([result]) for result in results]
                 together = partial(overlay, on, shows=shows if any(shows) else None)
                 made = styled(compares if callable(compares) else together)(results, ax=ax)
+            show_enough(made)
             if ax is None:
                 write_headline(made.figure.figure, headlines(results))
             return made

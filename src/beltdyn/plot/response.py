@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from beltdyn.errors import ModelError
 from beltdyn.parts.messages import suggest
 from beltdyn.parts.quantity import RPM, SHOWN_UNITS
+from beltdyn.plot.legends import name_lines, name_once
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
 from beltdyn.plot.style import INK, Dash, axes_or_new, color, label
@@ -26,11 +27,7 @@ def _all_panels(draw: Callable[..., Axes], result: Result, choice: Choice) -> Fi
     values = result.dataset[_name(result, choice.variable)]
     names = [str(one) for one in values[values.dims[-1]].values]
     page = panels(rows([partial(draw, result, choice.variable, one) for one in names]), sharey=False)
-    boxes = [box for ax in page.axes if (box := ax.get_legend()) is not None]
-    words = {text.get_text(): line for text, line in zip(boxes[0].get_texts(), boxes[0].legend_handles, strict=True)}
-    for box in boxes:
-        box.remove()
-    page.legend([one for one in words.values() if one is not None], list(words), loc="outside right upper")
+    name_once(page)
     return page
 
 
@@ -93,7 +90,7 @@ def response(result: Result, variable: str = "span_tension", of: str | int = 0, 
         for kind, (dashes, mark, words) in _BESIDE.items()
         if f"{kind}_{name}" in dataset
     ]
-    ax.legend(handles=[*ax.get_legend_handles_labels()[0], *there], loc="center left", bbox_to_anchor=(1.0, 0.5))
+    name_lines(ax, [*ax.get_legend_handles_labels()[0], *there])
     return ax
 
 

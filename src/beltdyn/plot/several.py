@@ -12,7 +12,8 @@ from matplotlib.text import Text
 
 from beltdyn.model import loads
 from beltdyn.plot.headline import file_name, name_of
-from beltdyn.plot.style import INK, NOTE, dash, name_lines
+from beltdyn.plot.legends import name_lines
+from beltdyn.plot.style import INK, NOTE, dash
 from beltdyn.results import Result
 
 _PALER = 0.25

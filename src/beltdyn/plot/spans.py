@@ -5,8 +5,10 @@ from matplotlib.axes import Axes
 
 from beltdyn.errors import ModelError
 from beltdyn.plot.history import lines
+from beltdyn.plot.legends import name_lines
 from beltdyn.plot.registry import figure, over_time
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines, set_log_scale, shade
+from beltdyn.plot.style import axes_or_new, color, dash, label, set_log_scale
+from beltdyn.plot.view import draw_limit
 from beltdyn.results import Run, derived
 
 _FLOOR = 1e-6
@@ -98,7 +100,7 @@ def _moves_over_time(run: Run) -> bool:
 def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     """Draw the positions of the tensioners over time: mm along a line, degrees of an arm.
 
-    What lies beyond a stop is shaded.
+    Dashed lines are stops; one that is far off is named at the edge.
 
     Parameters
     ----------
@@ -131,12 +133,9 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]
     factors = np.where(rotary, np.degrees(1.0), 1e3)
     scaled = (position * factors).assign_attrs(position.attrs | {"units": ", ".join(units)})
-    ax = lines(scaled, axes_or_new(ax))
-    low, high = ax.get_ylim()
-    for tensioner, factor in zip(run.drive.moving_tensioners, factors.tolist(), strict=True):
-        lower, upper = (factor * stop for stop in tensioner.stops or (-np.inf, np.inf))
-        for name, begin, end in (("lower", low, lower), ("upper", upper, high)):
-            if begin < end:
-                shade(ax, begin, end, f"{tensioner.pulley}: {name} stop")
-    ax.set_ylim(low, high)
+    ax = lines(scaled, axes_or_new(ax), pulleys=[carrier.pulley for carrier in run.drive.carriers])
+    for tensioner, factor, turns in zip(run.drive.moving_tensioners, factors.tolist(), rotary, strict=True):
+        for name, stop in zip(("lower", "upper"), tensioner.stops or (), strict=False):
+            place = f"{factor * stop:.4g}{'°' if turns else ' mm'}"
+            draw_limit(ax, factor * stop, f"{tensioner.pulley}: {name} stop {place}")
     return ax

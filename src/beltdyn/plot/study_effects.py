@@ -5,6 +5,7 @@ from matplotlib.axes import Axes
 
 from beltdyn.analyses import STUDY
 from beltdyn.errors import ModelError
+from beltdyn.plot.legends import name_lines
 from beltdyn.plot.registry import figure
 from beltdyn.plot.study_values import (
     chosen_result,
@@ -15,7 +16,7 @@ from beltdyn.plot.study_values import (
     panel_for_each_result,
     suits,
 )
-from beltdyn.plot.style import INK, axes_or_new, color, name_lines
+from beltdyn.plot.style import INK, axes_or_new, color
 from beltdyn.results import Result
 from beltdyn.results.sobol_indices import sobol_indices as indices_of
 

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from beltdyn.arrays import BoolArray, FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.parts.messages import suggest
+from beltdyn.plot.legends import name_once
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice
 from beltdyn.results import Result
@@ -29,14 +30,8 @@ def panel_for_each_result(draw: Callable[..., Axes], result: Result, choice: Cho
     """Lay out a panel for each of the first results, with one legend where all have the same."""
     draws = [partial(draw, result, name) for name in results_of(result)[:_MOST_PANELS]]
     page = panels(rows(draws, _BESIDE), sharey=False)
-    legends = [box for ax in page.axes if (box := ax.get_legend()) is not None]
-    if legends:
-        words = [text.get_text() for text in legends[0].get_texts()]
-        lines = [line for line in legends[0].legend_handles if line is not None]
-        title = legends[0].get_title().get_text()
-        for box in legends:
-            box.remove()
-        page.legend(lines, words, title=title, loc="outside lower center", ncols=len(words))
+    titles = [box.get_title().get_text() for ax in page.axes if (box := ax.get_legend()) is not None]
+    name_once(page, next(iter(titles), ""))
     return page
 
 

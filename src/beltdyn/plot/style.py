@@ -1,6 +1,6 @@
 """How every figure looks, and how axes are labelled from the dataset."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
@@ -9,7 +9,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
 from cycler import cycler
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, ListedColormap
 from matplotlib.figure import Figure
@@ -29,8 +28,11 @@ PALE = "#e9ecf1"
 SHADE = "#f6d9c9"
 """Areas where something is at its limit."""
 
-COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#5d5d5d")
-"""Colors of lines (Okabe and Ito 2008), which all can tell apart."""
+COLORS = (
+    *("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"),
+    *("#7a5cc9", "#a03050", "#85861f", "#5d5d5d"),
+)
+"""Colors of pulleys, and of the spans that leave them, in all figures: six of Okabe and Ito (2008), and four more."""
 
 DASHES: tuple[Dash, ...] = ("-", (0, (5, 1.6)), (0, (1.2, 1.4)), (0, (6, 1.4, 1.2, 1.4)))
 """Line styles, so that lines that lie on each other can both be seen."""
@@ -42,17 +44,13 @@ POLAR_SIZE = (6.2, 4.6)
 """Those of a polar one."""
 
 NOTE = "note"
-"""Name of what is written into the corner of axes."""
+"""Name of what is written below axes."""
 
-_IN_A_ROW = 4
-_ROW = 60
-"""Letters of a legend that fit beside each other."""
-_BESIDE = 40
-"""Letters of a name that fit beside the axes."""
-_BEYOND_A_SCALE = 1.2
-"""Where a legend begins beside axes with a second scale."""
-RESERVATION, _BEYOND_WORDS = "reservation", 2.0
-"""Name of what is written along the right edge, and the distance of a legend beside it, in letters."""
+_BELOW = 38.0
+"""Distance of notes from the axes, points: numbers and a label are between them."""
+
+RESERVATION = "reservation"
+"""Name of what is written along the right edge."""
 
 _RULES: dict[Any, Any] = {
     "figure.dpi": 110,
@@ -204,7 +202,7 @@ def reserve(ax: Axes, text: str) -> None:
 
 
 def note(ax: Axes, text: str) -> None:
-    """Write into the lower right corner.
+    """Write below the label of the horizontal axis, at the right, where it covers nothing.
 
     Parameters
     ----------
@@ -213,7 +211,9 @@ def note(ax: Axes, text: str) -> None:
     text : str
         In few lines.
     """
-    ax.annotate(text, (1.0, 0.0), (-4, 4), "axes fraction", "offset points", ha="right", fontsize=9, gid=NOTE)
+    ax.annotate(
+        text, (1.0, 0.0), (0.0, -_BELOW), "axes fraction", "offset points", ha="right", va="top", fontsize=8, gid=NOTE
+    )
 
 
 def shade(ax: Axes, low: float, high: float, text: str) -> None:
@@ -221,22 +221,6 @@ def shade(ax: Axes, low: float, high: float, text: str) -> None:
     ax.axhspan(low, high, color=SHADE, linewidth=0.0, zorder=0)
     middle = ("axes fraction", "data")
     ax.annotate(text, (0.995, 0.5 * (low + high)), xycoords=middle, ha="right", va="center", fontsize=9)
-
-
-def name_lines(ax: Axes, lines: Sequence[Artist] | None = None) -> None:
-    """Write the legend of lines, by default all, above the axes, beside them where the names are many, or below all."""
-    lines = ax.get_legend_handles_labels()[0] if lines is None else lines
-    names = [str(line.get_label()) for line in lines]
-    if not names:
-        return
-    if len(names) <= _IN_A_ROW and sum(map(len, names)) < _ROW:
-        ax.legend(handles=lines, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=_IN_A_ROW, borderaxespad=0.2)
-    elif max(map(len, names)) > _BESIDE and ax.figure.axes == [ax]:
-        ax.figure.figure.legend(handles=lines, loc="outside lower center")
-    else:
-        beside = _BEYOND_A_SCALE if ax.child_axes else 1.0
-        pad = _BEYOND_WORDS if any(text.get_gid() == RESERVATION for text in ax.texts) else None
-        ax.legend(handles=lines, loc="center left", bbox_to_anchor=(beside, 0.5), borderaxespad=pad)
 
 
 def dash(number: int) -> Dash:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from beltdyn.arrays import FloatArray
 from beltdyn.errors import ModelError
 from beltdyn.parts.quantity import RPM
+from beltdyn.plot.legends import name_lines, name_once
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, figure, on_request
 from beltdyn.plot.series import names_of, series
@@ -73,12 +74,7 @@ def _all_orders(draw: Callable[..., Axes], run: Run, choice: Choice) -> Figure:
     which = _common_orders(run, choice) or None
     calls = [partial(draw, run, choice.variable, name, pulley, which=which) for name in names]
     page = panels(rows(calls), sharey=False)
-    legends = [box for ax in page.axes if (box := ax.get_legend()) is not None]
-    for box in legends:
-        box.remove()
-    words = [text.get_text() for text in legends[0].get_texts()]
-    lines = [line for line in legends[0].legend_handles if line is not None]
-    page.legend(lines, words, loc="outside right upper")
+    name_once(page)
     return page
 
 
@@ -214,7 +210,7 @@ def orders(
     ax.set(xlabel=f"Speed of {run.drive.pulleys[number].name} [rpm]", ylabel=f"Amplitude (peak) [{unit(amplitude)}]")
     ax.set_title(f"{values.attrs['long_name']}, {values.attrs['of']}")
     ax.set_ylim(bottom=0.0)
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    name_lines(ax)
     return ax
 
 

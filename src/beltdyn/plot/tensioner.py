@@ -11,9 +11,8 @@ from numpy.typing import ArrayLike
 from beltdyn.arrays import FloatArray
 from beltdyn.model import Drive
 from beltdyn.model.carrier import Carrier
-from beltdyn.plot.style import COLORS
 
-TENSIONER = COLORS[1]
+TENSIONER = "#4a5361"
 """Color of all that belongs to tensioners."""
 LINE: dict[str, Any] = {"color": TENSIONER, "linewidth": 2.0, "zorder": 4}
 """How arms and lines of sliding are drawn."""

@@ -8,9 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from beltdyn.model.tensioner_balance import held_belt
+from beltdyn.plot.legends import name_lines, name_once
 from beltdyn.plot.panels import panels, rows
 from beltdyn.plot.registry import Choice, always, figure
-from beltdyn.plot.style import INK, axes_or_new, color, dash, name_lines
+from beltdyn.plot.style import INK, axes_or_new, color, dash
 from beltdyn.results import Result
 
 _SHOWN = ("tension", "hub_load")
@@ -20,7 +21,9 @@ _POINTS = 60
 
 def _both(draw: Callable[..., Axes], result: Result, choice: Choice) -> Figure:
     """Lay out both panels."""
-    return panels(rows([partial(draw, result, name) for name in _SHOWN]), sharey=False)
+    page = panels(rows([partial(draw, result, name) for name in _SHOWN]), sharey=False)
+    name_once(page)
+    return page
 
 
 @figure(always, _both, of=("tensioner",))

@@ -3,8 +3,9 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from beltdyn.plot.legends import name_lines
 from beltdyn.plot.registry import figure
-from beltdyn.plot.style import axes_or_new, color, dash, label, name_lines
+from beltdyn.plot.style import axes_or_new, color, dash, label
 from beltdyn.results import Run, derived
 
 

@@ -23,7 +23,7 @@ def test_nothing_to_draw_is_a_model_error(run: Run, draw: Callable[..., Any]) ->
 
 def test_save_all(tmp_path: Path, run: Run) -> None:
     paths = plot.save_all(run, tmp_path / "figures")
-    names = ["configuration", "contact_forces", "contact_pressure", "speeds", "torques", "span_tensions", "energy"]
+    names = ["configuration", "contact_pressure", "speeds", "torques", "span_tensions", "energy"]
     names += ["losses", "slip", "capstan_margins", "powers", "hub_loads", "hub_load_sizes"]
     assert [path.name for path in paths] == [f"{name}.png" for name in names]
     assert sorted((tmp_path / "figures").iterdir()) == sorted(paths)
@@ -32,7 +32,7 @@ def test_save_all(tmp_path: Path, run: Run) -> None:
 
 def test_save_all_of_one_output(tmp_path: Path, make_run: Callable[..., Run]) -> None:
     paths = plot.save_all(make_run(outputs=1), tmp_path)
-    assert [path.stem for path in paths] == ["configuration", "contact_forces", "contact_pressure"]
+    assert [path.stem for path in paths] == ["configuration", "contact_pressure"]
 
 
 def test_chosen_figures(tmp_path: Path, run: Run) -> None:
@@ -62,19 +62,24 @@ def test_the_place_of_an_arm_is_drawn_in_degrees(run: Run, ax: Axes) -> None:
     np.testing.assert_allclose(np.asarray(ax.lines[0].get_ydata()), np.degrees(run.dataset["shaft_angle"].values[:, 0]))
 
 
-def test_stops_that_an_arm_comes_near_are_shaded(run: Run, ax: Axes) -> None:
-    """The upper one lies within what is drawn, the lower one far below it."""
+def test_stops_are_drawn_inside_the_axes_or_named_at_their_edge(run: Run, ax: Axes) -> None:
+    """The upper one is just reached, the lower one so far off that it would squeeze the motion."""
     swung = tensioned_run(run)
-    (arm,), place = swung.drive.tensioners, 0.1 * swung.dataset["tensioner_position"]
+    (arm,), place = swung.drive.tensioners, 0.01 * swung.dataset["tensioner_position"]
     dataset = swung.dataset.assign(tensioner_position=place.assign_attrs(swung.dataset["tensioner_position"].attrs))
-    reached = 0.9 * float(place.max())
-    stopped = arm.replace(stops=(-reached, reached), stop_stiffness=1e4)
+    reached = float(place.max())
+    stopped = arm.replace(stops=(-9.0 * reached, reached), stop_stiffness=1e4)
     plot.tensioners(Run(dataset, swung.drive.replace(tensioner=[stopped])), ax)
-    assert [text.get_text() for text in ax.texts] == ["driver: upper stop"]
-    (band,) = ax.patches
-    low, high = (edge for _, edge in band.get_extents().transformed(ax.transData.inverted()).get_points())
-    assert low == pytest.approx(np.degrees(reached))
-    assert high == pytest.approx(ax.get_ylim()[1])
+    lower, upper = (np.degrees(stop) for stop in (-9.0 * reached, reached))
+    assert {text.get_text() for text in ax.texts} == {
+        f"driver: upper stop {upper:.4g}°",
+        f"driver: lower stop {lower:.4g}° ↓",
+    }
+    (line,) = (one for one in ax.lines if str(one.get_label()).startswith("_"))
+    assert line.get_ydata() == pytest.approx([upper, upper])
+    low, high = ax.get_ylim()
+    assert low < upper < high
+    assert low > lower
 
 
 def test_slip_in_vibration_is_drawn_as_means_over_a_turn(make_run: Callable[..., Run], run: Run, ax: Axes) -> None:

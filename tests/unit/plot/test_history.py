@@ -7,7 +7,9 @@ import pytest
 from matplotlib.axes import Axes
 
 from beltdyn import plot
+from beltdyn.plot.view import LIMIT
 from beltdyn.results import Run
+from beltdyn.results.balance import losses_of
 
 
 @pytest.mark.parametrize(
@@ -30,8 +32,28 @@ def test_histories(run: Run, ax: Axes, draw: Callable[..., Axes], variable: str,
 def test_energy(run: Run, ax: Axes) -> None:
     plot.energy(run, ax)
     assert ax.get_ylabel() == "Energy [J]"
-    assert ax.get_title(loc="left") + ax.get_title() == "Closure error up to 1.0e-04 of the energy put in"
-    assert {str(line.get_label()) for line in ax.lines} >= {"Kinetic energy", "Work of the drivers", "Friction loss"}
+    assert [text.get_text() for text in ax.texts] == ["energy balance closes within 1.0e-04 of the energy put in"]
+    assert {str(line.get_label()) for line in ax.lines} >= {"Kinetic energy", "Work of the drivers", "Losses"}
+
+
+def test_energy_has_the_sum_of_all_losses_and_nothing_negligible(run: Run, ax: Axes) -> None:
+    plot.energy(run, ax)
+    drawn = {str(line.get_label()): np.asarray(line.get_ydata()) for line in ax.lines}
+    lost = sum(run.dataset[name].values for name in losses_of(run.dataset))
+    np.testing.assert_allclose(drawn["Losses"], lost)
+    sizes = [np.abs(values).max() for values in drawn.values()]
+    assert min(sizes) > 0.01 * max(sizes)
+
+
+def test_limits_of_the_drive_file_are_drawn(run: Run, ax: Axes) -> None:
+    """The least tension is 45 N: a limit of 40 N is a line within the axes, and one of 5 kN is named at the edge."""
+    limited = run.drive.replace(limits={"largest_tension": 5e3, "least_tension": 40.0})
+    plot.span_tensions(Run(run.dataset, limited), ax)
+    words = [text.get_text() for text in ax.texts if text.get_gid() == LIMIT]
+    assert words == ["largest tension 5000 N ↑", "least tension 40 N"]
+    low, high = ax.get_ylim()
+    assert low < 40.0
+    assert high < 100.0
 
 
 def test_single_output_is_a_point(make_run: Callable[..., Run], ax: Axes) -> None:

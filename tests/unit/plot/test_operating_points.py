@@ -58,9 +58,26 @@ def test_traction(drive: Drive) -> None:
     assert [text.get_text() for text in legend.get_texts()] == [
         "slip",
         "elastic creep",
-        "added by the friction law",
-        "Euler: 1 N·m",
+        "bending and friction law",
+        "Euler's limit 1 N·m",
     ]
+
+
+def test_a_traction_curve_names_the_pulley_that_slips(drive: Drive) -> None:
+    """The driven one, from the fourth slip on: its whole arc slides."""
+    table = made(drive, "traction", slip=5)
+    wrap, sliding = np.ones((5, 2)), np.full((5, 2), 0.5)
+    sliding[3:, 1] = 1.0
+    shape = ("slip", "pulley")
+    dataset = table.dataset.assign(wrap_angle=(shape, wrap), sliding_arc=(shape, sliding))
+    ax = plot.traction_curve(Result(dataset, table.drive))
+    (words,) = [text.get_text() for text in ax.texts]
+    assert words == "driven slips\nat 0.75 N·m"
+    circle = ax.lines[-1]
+    assert (float(circle.get_xdata()[0]), float(circle.get_ydata()[0])) == pytest.approx((0.75, 77.5))  # type: ignore[index]
+    table.dataset["sliding_arc"][:] = 0.0
+    table.dataset["wrap_angle"][:] = 1.0
+    assert not plot.traction_curve(table).texts
 
 
 def test_what_cannot_be_drawn(drive: Drive) -> None:

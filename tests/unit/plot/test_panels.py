@@ -13,15 +13,15 @@ from beltdyn.results import Run
 
 
 @pytest.mark.parametrize(
-    ("pulleys", "columns", "rows"), [(1, 1, 2), (2, 2, 2), (4, 4, 2), (5, 3, 4), (7, 4, 4), (9, 3, 6)]
+    ("pulleys", "columns", "rows"), [(1, 1, 2), (2, 2, 2), (3, 3, 2), (4, 2, 4), (5, 3, 4), (7, 3, 6)]
 )
 def test_panels_of_many_pulleys_are_in_rows(pulleys: int, columns: int, rows: int) -> None:
-    """Two kinds of force for each block of pulleys, no more than four beside each other."""
+    """Two kinds of force for each block of pulleys, no more than three beside each other."""
     blocks = in_rows(list(range(pulleys)))
     assert [number for block in blocks for number in block] == list(range(pulleys))
     figure = lay_out([[lambda ax: ax for _ in block] for block in blocks for _ in range(2)])
     assert len(figure.axes) == 2 * pulleys
-    assert figure.get_size_inches().tolist() == pytest.approx([4.2 * columns, 2.9 * rows])
+    assert figure.get_size_inches().tolist() == pytest.approx([3.7 * columns, 2.7 * rows])
 
 
 def test_panels_of_a_row_share_their_scale() -> None:

@@ -80,7 +80,7 @@ def test_a_page_of_several_runs_has_their_names_above(pair: list[Run], tmp_path:
     page = plot.FIGURES["powers"].arrange(pair, plot.registry.Choice())
     assert page.get_suptitle() == "one, other"
     names = [path.stem for path in plot.save_all(pair, tmp_path)]
-    expected = ["contact_forces", "speeds", "torques", "span_tensions", "losses", "slip", "capstan_margins", "powers"]
+    expected = ["speeds", "torques", "span_tensions", "losses", "slip", "capstan_margins", "powers"]
     assert names == [*expected, "hub_load_sizes"]
 
 
@@ -156,7 +156,7 @@ def test_titles_and_notes_keep_what_is_true_of_all(run: Run, make_run: Callable[
     time = run.dataset["time"]
     later = named(Run(run.dataset.assign_coords(time=(2.0 * time).assign_attrs(time.attrs)), run.drive), "later.nc")
     plot.hub_load_sizes([named(run, "one.nc"), later], ax)  # type: ignore[arg-type]
-    assert [text.get_text() for text in ax.texts] == ["means and largest values"]
+    assert [text.get_text() for text in ax.texts] == ["numbers: means at the end"]
 
 
 def test_long_names_of_results_are_told_by_their_line_styles(pair: list[Run]) -> None:

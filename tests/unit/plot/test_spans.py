@@ -42,15 +42,3 @@ def test_wear(run: Run, ax: Axes) -> None:
     belt = plot.wear_by_belt(run)
     np.testing.assert_array_equal(belt.lines[0].get_ydata(), wear_by_belt(run)[0])
     assert belt.get_xlabel().startswith("Belt coordinate")
-
-
-def test_many_names_stand_beside_the_axes(run: Run, ax: Axes) -> None:
-    from beltdyn.plot.style import name_lines
-
-    for number in range(7):
-        ax.plot([0, 1], [0, number], label=f"pulley {number}")
-    name_lines(ax)
-    legend = ax.get_legend()
-    assert legend is not None
-    assert len(legend.get_texts()) == 7
-    assert legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 == pytest.approx(1.0)

@@ -33,7 +33,7 @@ STUDY = bd.ParameterStudy(
 )
 MAKERS: Mapping[str, tuple[Callable[[bd.Drive], Result], tuple[str, ...], tuple[str, ...]]] = {
     "static": (bd.equilibrium, ("Largest hub load", "Wrap angle"), ("contact_pressure-0",)),
-    "steady": (bd.steady_state, ("Least capstan margin", "steady, completed", "efficiency"), ("contact_forces-0",)),
+    "steady": (bd.steady_state, ("Least capstan margin", "steady, completed", "efficiency"), ("contact_pressure-0",)),
     "map": (
         lambda drive: bd.operating_map(drive, speed="700, 1500 rpm", load="0.5, 1"),
         ("Largest slip", "speed 1500 rpm, load 1", "Efficiency map"),
