@@ -1,9 +1,10 @@
 """Tables of the keys of drive files and studies, made from the fields that read them: `{{ keys.belt }}` on a page."""
 
 import json
+import re
 import typing
 from collections.abc import Iterable, Mapping
-from math import inf, tau
+from math import inf, pi, tau
 from types import ModuleType
 from typing import Any, Literal
 
@@ -43,6 +44,9 @@ CHOSEN = {
 }
 """Keys that a drive chooses where its file leaves them open."""
 
+_CODE = re.compile(r'\{ [^}]*\}|"[\w.()\[\] -]+"|\b[a-z]+(?:_[a-z]+)+\b')
+"""Values in quotation marks, and keys of more than one word."""
+
 
 def kinds_in(family: ModuleType) -> dict[str, type[Part]]:
     """Parts of a family of machines by the names of their kinds."""
@@ -68,12 +72,19 @@ def family(kinds: Mapping[str, type[Part]], shared: type[Part] | None = None) ->
     return {**tables, "shared": table(shared)} if shared else tables
 
 
+def spelled(description: str) -> str:
+    """A description with units as they are printed, and with keys and values of the file as code."""
+    text = re.sub(r"\^([23])", lambda found: "²³"[int(found[1]) - 2], description.replace("*", " "))
+    parts = re.split(r"(`[^`]*`)", text)
+    return "".join(one if one.startswith("`") else _CODE.sub(r"`\g<0>`", one) for one in parts)
+
+
 def _meaning(field: FieldInfo) -> str:
     """Description, choices and limits."""
-    told = field.description or ""
+    told = spelled(field.description or "")
     words = [f"{told[0].upper()}{told[1:]}"]
-    choices = [one for one in _choices(field.annotation) if one not in told]
-    if choices:
+    choices = _choices(field.annotation)
+    if not all(one in told for one in choices):
         words.append(f"one of {', '.join(f'`{one}`' for one in choices)}")
     limits = [limit for one in field.metadata if (limit := _limit(one)) and limit not in told]
     return "; ".join([*words, " and ".join(limits)] if limits else words)
@@ -96,7 +107,7 @@ def _limit(constraint: object) -> str:
         case Lt(lt=limit) if limit < inf:
             return f"below {limit:g}"
         case Le(le=limit):
-            return f"at most {limit:g}"
+            return f"at most {'π' if limit == pi else format(limit, 'g')}"
     return ""
 
 

@@ -77,7 +77,8 @@ def test_the_readmes_drive_is_that_of_the_demo() -> None:
 def test_tables_have_every_key(part: type[Part], name: str) -> None:
     table = key_tables.KEYS[name]
     for key, field in part.model_fields.items():
-        assert re.search(rf"^\| `{key}` \| .{re.escape(str(field.description)[1:])}.* \|$", table, re.MULTILINE), key
+        meaning = re.escape(key_tables.spelled(str(field.description))[1:])
+        assert re.search(rf"^\| `{key}` \| .{meaning}.* \|$", table, re.MULTILINE), key
 
 
 def test_tables_tell_defaults_choices_and_limits() -> None:
@@ -86,6 +87,11 @@ def test_tables_tell_defaults_choices_and_limits() -> None:
     assert next(row for row in rows if "`stiffness`" in row).endswith("| chosen |")
     assert "at least 1 and at most 64" in next(row for row in rows if "`quadrature_points`" in row)
     assert "| required |" in next(row for row in key_tables.KEYS["belt"].splitlines() if "`width`" in row)
+
+
+def test_descriptions_are_spelled_as_they_are_printed() -> None:
+    said = 'the force, in N*s/m^2, under `length` or measuring_force, by "green"'
+    assert key_tables.spelled(said) == 'the force, in N s/m², under `length` or `measuring_force`, by `"green"`'
 
 
 def test_what_a_drive_chooses_is_told() -> None:
