@@ -73,7 +73,7 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
     for stop in carrier.tensioner.stops or ():
         ax.axvline(scale * stop, color=INK, linestyle=dash(2), linewidth=0.8)
     travel = "Arm" if carrier.tensioner.turns else "Position"
-    ax.set(xlabel=f"{travel} from the center given [{of_travel}]", ylabel=f"{dataset[variable].attrs['long_name']} [N]")
+    ax.set(xlabel=f"{travel} from the given center [{of_travel}]", ylabel=f"{dataset[variable].attrs['long_name']} [N]")
     ax.margins(x=0.06)
     ax.set_ylim(bottom=0.0)
     name_lines(ax)

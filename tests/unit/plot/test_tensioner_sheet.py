@@ -29,7 +29,7 @@ def sheet() -> Result:
 
 def test_points_lie_on_the_line_by_hand(sheet: Result) -> None:
     ax = plot.tensioner_sheet(sheet)
-    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Arm from the center given [°]", "Tension [N]")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("Arm angle from the given center [°]", "Tension [N]")
     line = ax.lines[0]
     assert np.asarray(line.get_xdata(), dtype=float)[[0, -1]] == pytest.approx(np.degrees([0.0, 0.1]))
     assert np.asarray(line.get_ydata(), dtype=float)[0] == pytest.approx(295.5, abs=0.1)

@@ -89,7 +89,7 @@ def test_a_file_with_the_core_alone_is_summed_up_drawn_and_tabled(kept: Path, ch
 @pytest.mark.parametrize("figure", ["wear_by_arc", "wear_by_belt", "mid_spans", "tension_spectrum"])
 def test_what_a_file_does_not_hold_is_named(change: Callable[..., Path], tmp_path: Path, figure: str) -> None:
     run = open_run(change(take_extras))
-    with pytest.raises(ModelError, match=r"holds no `\w+`: .* Run the drive again"):
+    with pytest.raises(ModelError, match=r"has no `\w+`: .* Run the drive again"):
         plot.save_all(run, tmp_path, [figure])
 
 

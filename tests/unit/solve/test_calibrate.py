@@ -159,7 +159,7 @@ def test_intervals_hold_the_true_numbers_as_often_as_they_say(drive: Drive, slip
     ("text", "said"),
     [
         ("driven torque [N m]\n-3\n", "has no column of results"),
-        ("pulley_slip[driven], wind\n1, 2\n", 'the heading "wind" is neither a result'),
+        ("pulley_slip[driven], wind\n1, 2\n", 'the heading "wind" is not a result'),
         ("pulley_slip[driven]\nmuch\n", 'line 2: "much"'),
         ("hub_load[driven] [m]\n3\n", "must be in units of N"),
         ("idler torque [N m], pulley_slip[driven]\n3, 1\n", "pulley = 'idler' is not in this drive"),

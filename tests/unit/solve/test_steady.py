@@ -210,7 +210,7 @@ def test_starts_that_do_not_fit(loaded: Drive, run: Run) -> None:
     renamed = loaded.replace(pulley=[loaded.pulleys[0], loaded.pulleys[1].replace(name="other")])
     with pytest.raises(ModelError, match="start has the pulleys driver, driven and 0 moving tensioners; the drive has"):
         steady_state(renamed, start=run)
-    with pytest.raises(ModelError, match="elements = 30 does not go with start"):
+    with pytest.raises(ModelError, match="elements = 30 cannot be given with start"):
         steady_state(loaded, start=run, elements=30)
 
 

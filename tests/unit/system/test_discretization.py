@@ -106,7 +106,7 @@ def test_laid_belt_lies_on_its_path(drive: Drive, kind: str) -> None:
 @pytest.mark.parametrize("closure", ["open", "multipliers"])
 def test_three_node_beams_are_closed_by_a_shared_node(drive: Drive, closure: Closure) -> None:
     with pytest.raises(
-        ModelError, match=f'closure = "{closure}" does not fit.*"three-node-beam".*Choose closure = "shared_node"'
+        ModelError, match=f'closure = "{closure}" does not apply to.*"three-node-beam".*Choose closure = "shared_node"'
     ):
         belt_system(cut(drive, "three-node-beam", 12), closure=closure)
 

@@ -71,5 +71,5 @@ def test_a_single_output_is_a_window(run: Run) -> None:
 def test_displacements_that_were_not_recorded(run: Run) -> None:
     """As in files of the first versions."""
     older = Run(run.dataset.drop_vars("mid_span_displacement"), run.drive)
-    with pytest.raises(ModelError, match="holds no `mid_span_displacement`: it was written by another version"):
+    with pytest.raises(ModelError, match="has no `mid_span_displacement`: it was written by another version"):
         mid_span_displacements(older)
