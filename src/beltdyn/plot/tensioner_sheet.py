@@ -72,7 +72,7 @@ def tensioner_sheet(result: Result, variable: str = "tension", *, ax: Axes | Non
         ax.vlines(scale * place, low, high, color=INK, linewidth=2.0, alpha=0.4, label="dry friction")
     for stop in carrier.tensioner.stops or ():
         ax.axvline(scale * stop, color=INK, linestyle=dash(2), linewidth=0.8)
-    travel = "Arm" if carrier.tensioner.turns else "Position"
+    travel = "Arm angle" if carrier.tensioner.turns else "Position"
     ax.set(xlabel=f"{travel} from the given center [{of_travel}]", ylabel=f"{dataset[variable].attrs['long_name']} [N]")
     ax.margins(x=0.06)
     ax.set_ylim(bottom=0.0)
