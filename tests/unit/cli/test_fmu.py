@@ -34,7 +34,7 @@ def test_variables_and_the_version_are_chosen(run_main: RunMain, drive_file: Pat
         (["--output", "out.fmu"], "'out.fmu' is not an output of this drive. Name the file by -o."),
         (["--output", "slip"], "'slip' is not an output of this drive."),
         (["-o", "drive.toml"], "drive.toml must end in .fmu"),
-        (["-o", "theirs.fmu"], "theirs.fmu is there already"),
+        (["-o", "theirs.fmu"], "theirs.fmu already exists"),
         (["-o", "missing/drive.fmu"], "cannot be written"),
         (["--fmi", "1.0"], "1.0"),
     ],

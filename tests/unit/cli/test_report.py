@@ -77,7 +77,7 @@ def test_a_run_with_a_report(
     monkeypatch.setattr(importlib.import_module("beltdyn.solve.simulate"), "simulate", simulate)
     page = drive_file.with_suffix(".html")
     page.write_text("<p>Mine.</p>", encoding="utf-8")
-    assert f"{page} is there already" in refuse(["run", str(drive_file), "--report"])
+    assert f"{page} already exists" in refuse(["run", str(drive_file), "--report"])
     assert not calls  # before anything is computed
     page.unlink()
     code, output, _ = run_main(["run", str(drive_file), "--report"])

@@ -94,7 +94,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
     ("options", "message"),
     [
         (["--figures", "slips"], "figure 'slips' is unknown. Choose from configuration, contact_forces"),
-        (["--figures", "slip,"], "figure '' is not known"),
+        (["--figures", "slip,"], "figure '' is unknown"),
         (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Choose one of driver, driven."),
         (["--figures", "tensioners"], "this drive has no tensioner that moves"),
         (["--figures", "orders"], "orders need 16 or more"),

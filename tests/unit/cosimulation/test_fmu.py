@@ -319,7 +319,7 @@ def test_writing_leaves_no_trace_and_replaces_units_alone(short: Drive, tmp_path
     causes = [one.causality for one in fmpy.read_model_description(str(file)).modelVariables]
     assert causes == ["independent", "parameter", "input", "output", "output"]
     file.write_text("mine", encoding="utf-8")
-    with pytest.raises(ModelError, match="is there already"):
+    with pytest.raises(ModelError, match="already exists"):
         fmu(short, file)
     assert file.read_text(encoding="utf-8") == "mine"
     assert fmu(short, file, overwrite=True) == file

@@ -230,7 +230,7 @@ def test_only_a_report_is_replaced(limited: Run, tmp_path: Path, monkeypatch: py
     path = tmp_path / "report.html"
     assert write_report(limited, path) == write_report(limited, path) == path
     path.write_text("<p>Mine.</p>", encoding="utf-8")
-    with pytest.raises(ModelError, match="is there already"):
+    with pytest.raises(ModelError, match="already exists"):
         write_report(limited, path)
     assert path.read_text(encoding="utf-8") == "<p>Mine.</p>"
     assert write_report(limited, path, overwrite=True) == path

@@ -48,7 +48,7 @@ def test_nothing_is_written_where_one_format_cannot_be(
     with pytest.raises(ModelError, match="pyarrow"):
         export(run, ["vtk", "csv", "mat", "parquet"], tmp_path / "drive.nc")
     (tmp_path / "drive.mat").write_text("mine", encoding="utf-8")
-    with pytest.raises(ModelError, match=r"drive.mat is there already"):
+    with pytest.raises(ModelError, match=r"drive.mat already exists"):
         export(run, ["vtk", "csv", "mat"], tmp_path / "drive.nc")
     assert [file.name for file in tmp_path.iterdir()] == ["drive.mat"]
 

@@ -78,9 +78,9 @@ def test_other_files_are_left_alone(make_run: Callable[..., Run], tmp_path: Path
     savemat(path, {"mine": 1.0})
     (tmp_path / "spans.parquet").write_text("mine", encoding="utf-8")
     before = {one: one.read_bytes() for one in tmp_path.iterdir()}
-    with pytest.raises(ModelError, match=r"drive.mat is there already"):
+    with pytest.raises(ModelError, match=r"drive.mat already exists"):
         write_mat(run, path)
-    with pytest.raises(ModelError, match=r"spans.parquet is there already"):
+    with pytest.raises(ModelError, match=r"spans.parquet already exists"):
         write_parquet(run, tmp_path)
     assert {one: one.read_bytes() for one in tmp_path.iterdir()} == before
     write_mat(run, path, overwrite=True)

@@ -90,7 +90,7 @@ def test_files_of_ours_are_replaced_and_others_are_not(make_run: Callable[..., R
     with h5py.File(pulleys, "w") as file:
         file.create_group("VTKHDF")
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
-    with pytest.raises(ModelError, match=r"pulleys\.vtkhdf is there already"):
+    with pytest.raises(ModelError, match=r"pulleys\.vtkhdf already exists"):
         write_vtkhdf(run, tmp_path / "drive.nc")
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
     write_vtkhdf(run, tmp_path / "drive.nc", overwrite=True)

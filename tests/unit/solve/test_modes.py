@@ -116,7 +116,7 @@ def test_modes_with_stuck_tensioners_have_numbers_of_their_own(drive: Drive) -> 
         ({"count": 100}, "count = 100 exceeds the limit of 99 modes"),
         ({"about": "standstill"}, "about = 'standstill' is not a state"),
         ({"about": "rest", "speed": "800 rpm"}, "speed, pulley and at require about"),
-        ({"pulley": "driver"}, "there is no speed"),
+        ({"pulley": "driver"}, "needs a speed to prescribe"),
         ({"speed": "800..900 rpm"}, "must be a single speed"),
         ({"speed": "fast"}, "speed = 'fast' must be a range"),
     ],
