@@ -67,7 +67,7 @@ def replace(old: str, new: str) -> Change:
             replace(TORQUE, 'torque = { kind = "table", times = [' + '"x", ' * LONG + "], values = [0] }"),
             "more errors are not shown",
         ),
-        (replace(LENGTH, "installed_tension = 1e-12"), "lost in rounding. Give at least"),
+        (replace(LENGTH, "installed_tension = 1e-12"), "below rounding. Give at least"),
         (replace(FAR, "center = [8e12, 0]"), "the extent of the drive is 8e+12 m; the limit is 1e+07 times the radius"),
         (lambda text: text + "".join(PULLEY.format(number) for number in range(20_000)), "more than 1000 entries"),
         (lambda text: re.sub(r"(?m)^elements = \d+", "elements = 100000", text), "must be at most 10000"),

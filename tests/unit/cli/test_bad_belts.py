@@ -53,10 +53,10 @@ CASES: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "flat belt without width": ('profile = "flat-aramid"', ("width is missing", "is sold by width", "Give it")),
     "round belt without diameter": ('profile = "round-85A"', ("diameter is missing", "is sold by diameter")),
-    "round belt of ribs": ('profile = "round-85A"\nribs = 2', ("ribs = 2 does not fit", "Give diameter in its place")),
+    "round belt of ribs": ('profile = "round-85A"\nribs = 2', ("ribs = 2 is incompatible", "Give diameter instead")),
     "V-belt by diameter": (
         'profile = "SPB"\ndiameter = 0.1',
-        ("diameter = 0.1 does not fit", "Give ribs in its place"),
+        ("diameter = 0.1 is incompatible", "Give ribs instead"),
     ),
     "round belt of no diameter": (
         'profile = "round-85A"\ndiameter = 0',
