@@ -32,7 +32,7 @@ app = App(
     name="beltdyn",
     version=__version__,
     help="Simulate belt drives: speeds, torques, tensions, slip and contact forces, from one drive file.",
-    help_epilogue="Start with `beltdyn demo`, or with `beltdyn new`, `beltdyn check drive.toml` and "
+    help_epilogue="Start with `beltdyn demo`, or `beltdyn new`, `beltdyn check drive.toml` and "
     "`beltdyn run drive.toml`.",
     suppress_keyboard_interrupt=False,
 )

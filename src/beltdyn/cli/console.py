@@ -43,7 +43,7 @@ _SPELLING, _BYTES = "beltdyn.spelling", range(0xDC80, 0xDD00)
 
 
 def take_any_terminal() -> None:
-    """Let standard output and standard error spell what their encoding does not know, in place of an error.
+    """Let standard output and standard error replace characters unknown to their encoding, without an error.
 
     Bytes of file names that are no text go out as they are.
     """
@@ -89,7 +89,7 @@ def show_paragraphs(paragraphs: Iterable[str]) -> None:
 
 
 def show_facts(facts: Iterable[tuple[str, str]]) -> None:
-    """Write lines of a name and what it is."""
+    """Write facts, one line each with name and value."""
     rows = list(facts)
     width = max((len(name) for name, _ in rows), default=0)
     for name, fact in rows:
@@ -97,7 +97,7 @@ def show_facts(facts: Iterable[tuple[str, str]]) -> None:
 
 
 def show_warnings(warnings: Iterable[str]) -> None:
-    """Write warnings on standard output, where they belong to what was asked for."""
+    """Write warnings on standard output, as part of the result."""
     for warning in warnings:
         line = Text.assemble(("warning: ", "bold yellow"), warning)
         Console().print(line, soft_wrap=True)

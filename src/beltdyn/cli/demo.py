@@ -12,7 +12,7 @@ _DRIVE = "fan_direct_start"
 
 
 def demo(folder: Path = Path("beltdyn-demo"), /) -> int:
-    """Start a 15 kW fan through three V-belts by an induction motor, and draw the figures of the run.
+    """Simulate the start of a 15 kW fan by an induction motor and three V-belts, and plot the figures.
 
     Parameters
     ----------

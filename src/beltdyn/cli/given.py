@@ -21,7 +21,7 @@ def takes_runs(analysis: Analysis) -> bool:
 
 
 def read_given(analysis: Analysis, file: Path) -> "Drive | Run":
-    """Read a drive file, or a result file where the analysis takes runs.
+    """Read a drive file, or a result file if the analysis accepts runs.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ DOUBTFUL = 4
 
 
 class Extras(NamedTuple):
-    """What is written beside a result file.
+    """Additional outputs beside a result file.
 
     Attributes
     ----------

@@ -200,7 +200,7 @@ class Belt(Part):
         return FORMS
 
     def value_of(self, key: str) -> Any:
-        """As of any part; stiffnesses and mass follow from any form, the profile is known where one was given."""
+        """As for any part; stiffnesses and mass follow from any form, the profile only from a given one."""
         if key in OWN or key == "length":
             return getattr(self, key)
         if key == "nominal_length":
@@ -209,11 +209,11 @@ class Belt(Part):
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """As of any part; a nominal length stands there as it was given."""
+        """As for any part; a nominal length is kept as given."""
         return self._with_its_length(super().arguments)
 
     def merged(self, changes: Mapping[str, Any]) -> dict[str, Any]:
-        """As of any part; a stiffness takes the place of the material, and a profile that of the section.
+        """As for any part; a stiffness replaces the material, and a profile the section.
 
         A belt made of a profile stays one, but where its material is changed; one of a nominal length keeps that.
         """

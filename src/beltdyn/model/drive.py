@@ -390,7 +390,7 @@ def drive_of_text(text: str) -> Drive:
 
 
 def has_functions(drive: Drive) -> bool:
-    """Tell whether a load of a drive is a function of Python, which no file holds and no other process has."""
+    """Whether a load of a drive is a Python function, which no file or other process can have."""
     return any(isinstance(load, FunctionLoad) for pulley in drive.pulleys for load in pulley.load)
 
 

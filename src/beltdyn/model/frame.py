@@ -17,7 +17,7 @@ class Frame(NamedTuple):
 
     name: FrameName
     reason: str
-    """Why; empty where it is the default."""
+    """The reason; empty for the default."""
 
     @property
     def stays(self) -> bool:

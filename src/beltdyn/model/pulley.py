@@ -85,12 +85,12 @@ class Pulley(Part):
     )
 
     def value_of(self, key: str) -> Any:
-        """As of any part; the diameter is twice the radius."""
+        """As for any part; the diameter is twice the radius."""
         return 2.0 * self.radius if key == "diameter" else super().value_of(key)
 
     @classmethod
     def alternatives(cls) -> Mapping[str, FieldInfo]:
-        """The diameter in place of the radius."""
+        """The diameter replaces the radius."""
         return Diameter.model_fields
 
     @model_validator(mode="before")

@@ -182,5 +182,5 @@ class CalibrationStudy(Part):
         paths = [one.path for one in self.numbers]
         twice = [path for path in paths if paths.count(path) > 1]
         if twice:
-            raise ValueError(f'number "{twice[0]}" stands twice. Remove one')
+            raise ValueError(f'number "{twice[0]}" is given twice. Remove one')
         return self

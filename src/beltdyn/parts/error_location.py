@@ -100,7 +100,7 @@ class ErrorLocation:
 
 
 def option_names(schema: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Tell what options of different form are called in locations: by their part, or their type in JSON.
+    """Names of alternative forms in locations: by their part, or their JSON type.
 
     Parameters
     ----------

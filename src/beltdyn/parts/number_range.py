@@ -47,7 +47,7 @@ def number_in(name: str, value: float | str, unit: str) -> float:
 
 
 def numbers_in(name: str, text: str, unit: str, count: int) -> FloatArray:
-    """Read a range as so many equally spaced numbers, or the numbers of a list.
+    """Read a range as equally spaced numbers, or a list of numbers.
 
     Parameters
     ----------

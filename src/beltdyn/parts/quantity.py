@@ -221,7 +221,7 @@ class _Reader:
 
 
 def unit_of(annotation: object) -> str | None:
-    """The SI unit of a field, or of the numbers in a list; None where it holds none.
+    """The SI unit of a field, or of the numbers in a list; None without numbers.
 
     Parameters
     ----------

@@ -86,7 +86,7 @@ def take_grid(data: Any, info: ValidationInfo, rows: str, columns: str, values: 
 
 
 def names_file(data: Any, keys: Sequence[str]) -> bool:
-    """Whether what a user gave for a table names a file; an error if it has one of some keys beside it."""
+    """Whether a given table names a file; an error if it also has any of some keys."""
     if not isinstance(data, Mapping) or "file" not in data:
         if isinstance(data, Mapping) and "units" in data:
             raise ValueError("units applies to the columns of a file. Write the units with the numbers, or give file")
