@@ -5,6 +5,7 @@ anywhere, and turn on.  Its rate takes its place as the unknown, which leaves no
 """
 
 from collections.abc import Callable
+from math import sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -23,9 +24,14 @@ _AT_A_TIME, _MOST_AT_A_TIME = 24, 96
 _BATCHES, _TOLERANCE = 8, 1e-9
 """Batches of steps of the Arnoldi method, at most, and the residual of an eigenvalue that is found."""
 _BAND = 0.5
-"""Half of the band of frequencies around a shift whose eigenvalues are taken, over the radius within which all are."""
+"""Half of the band of frequencies around a shift whose lightly damped eigenvalues are known, over the radius within
+which all are."""
+_ROUNDING = 1e-6
+"""Part by which a disk is smaller than the distance of its farthest eigenvalue, which is that of another disk then."""
 _SWINGS = 0.1
-"""Least imaginary part of an eigenvalue that swings, over its magnitude: a damping ratio up to 0.995."""
+"""Least imaginary part of an eigenvalue that grows and swings, over its magnitude."""
+MOST_DAMPED = 0.9
+"""Damping ratio from which on a mode is left out: within half a swing 0.15 % of a free motion is left."""
 LIGHT = 0.5
 """Damping ratio below which a mode counts as lightly damped: at resonance a force moves one damped so by 15 % more than
 the same force does if it stays, 1 / (2 z sqrt(1 - z^2)), and one damped more by less."""
@@ -38,6 +44,10 @@ MOST_SWINGING = 99
 """Eigenvalues that swing, counted or not, with which a search ends, unless more are asked for."""
 _INFINITE = 1e10
 """Magnitude from which on an eigenvalue is that of a constraint or of a coordinate without mass, 1/s."""
+
+
+_SLIVER = 0.05
+"""Size of a gap between disks, over their radius, that gets a disk of its own and is not divided further."""
 
 
 class Pencil(NamedTuple):
@@ -186,8 +196,9 @@ def nearest(given: Pencil, shift: complex, count: int) -> tuple[ComplexArray, Co
 
 
 def swings(values: ComplexArray) -> BoolArray:
-    """Which eigenvalues swing: those with a positive imaginary part, but for rounding."""
-    return np.asarray((values.imag > _SWINGS * np.abs(values)) & (np.abs(values) > _SLOWEST))
+    """Which eigenvalues (1/s) swing: of each conjugate pair one, with a damping ratio below `MOST_DAMPED`."""
+    size = np.abs(values)
+    return np.asarray((-values.real < MOST_DAMPED * size) & (values.imag > _SWINGS * size) & (size > _SLOWEST))
 
 
 def lightly_damped(values: ComplexArray) -> BoolArray:
@@ -234,36 +245,123 @@ def swinging(
     return found[chosen], shapes[:, chosen]
 
 
+class _Disk(NamedTuple):
+    """A part of the complex plane of which all eigenvalues are known."""
+
+    center: complex
+    radius: float
+
+    def holds(self, values: ComplexArray) -> BoolArray:
+        """Whether values lie in it."""
+        return np.asarray(np.abs(values - self.center) < self.radius)
+
+
+class _Cell(NamedTuple):
+    """A rectangle of the complex plane whose eigenvalues are looked for, by its corners."""
+
+    low: complex
+    high: complex
+
+    @property
+    def center(self) -> complex:
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def wanted(self) -> bool:
+        """Whether a mode in it may be damped by less than `MOST_DAMPED`: its upper right corner is the least damped."""
+        return -self.high.real < MOST_DAMPED * abs(self.high)
+
+    def within(self, disk: _Disk) -> bool:
+        """Whether all of it lies in a disk."""
+        corners = np.array(
+            [self.low, self.high, complex(self.low.real, self.high.imag), complex(self.high.real, self.low.imag)]
+        )
+        return bool(np.all(disk.holds(corners)))
+
+    def quarters(self) -> "list[_Cell]":
+        """The four parts of it."""
+        step = 0.5 * (self.high - self.low)
+        return [
+            _Cell(low, low + step)
+            for low in (self.low + complex(x * step.real, y * step.imag) for x in (0, 1) for y in (0, 1))
+        ]
+
+
+class _Known:
+    """Eigenvalues of disks that overlap, each but once."""
+
+    def __init__(self, given: Pencil) -> None:
+        self._given, self.disks = given, list[_Disk]()
+        self._values, self._vectors = list[ComplexArray](), list[ComplexArray]()
+
+    @property
+    def values(self) -> ComplexArray:
+        """Eigenvalues, 1/s."""
+        return np.concatenate(self._values)
+
+    @property
+    def vectors(self) -> ComplexArray:
+        """Their eigenvectors in columns."""
+        return np.concatenate(self._vectors, axis=1)
+
+    def look(self, shift: complex, count: int) -> _Disk:
+        """Eigenvalues nearest to a shift, and the disk that holds all of them."""
+        found, vectors = nearest(self._given, shift, count)
+        disk = _Disk(shift, (1.0 - _ROUNDING) * float(np.max(np.abs(found - shift))))
+        new = disk.holds(found) & (np.abs(found) < _INFINITE)
+        for other in self.disks:
+            new &= ~other.holds(found)
+        self.disks.append(disk)
+        self._values.append(found[new])
+        self._vectors.append(vectors[:, new])
+        return disk
+
+    def fill(self, high: float) -> None:
+        """Look for all modes up to a frequency (rad/s), however much they are damped below `MOST_DAMPED`."""
+        widest = high * MOST_DAMPED / sqrt(1.0 - MOST_DAMPED**2)
+        cells = [_Cell(complex(-widest, 0.0), complex(0.0, high))]
+        while cells:
+            cell = cells.pop()
+            if not cell.wanted or any(cell.within(disk) for disk in self.disks):
+                continue
+            around = [disk.radius for disk in self.disks if disk.holds(np.array([cell.center]))[0]]
+            if not around or abs(cell.high - cell.low) < _SLIVER * max(around):
+                self.look(cell.center, _AT_A_TIME)
+            if not any(cell.within(disk) for disk in self.disks):
+                cells += cell.quarters()
+
+
 def _band_by_band(
     given: Pencil, count: int, first: float, counted: Callable[[ComplexArray], BoolArray]
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues in neighbouring bands of frequencies, until enough of them swing and are counted."""
-    values, shapes = list[ComplexArray](), list[ComplexArray]()
-    low, ahead, number, every = 0.0, first, 0, 0
+    """Eigenvalues in neighbouring bands of frequencies, until enough of them swing and are counted.
+
+    Disks along the imaginary axis leave out what is damped much between them: the rest of the wedge of modes below the
+    last band is filled up, so that which of them are listed depends neither on shifts nor on the Arnoldi method.
+    """
+    known, low, ahead = _Known(given), 0.0, first
     for _ in range(_MOST_SHIFTS):
-        found, vectors, high = _band(given, low, ahead)
-        inside = (found.imag > low) & (found.imag <= high) & (np.abs(found) < _INFINITE)
-        values.append(found[inside])
-        shapes.append(vectors[:, inside])
-        swing = swings(found[inside])
-        every += int(np.count_nonzero(swing))
-        number += int(np.count_nonzero(swing & counted(found[inside])))
-        if number >= count or every >= max(count, MOST_SWINGING) or not np.isfinite(high):
+        high = _band(known, low, ahead)
+        if not np.isfinite(high):
+            return known.values, known.vectors
+        below = known.values[(known.values.imag <= high) & swings(known.values)]
+        if np.count_nonzero(counted(below)) >= count or below.size >= max(count, MOST_SWINGING):
             break
         low, ahead = high, 0.5 * (high - low)
-    return np.concatenate(values), np.concatenate(shapes, axis=1)
+    known.fill(high)
+    values = known.values
+    return values[values.imag <= high], known.vectors[:, values.imag <= high]
 
 
-def _band(given: Pencil, low: float, ahead: float) -> tuple[ComplexArray, ComplexArray, float]:
-    """Eigenvalues around a shift above a frequency, and the frequency (rad/s) up to which they are all there."""
+def _band(known: _Known, low: float, ahead: float) -> float:
+    """Look around a shift above a frequency; up to which frequency (rad/s) the imaginary axis is known then."""
     count = _AT_A_TIME
     while True:
-        found, vectors = nearest(given, 1j * (low + ahead), count)
-        radius = float(np.max(np.abs(found - 1j * (low + ahead))))
-        if radius > _INFINITE:
-            return found, vectors, np.inf
-        if _BAND * radius >= ahead:
-            return found, vectors, low + ahead + _BAND * radius
+        disk = known.look(1j * (low + ahead), count)
+        if disk.radius > _INFINITE:
+            return np.inf
+        if _BAND * disk.radius >= ahead:
+            return low + ahead + _BAND * disk.radius
         if count < _MOST_AT_A_TIME:
             count *= 2
         else:

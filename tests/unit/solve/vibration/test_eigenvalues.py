@@ -5,8 +5,8 @@ import pytest
 from scipy.sparse import csc_array
 
 from beltdyn.arrays import FloatArray
-from beltdyn.solve.vibration import eigenvalues
-from beltdyn.solve.vibration.eigenvalues import all_eigenvalues, nearest, pencil, swinging, swings
+from beltdyn.solve.vibration import arnoldi, eigenvalues
+from beltdyn.solve.vibration.eigenvalues import all_eigenvalues, lightly_damped, nearest, pencil, swinging, swings
 
 Matrices = tuple[csc_array, csc_array, csc_array]
 
@@ -96,3 +96,33 @@ def test_all_of_a_small_large_system(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(eigenvalues, "_SMALL", 0)
     values = swinging(pencil(*chain(12), none(12)), 99)[0]
     np.testing.assert_allclose(values.imag, 2e3 * np.sin(0.5 * np.pi * np.arange(1, 13) / 13), rtol=1e-7)
+
+
+def oscillators(count: int) -> tuple[Matrices, FloatArray, FloatArray]:
+    """Masses of 1 kg, each on its own: matrices, natural frequencies (rad/s) and damping ratios from 0 to 1.3."""
+    random = np.random.default_rng(7)
+    own, ratio = np.exp(random.uniform(np.log(20.0), np.log(5e3), count)), random.uniform(0.0, 1.3, count)
+    matrices = csc_array(np.diag(own**2)), csc_array(np.diag(2.0 * ratio * own)), csc_array(np.eye(count))
+    return matrices, own, ratio
+
+
+@pytest.mark.parametrize("batch", [30, 40, 60])
+@pytest.mark.parametrize("count", [5, 20])
+def test_which_modes_are_given_is_a_rule(batch: int, count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those damped by less than 0.9, and no others, up to the last lightly damped one, whatever finds them."""
+    monkeypatch.setattr(arnoldi, "_BATCH", batch)
+    matrices, own, ratio = oscillators(120)
+    swing = ratio < eigenvalues.MOST_DAMPED
+    expected = own[swing] * (-ratio[swing] + 1j * np.sqrt(1.0 - ratio[swing] ** 2))
+    last = np.sort(expected.imag[lightly_damped(expected)])[count - 1]
+    expected = expected[expected.imag <= last * (1.0 + 1e-9)]
+    found = swinging(pencil(*matrices, none(120)), count, counted=lightly_damped)[0]
+    assert found.size == expected.size > count
+    np.testing.assert_allclose(found, expected[np.argsort(expected.imag)], rtol=1e-6)
+
+
+def test_a_search_that_begins_elsewhere_gives_the_same_modes() -> None:
+    given = pencil(*oscillators(120)[0], none(120))
+    lists = [swinging(given, 20, first, counted=lightly_damped)[0] for first in (3.0, 10.0, 200.0)]
+    for other in lists[1:]:
+        np.testing.assert_allclose(other, lists[0], rtol=1e-6)
