@@ -103,7 +103,7 @@ def test_a_speed_that_fails_is_marked_and_others_stay(loaded: Drive) -> None:
     found = campbell(weak, speed="60, 90, 300 rad/s", count=2)
     assert found.dataset.failure.values[:2].tolist() == ["", ""]
     assert "the belt slips on `driven`" in str(found.dataset.failure.values[2])
-    assert np.isfinite(found.dataset.frequency.values[:2]).tolist() == [[True, True], [False, True]]
+    assert np.isfinite(found.dataset.frequency.values[:2, :2]).tolist() == [[True, True], [False, True]]
     assert np.isnan(found.dataset.frequency.values[2]).all()
     assert any(one.startswith(f"at speed {300.0 * RPM:.4g} rpm: no operating point") for one in found.warnings)
 
