@@ -126,20 +126,21 @@ def _instants(
     inside = times[(times >= first) & (times <= last)]
     if inside.size == 0:
         raise ModelError(
-            f"no output of fields lies from {first:.4g} to {last:.4g} s: they are from {times[0]:.4g} to "
-            f"{times[-1]:.4g} s. Choose a longer time, or reduce simulation.field_interval."
+            f"there is no output along the belt from {first:.4g} to {last:.4g} s; there are outputs from "
+            f"{times[0]:.4g} to {times[-1]:.4g} s. Choose a longer time, or reduce simulation.field_interval."
         )
     if per_turn is None:
         return np.asarray(inside[np.unique(np.linspace(0, len(inside) - 1, frames).round().astype(int))])
     if per_turn < 1:
-        raise ModelError(f"{per_turn} pictures a turn are none. Give one or more.")
+        raise ModelError(f"{per_turn} pictures per turn must be 1 or more.")
     turned = np.abs(run.dataset["pulley_angle"][:, 0].sel(time=inside).values) / (2.0 * np.pi)
     largest = float(np.max(np.diff(turned))) if inside.size > 1 else np.inf
     if largest * per_turn > 1.0 + _UNEVEN:
         most = f"take {int(1.0 / largest)} a turn or fewer, or " if largest < 1.0 else ""
         raise ModelError(
-            f"{per_turn} pictures a turn need more outputs of fields: from one to the next {run.drive.pulleys[0].name} "
-            f"makes up to {largest:.3g} turns. In the animation {most}reduce simulation.field_interval and run again."
+            f"{per_turn} pictures per turn need more outputs along the belt: between two of them "
+            f"{run.drive.pulleys[0].name} makes up to {largest:.3g} turns. In the animation {most}reduce "
+            "simulation.field_interval and run again."
         )
     wanted = np.arange(turned[0], turned[-1], 1.0 / per_turn)
     return np.asarray(inside[np.unique(np.searchsorted(turned, wanted).clip(max=len(inside) - 1))])
@@ -173,8 +174,8 @@ def _writer(path: Path, frame_rate: int) -> AbstractMovieWriter:
             return FFMpegWriter(fps=frame_rate, metadata={"comment": MARK}, extra_args=list(_EVEN))
         case ".mp4":
             raise ModelError(
-                f"{path} cannot be written: MP4 needs the program ffmpeg. "
-                'pip install "beltdyn[video]" brings one; or write a .gif.'
+                f"{path} cannot be written: MP4 needs the program ffmpeg. Install it: pip install "
+                '"beltdyn[video]", or write a .gif.'
             )
         case suffix:
             raise ModelError(

@@ -75,7 +75,9 @@ def operating_points(result: Result, variable: str = "span_tension", *, ax: Axes
     axis = str(dataset.attrs["axes"]).split()[0]
     numbers = [str(name) for name, one in dataset.data_vars.items() if axis in one.dims and one.dtype.kind == "f"]
     if variable not in numbers:
-        raise ModelError(f"variable = {variable!r} is none of operating points. Choose one of {', '.join(numbers)}.")
+        raise ModelError(
+            f"variable = {variable!r} is not a variable of operating points. Choose one of {', '.join(numbers)}."
+        )
     values = dataset[variable]
     if _over_both(result):
         values = values.sel(load=1.0, method="nearest")

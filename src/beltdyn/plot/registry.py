@@ -190,14 +190,14 @@ def require_results(name: str, given: Result | Sequence[Result]) -> list[Result]
     """
     results = [given] if isinstance(given, Result) else list(given)
     if not results:
-        raise ModelError(f"the figure {name!r} shows a result or several, and there is none. Give one.")
+        raise ModelError(f"the figure {name!r} needs at least one result.")
     for result in results:
         require_kind(name, result, FIGURES[name].of)
     if len(results) > 1 and not FIGURES[name].compares:
         others = [other for other, one in FIGURES.items() if one.compares]
         raise ModelError(
-            f"the figure {name!r} shows one result, and there are {len(results)}. Draw each by itself. "
-            f"Several are shown together by: {', '.join(others)}."
+            f"the figure {name!r} shows one result, but there are {len(results)}. Draw each separately. Figures "
+            f"of several results: {', '.join(others)}."
         )
     return results
 
@@ -222,6 +222,6 @@ def require_kind(name: str, result: Result, kinds: tuple[str, ...]) -> None:
     if result.kind not in kinds:
         has = [other for other, one in FIGURES.items() if result.kind in one.of]
         raise ModelError(
-            f"the figure {name!r} shows results of {' and '.join(kinds)}, and these are of {result.kind}. "
-            + (f"Of these there are: {', '.join(has)}." if has else "Look at their dataset.")
+            f"the figure {name!r} shows results of {' and '.join(kinds)}; these are of {result.kind}. "
+            + (f"Available figures: {', '.join(has)}." if has else "Use their dataset.")
         )

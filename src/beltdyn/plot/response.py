@@ -102,5 +102,5 @@ def _name(result: Result, variable: str) -> str:
         if str(name).endswith(_END) and values.ndim == 3 and not str(name).startswith(tuple(_BESIDE))
     ]
     if variable not in known:
-        raise ModelError(f"variable = {variable!r} is no result of a response. {suggest(variable, known)}")
+        raise ModelError(f"variable = {variable!r} is not a result of a response. {suggest(variable, known)}")
     return f"{variable}{_END}"

@@ -127,7 +127,7 @@ def tensioners(run: Run, ax: Axes | None = None) -> Axes:
     'Tensioner position [mm]'
     """
     if "tensioner_position" not in run.dataset:
-        raise ModelError("this drive has no tensioner that moves: there is no position to draw. Choose another figure.")
+        raise ModelError("this drive has no moving tensioner. Choose another figure.")
     position = run.dataset["tensioner_position"]
     rotary = np.array([one.turns for one in run.drive.moving_tensioners])
     units = [name for name, there in (("mm", not rotary.all()), ("°", rotary.any())) if there]

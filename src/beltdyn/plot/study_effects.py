@@ -63,7 +63,7 @@ def tornado(result: Result, of: str | None = None, *, ax: Axes | None = None) ->
     """
     name, ax = chosen_result(result, of), axes_or_new(ax)
     if result.dataset.attrs["sampling"] != "one_at_a_time":
-        raise ModelError('a tornado needs one number that varies at a time. Use sampling = "one_at_a_time".')
+        raise ModelError('a tornado needs parameters varied one at a time. Use sampling = "one_at_a_time".')
     values = in_shown_units(result.dataset[name])
     moved = {path: moved_from_base(result.dataset[path]) for path in numbers_of(result)}
     at_base = values[~np.any(list(moved.values()), axis=0)]
@@ -127,7 +127,7 @@ def sobol_indices(result: Result, of: str | None = None, *, ax: Axes | None = No
     """
     name, ax = chosen_result(result, of), axes_or_new(ax)
     if result.dataset.attrs["sampling"] != "saltelli":
-        raise ModelError('Sobol indices need the design of Saltelli. Use sampling = "saltelli".')
+        raise ModelError('Sobol indices need a Saltelli design. Use sampling = "saltelli".')
     names = numbers_of(result)
     first, total, first_error, total_error = indices_of(result.dataset[name].values[:, None], len(names))
     places = np.arange(len(names))

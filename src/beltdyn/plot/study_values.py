@@ -91,7 +91,7 @@ def chosen_result(result: Result, of: str | None) -> str:
     names = results_of(result)
     name = (names or [""])[0] if of is None else of
     if name not in names:
-        raise ModelError(f"of = {name!r} is no result of the study that is known. {suggest(name, names)}")
+        raise ModelError(f"of = {name!r} is not a result of the study. {suggest(name, names)}")
     return name
 
 
@@ -100,7 +100,7 @@ def chosen_number(result: Result, over: str | None, varied: list[str]) -> str:
     if over is None and varied:
         return max(varied, key=lambda path: len(np.unique(result.dataset[path].values)))
     if over not in varied:
-        raise ModelError(f"over = {over!r} is no number that varies. {suggest(str(over), varied)}")
+        raise ModelError(f"over = {over!r} is not a varying parameter of the study. {suggest(str(over), varied)}")
     return over
 
 

@@ -86,7 +86,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
     folder = result_file.with_name("result-and-other-figures")
     assert {path.name for path in folder.iterdir()} == {"speeds.png", "slip.png"}
     files = ["plot", str(result_file), str(other)]
-    assert "'energy' shows one result, and there are 2" in refuse([*files, "--figures", "energy"])
+    assert "'energy' shows one result, but there are 2" in refuse([*files, "--figures", "energy"])
     assert "--animate needs the results of one run, or modes, not 2 results" in refuse([*files, "--animate"])
 
 
@@ -96,7 +96,7 @@ def test_figures_of_several_files(run_main: RunMain, refuse: Refuse, result_file
         (["--figures", "slips"], "figure 'slips' is unknown. Choose from configuration, contact_forces"),
         (["--figures", "slip,"], "figure '' is unknown"),
         (["--pulley", "idler"], "pulley = 'idler' is not in this drive. Choose one of driver, driven."),
-        (["--figures", "tensioners"], "this drive has no tensioner that moves"),
+        (["--figures", "tensioners"], "this drive has no moving tensioner"),
         (["--figures", "orders"], "orders need 16 or more"),
         (["--figures", "waterfall", "--variable", "energy"], "Choose from: pulley_speed, pulley_angle, shaft_speed"),
     ],

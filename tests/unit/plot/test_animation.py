@@ -25,7 +25,7 @@ def shown(path: Path) -> int:
 def test_a_part_of_the_time(tmp_path: Path, run: Run) -> None:
     """Fields are recorded with every output here, at 101 instants of 1 s."""
     assert shown(plot.animate(run, tmp_path / "run.gif", start=0.5, end=0.54)) == 5
-    with pytest.raises(ModelError, match=r"no output of fields lies from 2 to 3 s: they are from 0 to 1 s"):
+    with pytest.raises(ModelError, match=r"no output along the belt from 2 to 3 s; there are outputs from 0 to 1 s"):
         plot.animate(run, tmp_path / "run.gif", start=2.0, end=3.0)
 
 
@@ -34,7 +34,7 @@ def test_a_number_of_pictures_for_each_turn(tmp_path: Path, run: Run) -> None:
     until = float(run.dataset["time"][10])
     path = plot.animate(run, tmp_path / "slow.gif", end=until, per_turn=10)
     assert shown(path) == pytest.approx(10 * turned[10], abs=1.0)
-    with pytest.raises(ModelError, match="1000 pictures a turn need more outputs of fields"):
+    with pytest.raises(ModelError, match="1000 pictures per turn need more outputs along the belt"):
         plot.animate(run, tmp_path / "slow.gif", per_turn=1000)
 
 

@@ -81,7 +81,7 @@ def test_a_traction_curve_names_the_pulley_that_slips(drive: Drive) -> None:
 
 
 def test_what_cannot_be_drawn(drive: Drive) -> None:
-    with pytest.raises(ModelError, match="variable = 'wear' is none of operating points"):
+    with pytest.raises(ModelError, match="variable = 'wear' is not a variable of operating points"):
         plot.operating_points(made(drive, "map", speed=4), "wear")
     with pytest.raises(ModelError, match="an efficiency map needs speed and load"):
         plot.efficiency_map(made(drive, "map", speed=4))

@@ -67,7 +67,7 @@ def test_the_result_may_be_named(run: Run) -> None:
 
 
 def test_a_figure_of_one_result_refuses_several(run: Run) -> None:
-    with pytest.raises(ModelError, match=r"'configuration' shows one result, and there are 2.*speeds, torques"):
+    with pytest.raises(ModelError, match=r"'configuration' shows one result, but there are 2.*speeds, torques"):
         plot.configuration([run, run])  # type: ignore[arg-type]
-    with pytest.raises(ModelError, match="there is none"):
+    with pytest.raises(ModelError, match="at least one result"):
         plot.speeds([])  # type: ignore[arg-type]

@@ -43,7 +43,7 @@ def test_speeds_in_rpm(found: bd.Result, ax: Axes) -> None:
 
 @pytest.mark.parametrize(("variable", "of"), [("speeds", 0), ("span_tension", "driver"), ("span_tension", 5)])
 def test_what_is_not_there(found: bd.Result, variable: str, of: str | int) -> None:
-    with pytest.raises(ModelError, match=r"is no result of a response|is not in this drive"):
+    with pytest.raises(ModelError, match=r"is not a result of a response|is not in this drive"):
         plot.response(found, variable, of)
 
 

@@ -114,7 +114,7 @@ def test_contact_forces_of_two_runs_differ_in_line_style(pair: list[Run], ax: Ax
 
 
 def test_what_cannot_be_compared_is_refused(pair: list[Run]) -> None:
-    with pytest.raises(ModelError, match=r"'configuration' shows one result.* Draw each by itself"):
+    with pytest.raises(ModelError, match=r"'configuration' shows one result.* Draw each separately"):
         plot.configuration(pair)  # type: ignore[arg-type]
 
 

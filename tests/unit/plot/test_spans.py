@@ -30,7 +30,7 @@ def test_spectrum_of_the_second_half(make_run: MakeRun, ax: Axes) -> None:
 
 
 def test_a_drive_without_tensioners_has_no_place_to_draw(run: Run, ax: Axes) -> None:
-    with pytest.raises(ModelError, match="no tensioner that moves"):
+    with pytest.raises(ModelError, match="no moving tensioner"):
         plot.tensioners(run, ax)
 
 

@@ -54,7 +54,7 @@ def test_two_numbers_are_lines_and_contours(make: Make) -> None:
     assert study_contour(result).get_title("left") == "tension [N]"
     with pytest.raises(ModelError, match='Did you mean "tension"'):
         study_lines(result, "tensoin")
-    with pytest.raises(ModelError, match="is no number that varies"):
+    with pytest.raises(ModelError, match="is not a varying parameter"):
         study_lines(result, over="belt.length")
     plt.close("all")
 

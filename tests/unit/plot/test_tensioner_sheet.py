@@ -45,5 +45,5 @@ def test_both_panels_are_saved(sheet: Result, tmp_path: Path) -> None:
 
 
 def test_runs_have_no_sheet(drive: Drive) -> None:
-    with pytest.raises(ModelError, match="shows results of tensioner, and these are of static"):
+    with pytest.raises(ModelError, match="shows results of tensioner; these are of static"):
         plot.tensioner_sheet(bd.equilibrium(drive))

@@ -237,7 +237,7 @@ def test_only_a_report_is_replaced(limited: Run, tmp_path: Path, monkeypatch: py
 
 
 def test_an_error_leaves_no_file(limited: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ModelError, match=r"there is none\. Give one"):
+    with pytest.raises(ModelError, match=r"a report needs at least one result"):
         write_report([], tmp_path / "report.html")
     empty = Run(limited.dataset.isel(time=slice(0)), limited.drive)
     with pytest.raises(ModelError, match="ended before its first output"):

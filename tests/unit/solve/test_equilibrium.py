@@ -71,7 +71,7 @@ def test_figures_of_one_instant_show_it(rest: StaticResult, tmp_path: Path) -> N
     ("use", "message"),
     [
         (summarize, "a summary needs results over time; these are of static"),
-        (plot.speeds, "the figure 'speeds' shows results of run, and these are of static. Of these there are: conf"),
+        (plot.speeds, "the figure 'speeds' shows results of run; these are of static. Available figures: conf"),
     ],
 )
 def test_what_it_lacks_is_said(rest: StaticResult, use: Callable[[Any], object], message: str) -> None:

@@ -54,5 +54,5 @@ def test_what_there_is_not_is_told(drive: Drive) -> None:
 
 @pytest.mark.parametrize("text", ["greatest(span_tension)", "largest(span_tension", "largest()"])
 def test_reductions_that_are_none_are_told(text: str) -> None:
-    with pytest.raises(ModelError, match="is no result"):
+    with pytest.raises(ModelError, match="is not a result"):
         require_reductions([text])

@@ -78,7 +78,7 @@ def test_measured(tmp_path: Path) -> None:
     ("heading", "said"),
     [
         ("tension", 'the heading "tension" must be of the form'),
-        ("span_tensoin driven-driver order 2", "span_tensoin is no result of a response"),
+        ("span_tensoin driven-driver order 2", "span_tensoin is not a result of a response"),
         ("span_tension driven order 2", "driven is not in this drive"),
         ("span_tension driven-driver order 3", "order 3 does not excite the drive. Orders of this pulley: 2"),
     ],
