@@ -26,7 +26,7 @@ from beltdyn.system.state import State, laid
 
 _DEEPEST_START = 0.1
 """Depth of a belt from which equilibrium is sought, at most, over the smallest radius."""
-STARTS = 1.0, 64.0, 1 / 64
+_STARTS = 1.0, 64.0, 1 / 64
 """Stiffness of contact over the drive's own, from which equilibrium is followed, one after the other."""
 _LONGEST_RATIO, _SHORTEST_RATIO = 4.0, 1.1
 """Of one stiffness on the way to the next."""
@@ -87,6 +87,7 @@ class Tightened(Protocol):
 
 
 At = TypeVar("At", bound=Tightened)
+Found = TypeVar("Found")
 
 
 def bring_to_rest(drive: Drive, progress: Report | None = None) -> Rest:
@@ -194,7 +195,7 @@ def tighten(first: At, wanted: float, at_rest: Callable[[Drive], At]) -> At:
                 return _beside_jump(slack, tight, wanted)
             if trial % 2 or not min(low, high) < done + change < max(low, high):
                 change = 0.5 * (low + high) - done
-        ahead, change = _shortened(first.drive, done, change, at_rest)
+        ahead, change = _shortened(first.drive, rest, done, change, at_rest)
         gained = ahead.tension - rest.tension
         slope, rest, done = gained / change if gained * change > 0.0 else slope, ahead, done + change
     if abs(rest.tension - first.tension) < abs(wanted - rest.tension):
@@ -244,7 +245,7 @@ def _tension_over_length(drive: Drive) -> float:
     return slope if slope > 0.0 else belt.axial_stiffness / length
 
 
-def _shortened(drive: Drive, done: float, change: float, at_rest: Callable[[Drive], At]) -> tuple[At, float]:
+def _shortened(drive: Drive, rest: At, done: float, change: float, at_rest: Callable[[Drive], At]) -> tuple[At, float]:
     """Shorten a belt some more, or by a part of it where all of it leads to no equilibrium; with what was done, m."""
     while True:
         try:
@@ -252,7 +253,30 @@ def _shortened(drive: Drive, done: float, change: float, at_rest: Callable[[Driv
         except (ConvergenceError, ModelError) as error:
             change *= 0.5
             if abs(change) < _LEAST_CHANGE * drive.belt_length:
-                raise _out_of_reach(drive, str(error)) from error
+                slack = _as_long_as_its_path(rest, at_rest) if change < 0.0 else ""
+                raise _out_of_reach(drive, slack or str(error)) from error
+
+
+def _as_long_as_its_path(rest: At, at_rest: Callable[[Drive], At]) -> str:
+    """What tensions a belt that is as long as its path, or nothing if it is shorter.
+
+    Off the pulleys its bending stiffness spreads it, and its weight lets it sag: its own way is longer than the path.
+    """
+    drive, path = rest.drive, install(rest.drive).path
+    if drive.belt_length < (1.0 - _SHORTER) * path.length:
+        return ""
+    cause, remedy = "bending stiffness", "reduce belt.bending_stiffness"
+    if drive.gravity != (0.0, 0.0):
+        try:
+            bent = at_rest(drive.replace(gravity=(0.0, 0.0))).tension
+        except (ConvergenceError, ModelError):
+            bent = 0.0  # nothing but its weight holds it against the pulleys
+        if bent < 0.5 * rest.tension:
+            cause, remedy = "weight", "take a lighter belt"
+    return (
+        f"a belt of {drive.belt_length:.6g} m, as long as the path around the pulleys, still has {rest.tension:.5g} N, "
+        f"by its {cause}: increase the tension, or {remedy}."
+    )
 
 
 def _out_of_reach(drive: Drive, reason: str) -> ConvergenceError:
@@ -268,26 +292,48 @@ def _at_rest(drive: Drive) -> Rest:
     Where Newton's method does not get there from the laid belt, it follows the equilibria of stiffer or softer contact.
     """
     system, installation = drive_system(drive), install(drive)
-    failures = list[ConvergenceError]()
-    state: State
 
-    def balance(factor: float) -> bool:
-        nonlocal state
-        try:
-            state = find_equilibrium(with_stiffer_contact(system, factor), state).state
-        except ConvergenceError as error:
-            failures.append(error)
-            return False
-        return True
+    def begun(start: float) -> Rest:
+        state, failures = _lying(drive, system, installation, start), list[ConvergenceError]()
 
-    for start in STARTS:
-        state = _lying(drive, system, installation, start)
-        if follow(start, balance):
+        def balance(factor: float) -> bool:
+            nonlocal state
             try:
-                return looked_at(drive, system, state)
+                state = find_equilibrium(with_stiffer_contact(system, factor), state).state
             except ConvergenceError as error:
                 failures.append(error)
-    raise ConvergenceError(f"{failures[0]}{_cause(drive, installation)}")
+                return False
+            return True
+
+        if not follow(start, balance):
+            raise failures[0]
+        return looked_at(drive, system, state)
+
+    return from_starts(drive, installation, begun)
+
+
+def from_starts(drive: Drive, installation: Installation, begun: Callable[[float], Found]) -> Found:
+    """Find a drive at rest by way of contact as stiff as its own, or else of stiffer or softer contact.
+
+    Parameters
+    ----------
+    drive, installation
+        The drive, and what is estimated of it.
+    begun
+        Finds it, beginning with contact stiffer by a factor.
+
+    Raises
+    ------
+    ConvergenceError
+        That contact is too soft, if it is, and otherwise the first one that was raised.
+    """
+    failures = list[ConvergenceError]()
+    for start in _STARTS:
+        try:
+            return begun(start)
+        except ConvergenceError as error:
+            failures.append(error)
+    raise _sunk(drive, installation) or failures[0]
 
 
 def follow(start: float, balance: Callable[[float], bool]) -> bool:
@@ -384,16 +430,15 @@ def _depths(drive: Drive, seen: Observations) -> list[FloatArray]:
     return [depth if depth.size else np.zeros(1) for depth in depths]
 
 
-def _cause(drive: Drive, installation: Installation) -> str:
-    """Why an equilibrium may not exist: contact so soft that the belt sinks through a pulley."""
+def _sunk(drive: Drive, installation: Installation) -> ConvergenceError | None:
+    """Contact so soft that the belt sinks through a pulley, or away from others, if it is."""
     parts = installation.penetrations / drive.radii
     worst = int(np.argmax(parts))
     if not parts[worst] > _SOUND:
-        return ""
+        return None
     enough = drive.contact_stiffness * parts[worst] / _SOUND
-    return (
-        f' The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by '
-        f"{parts[worst]:.0%} of the radius. Increase contact.stiffness from "
-        f"{drive.contact_stiffness:.2g} to {enough:.2g} N/m^2, reduce the tension, or use a larger "
-        "pulley."
+    return ConvergenceError(
+        f'no static equilibrium found. The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by '
+        f"{parts[worst]:.0%} of the radius. Increase contact.stiffness from {drive.contact_stiffness:.2g} to "
+        f"{enough:.2g} N/m^2, reduce the tension, or use a larger pulley."
     )

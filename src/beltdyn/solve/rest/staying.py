@@ -10,7 +10,7 @@ from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive, Installation, install
 from beltdyn.model.graded_mesh import Arc, Laid, graded_mesh, layer_length
 from beltdyn.model.resolution import layer_lengths
-from beltdyn.solve.rest.installation import STARTS, drawn_in, follow, looked_at, tighten, with_stiffer_contact
+from beltdyn.solve.rest.installation import drawn_in, follow, from_starts, looked_at, tighten, with_stiffer_contact
 from beltdyn.solve.rest.static import only_tensioners
 from beltdyn.solve.steady_running.newton import FOUND, find_steady, steady_work
 from beltdyn.system.arrays import System
@@ -124,12 +124,24 @@ def stand(drive: Drive, elements: int | None = None, *, fineness: float = FIRST_
         arcs = Laid.on(installation.path, drive.belt_length, span).arcs()
         lengths = graded_mesh(drive.belt_length, arcs, layer, fineness)
     system = staying_system(drive, lengths)
-    for start in STARTS:
-        state = _lying(drive, system, installation, span, start)
-        if follow(start, partial(_balance, drive, system, state, anchor_at(state, True))):
-            tension = looked_at(drive, system, state).tension
-            return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
-    raise _no_rest(system)
+    state, tension = _from_laid(drive, system, installation)
+    return Standing(drive, system, state, state.position.copy(), tension, layer, fineness)
+
+
+def _from_laid(drive: Drive, system: System, installation: Installation) -> tuple[State, float]:
+    """Equilibrium from the belt laid on its path; see `_balanced`."""
+    return from_starts(
+        drive,
+        installation,
+        lambda start: _balanced(drive, system, _lying(drive, system, installation, start), start),
+    )
+
+
+def _balanced(drive: Drive, system: System, state: State, start: float = 1.0) -> tuple[State, float]:
+    """Equilibrium from a state nearby, in contact stiffer by a factor; also the mean tension of its spans, N."""
+    if not follow(start, partial(_balance, drive, system, state, anchor_at(state, True))):
+        raise _no_rest(system)
+    return state, looked_at(drive, system, state).tension
 
 
 def stand_like(drive: Drive, like: Standing) -> Standing:
@@ -150,9 +162,10 @@ def stand_like(drive: Drive, like: Standing) -> Standing:
     nodes, bodies = np.split(like.place, [like.system.first_body])
     system, state = carried(drive, like.drive, like.system.length, nodes)
     state.position[system.first_body :] += bodies
-    if not _balance(drive, system, state, anchor_at(state, True), 1.0):
-        raise _no_rest(system)
-    tension = looked_at(drive, system, state).tension
+    try:
+        state, tension = _balanced(drive, system, state)
+    except ConvergenceError:
+        state, tension = _from_laid(drive, system, install(drive))
     return like._replace(drive=drive, system=system, state=state, place=state.position.copy(), tension=tension)
 
 
@@ -212,9 +225,9 @@ def without_friction(system: System) -> System:
     return system._replace(pulleys=pulleys, bodies=only_tensioners(system), tensioners=tensioners)
 
 
-def _lying(drive: Drive, system: System, installation: Installation, span: int, factor: float) -> State:
+def _lying(drive: Drive, system: System, installation: Installation, factor: float) -> State:
     """A belt that lies in its pulleys instead of on their rims, as deep as in contact stiffer by a factor."""
-    laid = Laid.on(drawn_in(drive, installation, factor), drive.belt_length, span)
+    laid = Laid.on(drawn_in(drive, installation, factor), drive.belt_length, installation.path.longest_span)
     return laid_state(laid, system, installation.tensioner_positions)
 
 

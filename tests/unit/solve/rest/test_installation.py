@@ -208,6 +208,22 @@ def test_an_equilibrium_that_leaves_a_pulley_is_none(elements: int) -> None:
         equilibrium(two(0.005, 0.06, belt | {"installed_tension": 300.0}))
 
 
+@pytest.mark.parametrize(
+    ("bending", "mass", "cause"), [(0.2, 0.1, "bending stiffness"), (1e-4, 8.0, "weight")], ids=["stiff", "heavy"]
+)
+def test_a_belt_as_long_as_its_path_has_a_tension(bending: float, mass: float, cause: str) -> None:
+    """Off the pulleys it is spread or sags; below that tension a longer belt would be refused as slack."""
+    own = {"bending_stiffness": bending, "mass_per_length": mass, "axial_stiffness": 1e6, "elements": 60}
+    belt = STIFFNESSES | own | {"installed_tension": 50.0}
+    drive = two(0.05, 0.05, belt, 1e9).replace(gravity=(0.0, -9.81))
+    with pytest.raises(ConvergenceError, match=f"still has .* N, by its {cause}: increase the tension") as caught:
+        bring_to_rest(drive)
+    least = float(str(caught.value).split("still has ")[1].split(" N")[0])
+    assert least > 50.0
+    reached = drive.replace(belt=drive.belt.replace(installed_tension=1.01 * least))
+    assert bring_to_rest(reached).tension == pytest.approx(1.01 * least, rel=ASKED)
+
+
 @pytest.mark.parametrize("stiffness", [1e8, 1e10, 1e11])
 @pytest.mark.parametrize("elements", [9, 12, 20])
 def test_spans_of_coarse_meshes_have_a_tension(elements: int, stiffness: float) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import beltdyn as bd
+from beltdyn.errors import ConvergenceError
 from beltdyn.model import Drive
 from beltdyn.model.graded_mesh import Laid
 from beltdyn.solve.rest import staying
@@ -55,6 +56,35 @@ def test_rest_with_a_little_more_tension_is_found_next_to_the_one_before(drive: 
     np.testing.assert_allclose(found.system.length, rest.system.length * tighter.belt_length / drive.belt_length)
     assert found.tension > rest.tension
     assert found.tension == pytest.approx(stand(tighter, 60).tension, rel=1e-8)
+
+
+def test_where_its_neighbour_leads_nowhere_it_is_found_from_the_laid_belt(
+    drive: Drive, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rest, tighter = stand(drive, 60), with_length(drive, drive.belt_length - 1e-4)
+    expected = stand_like(tighter, rest)
+
+    def lost(*arguments: Any) -> tuple[Any, Any]:
+        system, state = carried(*arguments)
+        state.position[: system.first_body] *= 1.5
+        return system, state
+
+    monkeypatch.setattr(staying, "carried", lost)
+    assert stand_like(tighter, rest).tension == pytest.approx(expected.tension, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("part", "said"), [(0.3, "too soft: on .* Increase contact.stiffness"), (0.03, "elements. Check")]
+)
+def test_without_rest_contact_that_is_too_soft_is_told(
+    drive: Drive, monkeypatch: pytest.MonkeyPatch, part: float, said: str
+) -> None:
+    monkeypatch.setattr(staying, "_balance", lambda *_: False)
+    stiffness = 100.0 / (part * float(np.min(drive.radii)) ** 2)
+    contact = drive.contact.replace(stiffness=stiffness, allowed_penetration=None, damping=None)
+    softer = drive.replace(contact=contact, belt=drive.belt.replace(length=None, installed_tension=100.0))
+    with pytest.raises(ConvergenceError, match=said):
+        stand(softer)
 
 
 def test_the_mesh_is_carried_with_the_layout(drive: Drive) -> None:
