@@ -131,7 +131,7 @@ def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
     path = Path(ring.centers, ring.radii)
     if abs(path.total_turning - 2.0 * pi) > 1e-6 or min(path.span_lengths) < 0.15 * small:
         return None
-    if any(path.wrap_angles[k] < 0.6 for k in working) or not _clear(path):
+    if any(path.wrap_angles[k] < 0.6 for k in working) or not are_clear(path.centers, path.radii):
         return None
     tension = 300.0 * (small / 0.03) ** 1.5 * between(0.4, 2.5)
     strain, friction = between(1e-3, 8e-3), rng.uniform(0.25, 0.9)
@@ -153,7 +153,7 @@ def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
         "bending_loss_factor": 0.0 if rng.random() < 0.5 else 0.1,
         "length": path.length / (1.0 + strain),
     }
-    tensioner = [] if carried is None else [_tensioner(rng, path, carried, tension)]
+    tensioner = [] if carried is None else [tensioner_for(rng, path, carried, tension)]
 
     def drive(force: float) -> Drive:
         pulleys: list[dict[str, Any]] = [
@@ -188,7 +188,7 @@ def _draw(rng: np.random.Generator, count: int) -> Drawn | None:
     return Drawn(found, limit._replace(factor=1.0), balance)
 
 
-def _tensioner(rng: np.random.Generator, path: Path, carried: int, tension: float) -> dict[str, Any]:
+def tensioner_for(rng: np.random.Generator, path: Path, carried: int, tension: float) -> dict[str, Any]:
     """A tensioner that holds a tension at its nominal place."""
     gradient = path.gradient(carried)
     reach = abs(float(path.radii[carried]))
@@ -220,14 +220,10 @@ def _tensioner(rng: np.random.Generator, path: Path, carried: int, tension: floa
     }
 
 
-def _clear(path: Path) -> bool:
-    """Whether no two pulleys meet."""
-    radii = np.abs(path.radii)
-    for k in range(path.count):
-        away = np.hypot(*(path.centers - path.centers[k]).T) - radii - radii[k]
-        if np.delete(away, k).min() <= 0.0:
-            return False
-    return True
+def are_clear(centers: FloatArray, radii: FloatArray) -> bool:
+    """Whether no two pulleys meet; radii may be signed."""
+    between = np.linalg.norm(centers - centers[:, None], axis=-1) - np.abs(radii) - np.abs(radii)[:, None]
+    return bool(np.all(between[~np.eye(radii.size, dtype=bool)] > 0.0))
 
 
 def _fits(limit: Limit, drive: Drive) -> bool:

@@ -438,7 +438,7 @@ def _sunk(drive: Drive, installation: Installation) -> ConvergenceError | None:
         return None
     enough = drive.contact_stiffness * parts[worst] / _SOUND
     return ConvergenceError(
-        f'no static equilibrium found. The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink by '
-        f"{parts[worst]:.0%} of the radius. Increase contact.stiffness from {drive.contact_stiffness:.2g} to "
+        f'no static equilibrium found. The contact is too soft: on "{drive.pulleys[worst].name}" the belt would sink '
+        f"by {parts[worst]:.0%} of the radius. Increase contact.stiffness from {drive.contact_stiffness:.2g} to "
         f"{enough:.2g} N/m^2, reduce the tension, or use a larger pulley."
     )

@@ -204,7 +204,7 @@ def test_a_drive_of_given_length_is_left_alone() -> None:
 def test_an_equilibrium_that_leaves_a_pulley_is_none(elements: int) -> None:
     """On 5 mm the belt would sink in by 6 mm: forces are in balance of a belt that touches nothing, too."""
     belt = LAYOUT_BELT | {"thickness": 0.01, "width": 0.01, "bending_factor": 0.01, "elements": elements}
-    with pytest.raises(ConvergenceError, match=r'"a" the belt would sink by .* Raise contact.stiffness'):
+    with pytest.raises(ConvergenceError, match=r'"a" the belt would sink by .* Increase contact.stiffness'):
         equilibrium(two(0.005, 0.06, belt | {"installed_tension": 300.0}))
 
 
