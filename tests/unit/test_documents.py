@@ -1,5 +1,6 @@
 """What the documents say of drive files is true."""
 
+import ast
 import re
 import shlex
 import tomllib
@@ -366,3 +367,23 @@ def test_tests_and_scripts_that_pages_name_exist() -> None:
     }
     assert len(named) > 50
     assert sorted(name for name in named if not (ROOT / name).exists()) == []
+
+
+def literal(argument: ast.expr) -> str:
+    """The words of a string in the source, with … where something is filled in."""
+    parts = argument.values if isinstance(argument, ast.JoinedStr) else [argument]
+    return "".join(str(part.value) if isinstance(part, ast.Constant) else "…" for part in parts)
+
+
+def test_every_warning_stands_on_the_page() -> None:
+    calls = (node for file in (ROOT / "src").rglob("*.py") for node in ast.walk(ast.parse(file.read_text("utf-8"))))
+    faults = {
+        literal(node.args[0])
+        for node in calls
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Finding" and node.args
+    } - {"…"}
+    assert len(faults) > 40
+    cells = re.findall(r"^\| (.*?) \|", (ROOT / "docs" / "warnings.md").read_text(encoding="utf-8"), re.MULTILINE)
+    phrases = [one.strip() for cell in cells for one in re.split("[;…]", cell) if len(one.split()) > 1]
+    assert [fault for fault in faults if not any(phrase in fault for phrase in phrases)] == []
+    assert [phrase for phrase in phrases if not any(phrase in fault for fault in faults)] == []
