@@ -105,7 +105,7 @@ class AnalysisView:
             return
         missing = [one.name for one in self._inputs if one.required and one.name not in options]
         if missing:
-            self._state.text = f"{name} needs the option{'s' * (len(missing) > 1)} {' and '.join(missing)}."
+            self._state.text = f"{name} needs {' and '.join(missing)}. Give a value."
             return
         folder = Path(mkdtemp(dir=session.workspace.results))
         result = ANALYSES[name].result_file(folder / Path(session.name or "drive.toml").name)

@@ -287,7 +287,7 @@ def test_an_analysis_can_be_started_only_of_a_drive(workspace: Workspace) -> Non
             marked(user, "analysis").value = "campbell"
         await user.should_see("Number of modes at each speed")  # what an option means, below the pointer
         user.find(marker="run").click()
-        await user.should_see("campbell needs speed.")
+        await user.should_see("campbell needs speed. Give a value.")
 
     go(workspace, journey)
 
