@@ -15,6 +15,8 @@ _MOST_OUTPUTS = 1_000_000
 _MOST_STEPS = 1_000_000_000
 """Steps of some days of computing time."""
 
+_INTERVAL, _FEWEST, _MANY = 1e-3, 100, 100_000
+"""Time between outputs, s, and least and largest number of them, unless an interval is given."""
 _FIELDS = 100
 """Approximate number of field outputs without a given interval."""
 
@@ -29,7 +31,13 @@ class Simulation(Part):
     """
 
     duration: Time = Field(gt=0, description="the simulated time, in s")
-    output_interval: Time = Field(gt=0, description="the time between two outputs, in s")
+    given_interval: Time | None = Field(
+        None,
+        alias="output_interval",
+        gt=0,
+        description="the time between two outputs, in s; by default 1 ms, or as much longer or shorter as it takes for "
+        "100 to 100,000 outputs",
+    )
     field_interval: Time | None = Field(
         None,
         gt=0,
@@ -84,6 +92,13 @@ class Simulation(Part):
         wanted = self.duration / _FIELDS if self.field_interval is None else self.field_interval
         stride = max(1, floor(wanted / self.output_interval * (1.0 + 1e-9)))
         return Instants(self.output_interval, self.end, stride, self.begin)
+
+    @property
+    def output_interval(self) -> float:
+        """The time between two outputs, s, as given or chosen."""
+        if self.given_interval is not None:
+            return self.given_interval
+        return min(max(_INTERVAL, self.duration / _MANY), self.duration / _FEWEST)
 
     @property
     def begin(self) -> float:

@@ -76,3 +76,12 @@ def test_limits_themselves_are_allowed() -> None:
     assert Simulation(duration=1.0, output_interval=1e-3, field_interval=1e-3).instants.stride == 1
     for radius in (0.0, 1.0):
         assert Simulation(duration=1.0, output_interval=1.0, spectral_radius=radius).spectral_radius == radius
+
+
+@pytest.mark.parametrize(("duration", "interval"), [(5.0, 1e-3), (0.02, 2e-4), (3000.0, 0.03)])
+def test_outputs_are_chosen_where_none_are_asked_for(duration: float, interval: float) -> None:
+    settings = Simulation(duration=duration)
+    assert settings.output_interval == pytest.approx(interval)
+    assert "output_interval" not in settings.arguments
+    assert settings.replace(output_interval=0.5 * duration).output_interval == 0.5 * duration
+    assert settings.replace(duration=1.0).output_interval == pytest.approx(1e-3)
