@@ -63,6 +63,8 @@ class Drive(Part):
         None, description="the name of the drive, for titles and summaries, instead of the file name"
     )
     description: Words | None = Field(None, description="a description of the drive, for readers of the file")
+    project: Title | None = Field(None, description="the project or order to which the drive belongs, for reports")
+    author: Title | None = Field(None, description="the author of the calculation, for reports")
     belt: Belt = Field(description="the group [belt]")
     pulleys: tuple[Pulley, ...] = Field(
         alias="pulley", max_length=1000, description="the groups [[pulley]], in counter-clockwise belt order"

@@ -10,6 +10,12 @@ from beltdyn.plot.style import styled
 from beltdyn.results import Result, Run, derived
 from beltdyn.results.atomic import is_marked, make_folder, require_replaceable
 
+_READING = (
+    *("configuration", "speeds", "span_tensions", "slip", "hub_load_sizes", "hub_loads", "capstan_margins", "torques"),
+    *("powers", "losses", "tensioners", "energy", "contact_pressure"),
+)
+"""Figures of a run in the order in which they are read; others follow."""
+
 
 @styled
 def save_all(
@@ -91,7 +97,8 @@ def chosen_by_default(results: Sequence[Result]) -> tuple[str, ...]:
     results : sequence of Result
         One or more; of several, those figures that compare them.
     """
-    figures = {name: FIGURES[name] for name in _known(results)}
+    reading = [name for name in _READING if name in (known := _known(results))]
+    figures = {name: FIGURES[name] for name in dict.fromkeys([*reading, *known])}
     return tuple(
         name
         for name, figure in figures.items()

@@ -12,16 +12,17 @@ from matplotlib.colors import to_hex
 
 from beltdyn.errors import ModelError
 from beltdyn.model.picture import picture
-from beltdyn.plot.headline import name_of
-from beltdyn.plot.several import names_of_results
+from beltdyn.plot.headline import headlines, name_of
+from beltdyn.plot.several import given_keys, names_of_results
 from beltdyn.plot.style import tension_colors
 from beltdyn.report.figures import charted
 from beltdyn.report.library import embedded, library
 from beltdyn.report.motion import motion
 from beltdyn.report.origin import analysis_of, differing_keys, origin
 from beltdyn.report.swing import swinging
+from beltdyn.report.tensioning import tensioning
 from beltdyn.report.verdict import compared, in_unit, limit_in_words, verdict
-from beltdyn.results import Result, Run
+from beltdyn.results import Result, Run, StaticResult
 from beltdyn.results.atomic import MARK, atomic_path, is_marked, require_replaceable
 from beltdyn.results.sheet import sheet
 from beltdyn.results.sheet_parts import Table
@@ -135,6 +136,7 @@ def _page(results: Sequence[Result]) -> str:
             compares=len(results) > 1,
             kinds={analysis_of(one) for one in results},
             verdict=verdict(results),
+            lead="" if len(results) > 1 else headlines(results).removeprefix(f"{names[0]}: "),
             parts=[
                 _part(name, number, one, moving) for number, (name, one) in enumerate(zip(names, results, strict=True))
             ],
@@ -180,8 +182,19 @@ def _part(name: str, number: int, result: Result, moving: Mapping[str, Any]) -> 
         "tables": tables,
         "facts": facts,
         "origin": origin(result),
+        "about": _about(result),
+        "tensioning": tensioning(result.drive, given_keys(result).get("belt.installed_tension"))
+        if isinstance(result, Run | StaticResult)
+        else [],
         "drive": result.drive_as_given,
     }
+
+
+def _about(result: Result) -> list[tuple[str, str]]:
+    """Project, author and date of a result."""
+    created = str(result.dataset.attrs.get("created", "")).partition("T")[0]
+    known = (("Project", result.drive.project), ("Author", result.drive.author), ("Date", created))
+    return [(name, words) for name, words in known if words]
 
 
 def script() -> str:

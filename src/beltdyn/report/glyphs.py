@@ -14,12 +14,16 @@ from matplotlib.patches import Patch, StepPatch
 from matplotlib.text import Annotation
 from numpy.typing import NDArray
 
+from beltdyn.plot.view import LIMIT
+
 _BINS = 700
 """Parts of a line, of each of which least and largest values are kept."""
 _DASHES = {"-": "solid", "--": "dashed", ":": "dotted", "-.": "dashdot"}
 _SMALL = "11px"
 _MARKS = {"o": "circle", "x": "x", "s": "square", "^": "triangle", "D": "diamond"}
 _MARK = 6
+_BASELINES = {"center": "middle", "center_baseline": "middle", "baseline": "alphabetic"}
+"""How words stand to their height, of matplotlib -> of Bokeh."""
 _AS_DRAWN = (LineCollection, PathCollection, PolyCollection)
 
 
@@ -94,18 +98,33 @@ def write_words(chart: Any, ax: Axes) -> None:
     from bokeh.models import Label
 
     for text in ax.texts:
-        if isinstance(text, Annotation) and text.xycoords == "data" and text.get_text() and not text.arrow_patch:
-            x, y = map(float, text.xy)
+        if isinstance(text, Annotation) and _stands_in(text) and text.get_text() and not text.arrow_patch:
+            x, y = _place(ax, text)
             right, up = text.get_position()
             look = {
                 "text_color": to_hex(text.get_color()),
                 "text_font_size": _SMALL,
                 "text_align": text.get_horizontalalignment(),
+                "text_baseline": _BASELINES.get(aligned := text.get_verticalalignment(), aligned),
             }
             turned = {"angle": float(text.get_rotation()), "angle_units": "deg"}
             chart.add_layout(
                 Label(x=x, y=y, x_offset=right, y_offset=up, text=plain(text.get_text()), **look, **turned)
             )
+
+
+def _stands_in(text: Annotation) -> bool:
+    """Whether words stand at data, at the edge beside them, or as a limit off the axes."""
+    return text.xycoords == "data" or isinstance(text.xycoords, tuple) or text.get_gid() == LIMIT
+
+
+def _place(ax: Axes, text: Annotation) -> tuple[float, float]:
+    """Where words stand in the data of the axes as they are drawn first."""
+    kinds = text.xycoords if isinstance(text.xycoords, tuple) else (text.xycoords, text.xycoords)
+    shares = ax.transLimits.inverted().transform(text.xy)
+    edges = ax.transScale.inverted().transform(shares)
+    x, y = (value if kind == "data" else edge for kind, value, edge in zip(kinds, text.xy, edges, strict=True))
+    return float(x), float(y)
 
 
 def plain(text: str) -> Any:

@@ -85,11 +85,18 @@ def verdict(results: Sequence[Result]) -> tuple[str, str]:
     if not judged:
         return "open", f"No limits are given{said and f'; {said}'}"
     if kept < len(judged):
-        return "fail", f"{kept} of {len(judged)} limits are met{said and f'; {said}'}"
+        broken = listing([_broken(one) for result in results for one in key_numbers(result) if one.passes is False])
+        return "fail", f"{kept} of {len(judged)} limits are met: {broken}{said and f'; {said}'}"
     words = f"All {kept} limits are met" if kept > 1 else "The limit is met"
     if not happened:
         return "pass", words
     return ("fail" if any(one.severe for one in happened) else "open"), f"{words}, but {said}"
+
+
+def _broken(number: KeyNumber) -> str:
+    """A key number that is beyond its limit."""
+    assert number.limit is not None
+    return f"{number.name} {in_unit(number.value, number.unit)} (limit {in_unit(number.limit, number.unit)})"
 
 
 def _incidents(result: Result) -> tuple[Incident, ...]:

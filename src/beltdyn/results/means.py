@@ -117,7 +117,7 @@ class SpanSummary:
     lowest, highest : float
         Minimum and maximum tension, N.
     belt_speed : float
-        Mean speed of the belt, m/s.
+        Mean speed of the belt, m/s, positive in the sense in which the driver moves it.
 
     Examples
     --------
@@ -226,8 +226,9 @@ def span_means(recorded: Recorded, drive: Drive, window: Window | None = None) -
     """
     window = mean_window(recorded, drive) if window is None else window
     tension = np.asarray(recorded["span_tension"][window.first :])
-    mean, belt_speed = (window.mean(recorded, name) for name in ("span_tension", "belt_speed"))
-    columns = (mean, tension.min(axis=0), tension.max(axis=0), belt_speed)
+    mean, belt_speed, speed = (window.mean(recorded, name) for name in ("span_tension", "belt_speed", "pulley_speed"))
+    backward = speed[drive.reference] * drive.pulleys[drive.reference].turning < 0.0
+    columns = (mean, tension.min(axis=0), tension.max(axis=0), -belt_speed if backward else belt_speed)
     return tuple(
         SpanSummary(name, *map(float, row)) for name, *row in zip(names(recorded, "span"), *columns, strict=True)
     )

@@ -127,7 +127,8 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def limited(run: Run) -> Run:
     limits = {"largest_slip": 0.01, "largest_hub_load": 10.0}
-    return Run(run.dataset, run.drive.replace(name="Fan <script>alert(1)</script>", limits=limits))
+    named = {"name": "Fan <script>alert(1)</script>", "project": "Hall B", "author": "A. Engineer"}
+    return Run(run.dataset, run.drive.replace(**named, limits=limits))
 
 
 @pytest.fixture(scope="module")
@@ -178,6 +179,31 @@ def test_limits_pass_and_fail(text: str) -> None:
     assert "✗ fail" in text
     assert "1 of 2 limits are met" in text
     assert "at most 1 %" in text
+
+
+def test_a_report_begins_with_what_is_asked_first(text: str) -> None:
+    """Who and when, the verdict with what is broken, the numbers, tables, how to tension, and figures, contact last."""
+    title, _, body = text.partition("</h1>")
+    assert "Fan" in title
+    places = [
+        body.index(words)
+        for words in (
+            *("Project: Hall B", "Author: A. Engineer", "Date: 20", "1 of 2 limits are met: largest hub load"),
+            *(
+                'id="numbers"',
+                'id="tables"',
+                ">Pulleys",
+                ">Spans",
+                'id="tensioning"',
+                "frequency meter",
+                'id="figures"',
+            ),
+            *("<h3>Speeds", "<h3>Span tensions", "<h3>Slip", "<h3>Hub load sizes", "<h3>Contact pressure"),
+            *('id="meaning"', 'id="origin"', 'id="file"'),
+        )
+    ]
+    assert places == sorted(places)
+    assert "<h3>Contact forces" not in body, "contact is shown once"
 
 
 def test_charts_and_motion_stand_where_they_belong(text: str, page: Page) -> None:

@@ -19,7 +19,10 @@ def number(value: float, limit: float | None = None) -> KeyNumber:
     [
         ({}, ("open", "No limits are given")),
         ({"largest_hub_load": 1e4}, ("pass", "The limit is met")),
-        ({"largest_hub_load": 1e4, "least_margin": 99.0}, ("fail", "1 of 2 limits are met")),
+        (
+            {"largest_hub_load": 1e4, "least_margin": 99.0},
+            ("fail", "1 of 2 limits are met: least capstan margin 3.661 (limit 99)"),
+        ),
     ],
 )
 def test_the_verdict(run: Run, limits: dict[str, float], said: tuple[str, str]) -> None:

@@ -121,3 +121,10 @@ def test_run_whose_end_was_not_recorded(run: Run) -> None:
 def test_run_without_outputs_cannot_be_summed_up(run: Run) -> None:
     with pytest.raises(ModelError, match="before its first output"):
         summarize(Run(run.dataset.isel(time=slice(0)), run.drive))
+
+
+def test_belt_speed_is_positive_in_the_sense_in_which_the_drive_runs(make_run: Callable[..., Run], run: Run) -> None:
+    """A clockwise drive as well as a counter-clockwise one."""
+    backward = {name: -run.dataset[name].values for name in ("pulley_speed", "belt_speed")}
+    for one in (run, make_run(**backward)):
+        assert summarize(one).spans[0].belt_speed == pytest.approx(12.0 * 0.08125)
