@@ -183,7 +183,10 @@ class LumpedBalance:
         while done < 1.0:
             ahead = min(done + step, 1.0)
             try:
-                near, done = self._solve(ahead * factor, near), ahead
+                there = self._solve(ahead * factor, near)
+                if any(np.abs(there.positions - near.positions) > [spring.scale for spring in self.springs]):
+                    raise ArithmeticError("another balance, far away")
+                near, done = there, ahead
             except ArithmeticError:
                 step *= 0.5
                 if step < 1e-3:
