@@ -177,7 +177,8 @@ def draw_limits(run: Run, ax: Axes, *keys: str) -> None:
         limit = getattr(run.drive.limits, key)
         if limit is not None:
             value, units = (100.0 * limit, "%") if key == "largest_slip" else (limit, unit_of(ax))
-            draw_limit(ax, value, f"{key.replace('_', ' ')} {value:.4g} {units}".rstrip())
+            words = f"{key.replace('_', ' ')} {value:.4g} {units}".rstrip()
+            draw_limit(ax, value, words, upper=key.startswith("largest"))
 
 
 def mark_incidents(run: Run, ax: Axes, kinds: Collection[str]) -> Axes:

@@ -220,7 +220,7 @@ def shade(ax: Axes, low: float, high: float, text: str) -> None:
     """Shade a band of the values, and write in it what is at its limit there."""
     ax.axhspan(low, high, color=SHADE, linewidth=0.0, zorder=0)
     middle = ("axes fraction", "data")
-    ax.annotate(text, (0.995, 0.5 * (low + high)), xycoords=middle, ha="right", va="center", fontsize=9)
+    ax.annotate(text, (0.005, 0.5 * (low + high)), xycoords=middle, ha="left", va="center", fontsize=9)
 
 
 def dash(number: int) -> Dash:

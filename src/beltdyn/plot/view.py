@@ -78,7 +78,7 @@ def show_enough(ax: Axes) -> None:
         ax.autoscale_view(scalex=False)
 
 
-def draw_limit(ax: Axes, value: float, text: str) -> None:
+def draw_limit(ax: Axes, value: float, text: str, upper: bool | None = None) -> None:
     """Draw a limit across axes, with its words; words alone at the edge where the line would squeeze all else.
 
     Parameters
@@ -89,6 +89,8 @@ def draw_limit(ax: Axes, value: float, text: str) -> None:
         The limit.
     text : str
         What it is, with its value.
+    upper : bool, optional
+        Whether its words stand above it, as those of an upper limit; by default above what is in the upper half.
     """
     fitted = ax.get_autoscaley_on()
     low, high = map(float, ax.dataLim.intervaly)
@@ -106,6 +108,7 @@ def draw_limit(ax: Axes, value: float, text: str) -> None:
         ax.annotate(words, (1.0, place), offset, "axes fraction", "offset points", va=side, **style)
         return
     ax.axhline(value, color=INK, linestyle=dash(1), linewidth=0.9, zorder=1.5)
+    above = above if upper is None else upper
     room = _HEADROOM * (top - bottom)
     if fitted:
         ax.update_datalim([(0.0, value + room if above else value - room)], updatex=False)

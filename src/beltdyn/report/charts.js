@@ -12,7 +12,11 @@ function recolor(plots) {
       }
       if ("label_text_color" in part) part.label_text_color = ink;
     }
-    for (const part of plot.center) if ("grid_line_color" in part) part.grid_line_color = soft;
+    for (const part of plot.center) {
+      if ("grid_line_color" in part) part.grid_line_color = soft;
+      if (part.type === "Span" && [INK, "#e4e7eb"].includes(part.line_color)) part.line_color = ink;
+      if (part.type === "Label" && ["#000000", INK, "#e4e7eb"].includes(part.text_color)) part.text_color = ink;
+    }
     for (const { glyph } of plot.renderers.filter((one) => "glyph" in one)) {
       const before = glyph.line_color?.value;
       if ([INK, "#e4e7eb"].includes(before)) glyph.line_color = { value: ink };
