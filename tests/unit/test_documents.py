@@ -79,7 +79,7 @@ def test_tables_have_every_key(part: type[Part], name: str) -> None:
     table = key_tables.KEYS[name]
     for key, field in part.model_fields.items():
         meaning = re.escape(key_tables.spelled(str(field.description))[1:])
-        assert re.search(rf"^\| `{key}` \| .{meaning}.* \|$", table, re.MULTILINE), key
+        assert re.search(rf"^\| `{field.alias or key}` \| .{meaning}.* \|$", table, re.MULTILINE), key
 
 
 def test_tables_tell_defaults_choices_and_limits() -> None:
